@@ -59,23 +59,7 @@ def test_the_table_against_integration(case: MotionCase) -> None:
         )
 
 
-MISSED = {
-    ("thin: rod", 0): "ω 1.1e-13, 2.2 times the bar, where products of theta functions cancel",
-}
-"""States that miss the bar."""
-
-STATES = [
-    pytest.param(
-        case,
-        i,
-        marks=[pytest.mark.xfail(strict=True, reason=MISSED[case.name, i])]
-        if (case.name, i) in MISSED
-        else [],
-        id=f"{case.name}: {i}",
-    )
-    for case in CASES
-    for i in range(len(case.times))
-]
+STATES = [pytest.param(case, i, id=f"{case.name}: {i}") for case in CASES for i in range(len(case.times))]
 
 
 @pytest.mark.parametrize(("case", "i"), STATES)

@@ -4,27 +4,19 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-use super::propagator::{
-    Circular, Clocked, Endless, Hyperbolic, Passing, Propagator, Rational, Round,
-};
+use super::products::Ratios;
+use super::propagator::{Clocked, Endless, Propagator, Round};
+use super::rates::{Given, omega, squares};
 use super::spinor::{Regime, Spinor};
 use super::start::Start;
-use crate::mass::refined::{RefinedPrincipal, Vector};
+use super::theta_series::{
+    Circular, CircularProducts, Hyperbolic, HyperbolicProducts, Passing, Rational, WithProducts,
+};
 use crate::motion::attitude::from_axes;
 use crate::numerics::complex::Complex;
 use crate::numerics::double_double::DoubleDouble;
 
 type Number = Complex<DoubleDouble>;
-
-/// What a motion is made from, in the units of the start.
-pub(super) struct Given<'a> {
-    /// Principal moments.
-    pub(super) moments: &'a Vector,
-    /// h along the principal axes.
-    pub(super) rotor: &'a Vector,
-    pub(super) principal: &'a RefinedPrincipal,
-    pub(super) attitude: &'a UnitQuaternion<f64>,
-}
 
 /// What grows with time, in units of the rates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,8 +93,20 @@ struct Pace {
 pub(super) fn moving(given: &Given<'_>, start: &Start, spinor: &Spinor) -> (Propagator, Secular) {
     let unit = start.unit;
     let mut columns = spinor.columns;
-    let pace = match spinor.regime {
-        Regime::Circular => circling(spinor),
+    let (pace, omega) = match spinor.regime {
+        Regime::Circular => {
+            let squares = squares(&columns);
+            let (ratios, plain) = (
+                Ratios::by_sines(spinor),
+                omega(given, start, &squares, None),
+            );
+            let apart = omega(given, start, &squares, Some(&ratios));
+            if ratios.are_better(&apart, &plain) {
+                (circling(spinor, Some(ratios.sines())), apart)
+            } else {
+                (circling(spinor, None), plain)
+            }
+        }
         Regime::Hyperbolic => {
             // Z in the middle of its regime has the size one.
             columns[1] = columns[1].map(|x| x.over(spinor.argument));
@@ -112,35 +116,36 @@ pub(super) fn moving(given: &Given<'_>, start: &Start, spinor: &Spinor) -> (Prop
                 let there = z.re.scaled(2.0) / z.norm_squared().sqrt();
                 columns[0] = [0, 1].map(|k| columns[0][k] + columns[1][k].times(there));
             }
-            passing(spinor)
+            let squares = squares(&columns);
+            let plain = omega(given, start, &squares, None);
+            if let Some(in_time) = spinor.in_time {
+                let ratios = Ratios::by_exponentials(spinor);
+                let apart = omega(given, start, &squares, Some(&ratios));
+                if ratios.are_better(&apart, &plain) {
+                    let products = ratios.exponentials(spinor.is_alternating);
+                    (returning(spinor, in_time, Some(products)), apart)
+                } else {
+                    (returning(spinor, in_time, None), plain)
+                }
+            } else {
+                (passing(spinor), plain)
+            }
         }
-        Regime::Rational => Pace {
-            clocked: Clocked::Rational(
-                Rational {
-                    curvature: [spinor.argument.re.high, spinor.argument.im.high],
-                },
-                Endless {
-                    rate: 1.0.into(),
-                    start: DoubleDouble::default(),
-                },
-            ),
-            phase: spinor.phase,
-            slope: 0.0,
-            turned: 0.0,
-            period: f64::INFINITY.into(),
-        },
+        Regime::Rational => (
+            on_cusp(spinor),
+            omega(given, start, &squares(&columns), None),
+        ),
     };
     let propagator = Propagator {
         rate: turns_of(pace.phase),
         slope: pace.slope,
         clocked: pace.clocked,
         attitude: attitude(given, start, &columns, pace.turned),
-        omega: omega(given, start, &columns),
+        omega,
         reach: f64::INFINITY,
     };
-    // ω is in units of the rates already.
-    let omega = propagator.omega;
     let mut propagator = propagator.in_units_of(unit);
+    // In units of the rates already.
     propagator.omega = omega;
     let rate = start.transverse.scaled(0.5) + pace.phase.scaled(unit);
     propagator.rate = turns_of(rate);
@@ -151,16 +156,24 @@ pub(super) fn moving(given: &Given<'_>, start: &Start, spinor: &Spinor) -> (Prop
     (propagator, secular)
 }
 
-fn circling(spinor: &Spinor) -> Pace {
+fn circling(spinor: &Spinor, products: Option<CircularProducts>) -> Pace {
     let rate = turns_of(spinor.rate);
+    let functions = circular(spinor);
+    let clock = Round {
+        rate: rate.scaled(spinor.sense),
+        start: DoubleDouble::default(),
+    };
     Pace {
-        clocked: Clocked::Circular(
-            circular(spinor),
-            Round {
-                rate: rate.scaled(spinor.sense),
-                start: DoubleDouble::default(),
-            },
-        ),
+        clocked: match products {
+            None => Clocked::Circular(functions, clock),
+            Some(products) => {
+                let series = WithProducts {
+                    functions,
+                    products,
+                };
+                Clocked::CircularApart(series, clock)
+            }
+        },
         phase: spinor.phase,
         slope: 0.0,
         turned: 0.0,
@@ -168,34 +181,60 @@ fn circling(spinor: &Spinor) -> Pace {
     }
 }
 
-fn passing(spinor: &Spinor) -> Pace {
-    let angle = spinor.argument.im.high.atan2(spinor.argument.re.high);
-    let before = spinor.argument.size().ln();
-    let Some((turn, in_time)) = spinor.in_time else {
-        return Pace {
-            clocked: Clocked::Endless(
-                Passing {
-                    wave: [angle.cos(), angle.sin()],
-                    least: if spinor.argument.size() > INFINITE {
-                        0.0
-                    } else {
-                        f64::NEG_INFINITY
-                    },
-                },
-                Endless {
-                    rate: spinor.rate.scaled(spinor.sense),
-                    start: DoubleDouble::sum(
-                        before,
-                        (-before).exp() * spinor.argument.size() - 1.0,
-                    ),
-                },
-            ),
-            phase: spinor.phase,
-            slope: 0.0,
-            turned: 0.0,
-            period: f64::INFINITY.into(),
-        };
+/// On the curve with three equal roots.
+fn on_cusp(spinor: &Spinor) -> Pace {
+    let curvature = [spinor.argument.re.high, spinor.argument.im.high];
+    let clock = Endless {
+        rate: 1.0.into(),
+        start: DoubleDouble::default(),
     };
+    Pace {
+        clocked: Clocked::Rational(Rational { curvature }, clock),
+        phase: spinor.phase,
+        slope: 0.0,
+        turned: 0.0,
+        period: f64::INFINITY.into(),
+    }
+}
+
+/// The angle of `Z₀`, and the logarithm of its size.
+fn place(spinor: &Spinor) -> (f64, f64) {
+    let [x, y] = [spinor.argument.re, spinor.argument.im].map(|part| part.high);
+    (y.atan2(x), spinor.argument.size().ln())
+}
+
+/// From an equilibrium to the same or to another one.
+fn passing(spinor: &Spinor) -> Pace {
+    let (angle, before) = place(spinor);
+    let size = spinor.argument.size();
+    let series = Passing {
+        wave: [angle.cos(), angle.sin()],
+        least: if size > INFINITE {
+            0.0
+        } else {
+            f64::NEG_INFINITY
+        },
+    };
+    let clock = Endless {
+        rate: spinor.rate.scaled(spinor.sense),
+        start: DoubleDouble::sum(before, (-before).exp() * size - 1.0),
+    };
+    Pace {
+        clocked: Clocked::Endless(series, clock),
+        phase: spinor.phase,
+        slope: 0.0,
+        turned: 0.0,
+        period: f64::INFINITY.into(),
+    }
+}
+
+/// By exponentials and back, with the period and the phase of a motion that returns.
+fn returning(
+    spinor: &Spinor,
+    (turn, in_time): (DoubleDouble, DoubleDouble),
+    products: Option<HyperbolicProducts>,
+) -> Pace {
+    let (angle, before) = place(spinor);
     let is_alternating = spinor.is_alternating;
     let step = if is_alternating {
         turn.scaled(0.5)
@@ -214,16 +253,19 @@ fn passing(spinor: &Spinor) -> Pace {
         in_time + DoubleDouble::PI / step
     };
     let slope = ((spinor.phase - phase) * step).high / TAU * spinor.sense;
-    let (rate, start) = (
-        DoubleDouble::from(spinor.sense) / step,
-        DoubleDouble::from(from),
-    );
-    let series = hyperbolic(spinor, angle, 2.0 * end, end);
+    let rate = DoubleDouble::from(spinor.sense) / step;
+    let start = DoubleDouble::from(from);
+    let functions = hyperbolic(spinor, angle, end);
+    let with = |products| WithProducts {
+        functions,
+        products,
+    };
     Pace {
-        clocked: if is_alternating {
-            Clocked::Alternating(series, Round { rate, start })
-        } else {
-            Clocked::Hyperbolic(series, Round { rate, start })
+        clocked: match (products.map(with), is_alternating) {
+            (None, false) => Clocked::Hyperbolic(functions, Round { rate, start }),
+            (None, true) => Clocked::Alternating(functions, Round { rate, start }),
+            (Some(series), false) => Clocked::HyperbolicApart(series, Round { rate, start }),
+            (Some(series), true) => Clocked::AlternatingApart(series, Round { rate, start }),
         },
         phase,
         slope,
@@ -232,7 +274,7 @@ fn passing(spinor: &Spinor) -> Pace {
     }
 }
 
-fn hyperbolic(spinor: &Spinor, angle: f64, unit: f64, end: f64) -> Hyperbolic {
+fn hyperbolic(spinor: &Spinor, angle: f64, end: f64) -> Hyperbolic {
     let nome = spinor.nome.high;
     let size = nome.abs();
     let sign = if spinor.is_alternating { -1.0_f64 } else { 1.0 };
@@ -249,7 +291,7 @@ fn hyperbolic(spinor: &Spinor, angle: f64, unit: f64, end: f64) -> Hyperbolic {
             let weight = size.powi(j * j);
             wave(2 * j + 1).map(|x| weight * x)
         }),
-        unit,
+        unit: 2.0 * end,
         end,
     }
 }
@@ -310,33 +352,4 @@ fn attitude(
         }
     }
     images
-}
-
-/// From the products of the two theta functions to D ω: `ω_i = (|L| n_i − h_i)/I_i` along the principal axes, `D n = χ†σχ`.
-fn omega(given: &Given<'_>, start: &Start, columns: &[[Number; 2]; 2]) -> [[f64; 3]; 4] {
-    let [u, v] = columns;
-    let two = |x: DoubleDouble| x.scaled(2.0);
-    // u†σv and u†v.
-    let product = |u: &[Number; 2], v: &[Number; 2]| {
-        let [a, b] = u.map(Complex::conjugate);
-        let (ab, ba) = (a * v[1], b * v[0]);
-        let (aa, bb) = (a * v[0], b * v[1]);
-        [ab + ba, (ba - ab).times_i(), aa - bb, aa + bb]
-    };
-    let (uu, vv, uv) = (product(u, u), product(v, v), product(u, v));
-    // 2 Re (Θ̄ₑΘₒ u†σv).
-    let rows = [
-        uu.map(|x| x.re),
-        vv.map(|x| x.re),
-        uv.map(|x| two(x.re)),
-        uv.map(|x| -two(x.im)),
-    ];
-    rows.map(|[x, y, z, square]| {
-        let along: Vector = std::array::from_fn(|i| {
-            let [e1, e2, n] = start.frame.map(|axis| axis[i]);
-            let sum = start.momentum * (x * e1 + y * e2 + z * n) - given.rotor[i] * square;
-            sum / given.moments[i]
-        });
-        given.principal.in_body(&along).map(DoubleDouble::rounded)
-    })
 }

@@ -18,6 +18,9 @@
 //! | `logarithm.rs` | where the start is on the curve: an elliptic logarithm by means |
 //! | `spinor.rs` | M and ν from the start |
 //! | `constants.rs` | from these to what a state takes |
+//! | `products.rs` | products of the theta functions, as series of their own |
+//! | `rates.rs` | ω from the products |
+//! | `theta_series.rs` | the theta functions at any argument |
 //! | `propagator.rs` | the states, in lanes |
 //! | [`equilibria`] | steady rotations with one angular momentum |
 //!
@@ -64,13 +67,16 @@ mod logarithm;
 pub mod mode;
 mod motion;
 mod pencil;
+mod products;
 mod propagator;
 mod quartic;
+mod rates;
 mod remnant;
 mod spinor;
 mod start;
 #[cfg(test)]
 mod tests;
+mod theta_series;
 
 pub use inside::{Gyrostat, Inside};
 pub use mode::Mode;

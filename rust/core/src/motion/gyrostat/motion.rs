@@ -2,11 +2,12 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::constants::{Given, Secular, moving, steady};
+use super::constants::{Secular, moving, steady};
 use super::curve::{Curve, apart};
 use super::mode::Mode;
 use super::pencil::Pencil;
 use super::propagator::Propagator;
+use super::rates::Given;
 use super::remnant::remnant;
 use super::spinor::Spinor;
 use super::start::{Start, dot};
@@ -44,10 +45,6 @@ pub struct GyrostatMotion {
 }
 
 /// By which formulas.
-#[expect(
-    clippy::large_enum_variant,
-    reason = "a motion is a value that is copied, and rarely in great number"
-)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Way {
     /// Without momentum inside.

@@ -1,148 +1,13 @@
 //! The state at any time from a few constants: two theta functions for the attitude and ω alike.
 
+use super::theta_series::{
+    Circular, CircularProducts, Hyperbolic, HyperbolicProducts, Passing, Rational, ThetaSeries,
+    Values, WithProducts,
+};
 use crate::motion::free::evaluate::{Formula, Motion, Use, combine};
 use crate::numerics::double_double::{DoubleDouble, two_sum};
 use crate::numerics::lane::Lane;
-use crate::numerics::theta::circular;
-use crate::numerics::turns::{
-    exp_minus, exp_minus_and_rest, reach, sin_cos_turns, turns, whole_off,
-};
-
-/// Θₑ and Θₒ but for a common factor, real and imaginary part of each, at the argument x; `rest` is what rounding has left out of x,
-/// where x is not taken off whole turns.
-pub(super) trait ThetaSeries {
-    fn values<L: Lane>(&self, x: L, rest: L) -> [(L, L); 2];
-}
-
-/// By sines and cosines of multiples of x turns: coefficients of `cos 2jx`, `sin 2jx`, and of `cos (2j+1)x`, `sin (2j+1)x`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Circular {
-    /// Real and imaginary part, before the cosine and before the sine.
-    pub(super) even: [[f64; 4]; 3],
-    pub(super) odd: [[f64; 4]; 4],
-}
-
-impl ThetaSeries for Circular {
-    #[inline(always)]
-    fn values<L: Lane>(&self, x: L, _: L) -> [(L, L); 2] {
-        let (sine, cosine) = sin_cos_turns(x);
-        let z = circular::Argument::new(sine, cosine);
-        let (mut even, mut odd) = ((L::new(0.0), L::new(0.0)), (L::new(0.0), L::new(0.0)));
-        let mut k = 4;
-        while k > 0 {
-            k -= 1;
-            let n = 2 * k + 1;
-            odd = add(odd, &self.odd[k], z.cos[n], z.sin[n]);
-            if k > 0 {
-                even = add(even, &self.even[k - 1], z.cos[2 * k], z.sin[2 * k]);
-            }
-        }
-        [(L::new(1.0) + even.0, even.1), odd]
-    }
-}
-
-#[inline(always)]
-fn add<L: Lane>((re, im): (L, L), coefficients: &[f64; 4], cosine: L, sine: L) -> (L, L) {
-    let [a, b, c, d] = coefficients.map(L::new);
-    (
-        a.mul_add(cosine, c.mul_add(sine, re)),
-        b.mul_add(cosine, d.mul_add(sine, im)),
-    )
-}
-
-/// By exponentials: with `g = e^{−|θ|}` and `Y = e^{−(end − |θ|)}`, both series over `e^{|θ|}`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Hyperbolic {
-    /// `sgn(Q)^j |Q|^{j²−j} (cos 2jφ, sin 2jφ)`, j from one.
-    pub(super) even: [[f64; 2]; 3],
-    /// `|Q|^{j²} (cos (2j+1)φ, sin (2j+1)φ)`, j from zero.
-    pub(super) odd: [[f64; 2]; 4],
-    /// θ for x = 1.
-    pub(super) unit: f64,
-    /// θ for x = ½.
-    pub(super) end: f64,
-}
-
-impl ThetaSeries for Hyperbolic {
-    #[inline(always)]
-    fn values<L: Lane>(&self, x: L, _: L) -> [(L, L); 2] {
-        let (zero, one) = (L::new(0.0), L::new(1.0));
-        let theta = x * L::new(self.unit);
-        let size = theta.abs();
-        let sign = one.copysign(theta);
-        let g = exp_minus(size);
-        let end = exp_minus((L::new(self.end) - size).max(zero));
-        let (y2, g2) = (end * end, g * g);
-        let mut even = (one, zero);
-        let mut odd = (zero, zero);
-        let (mut decay, mut power) = (one, g2);
-        let mut j = 0;
-        while j < 4 {
-            let [c, s] = self.odd[j];
-            odd.0 = (L::new(c) * decay).mul_add(one + power, odd.0);
-            odd.1 = (L::new(s) * decay).mul_add(one - power, odd.1);
-            decay = decay * y2;
-            power = power * g2;
-            if j < 3 {
-                let [c, s] = self.even[j];
-                even.0 = (L::new(c) * decay).mul_add(one + power, even.0);
-                even.1 = (L::new(s) * decay).mul_add(one - power, even.1);
-            }
-            power = power * g2;
-            j += 1;
-        }
-        [(g * even.0, g * sign * even.1), (odd.0, sign * odd.1)]
-    }
-}
-
-/// One and `2 cosh (x + iφ) − 2 cos φ`, what the second function has more than where x is zero; both over `e^{|x|}`.
-///
-/// With φ small the second function itself is nearly a constant there, and the spinor a difference of far larger ones.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Passing {
-    /// cos φ, sin φ.
-    pub(super) wave: [f64; 2],
-    /// The least x: zero where a motion leads from one equilibrium to another, of which no `e^{−x}` is a part, else minus
-    /// infinity.
-    pub(super) least: f64,
-}
-
-impl ThetaSeries for Passing {
-    #[inline(always)]
-    fn values<L: Lane>(&self, x: L, rest: L) -> [(L, L); 2] {
-        let [cosine, sine] = self.wave.map(L::new);
-        let one = L::new(1.0);
-        let x = L::new(self.least).max(x); // in this order NaN stays NaN
-        let sign = one.copysign(x);
-        let (g, lack) = exp_minus_and_rest(x.abs());
-        let change = g * (sign * rest);
-        let (g, lack) = (g - change, lack + change);
-        [
-            (g, L::new(0.0)),
-            (cosine * lack * lack, sign * sine * lack * (one + g)),
-        ]
-    }
-}
-
-/// One and `x + k x²`, both over 1 + x².
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Rational {
-    /// Real and imaginary part of k.
-    pub(super) curvature: [f64; 2],
-}
-
-impl ThetaSeries for Rational {
-    #[inline(always)]
-    fn values<L: Lane>(&self, x: L, _: L) -> [(L, L); 2] {
-        let [re, im] = self.curvature.map(L::new);
-        let square = x * x;
-        let over = L::new(1.0) / (L::new(1.0) + square);
-        [
-            (over, L::new(0.0)),
-            (re.mul_add(square, x) * over, im * square * over),
-        ]
-    }
-}
+use crate::numerics::turns::{reach, sin_cos_turns, turns, whole_off};
 
 /// How x grows with time.
 pub(super) trait ThetaArgument: Copy {
@@ -209,12 +74,15 @@ impl ThetaArgument for Endless {
     }
 }
 
-/// One of the series with its clock: a loop over times has no branch on either.
+/// One of the series with its clock: a loop over times has no branch on either. `Apart`: with products that are series of their own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Clocked {
     Circular(Circular, Round<false>),
     Hyperbolic(Hyperbolic, Round<false>),
     Alternating(Hyperbolic, Round<true>),
+    CircularApart(WithProducts<Circular, CircularProducts>, Round<false>),
+    HyperbolicApart(WithProducts<Hyperbolic, HyperbolicProducts>, Round<false>),
+    AlternatingApart(WithProducts<Hyperbolic, HyperbolicProducts>, Round<true>),
     Endless(Passing, Endless),
     Rational(Rational, Endless),
 }
@@ -226,6 +94,15 @@ impl Clocked {
             Self::Circular(series, clock) => Self::Circular(series, clock.in_units_of(unit)),
             Self::Hyperbolic(series, clock) => Self::Hyperbolic(series, clock.in_units_of(unit)),
             Self::Alternating(series, clock) => Self::Alternating(series, clock.in_units_of(unit)),
+            Self::CircularApart(series, clock) => {
+                Self::CircularApart(series, clock.in_units_of(unit))
+            }
+            Self::HyperbolicApart(series, clock) => {
+                Self::HyperbolicApart(series, clock.in_units_of(unit))
+            }
+            Self::AlternatingApart(series, clock) => {
+                Self::AlternatingApart(series, clock.in_units_of(unit))
+            }
             Self::Endless(series, clock) => Self::Endless(series, clock.in_units_of(unit)),
             Self::Rational(series, clock) => Self::Rational(series, clock.in_units_of(unit)),
         }
@@ -234,8 +111,11 @@ impl Clocked {
     /// Turns of x for a unit of time, where they are counted.
     fn rate(&self) -> Option<DoubleDouble> {
         match self {
-            Self::Circular(_, clock) | Self::Hyperbolic(_, clock) => Some(clock.rate),
-            Self::Alternating(_, clock) => Some(clock.rate),
+            Self::Circular(_, clock)
+            | Self::Hyperbolic(_, clock)
+            | Self::CircularApart(_, clock)
+            | Self::HyperbolicApart(_, clock) => Some(clock.rate),
+            Self::Alternating(_, clock) | Self::AlternatingApart(_, clock) => Some(clock.rate),
             Self::Endless(..) | Self::Rational(..) => None,
         }
     }
@@ -251,7 +131,7 @@ pub(super) struct Propagator {
     pub(super) clocked: Clocked,
     /// From (Re Θₑ, Im Θₑ, Re Θₒ, Im Θₒ), turned, to the components (x, y, z, w) of the attitude times √D.
     pub(super) attitude: [[f64; 4]; 4],
-    /// From `|Θₑ|²`, `|Θₒ|²`, real and imaginary part of `Θ̄ₑΘₒ` to D ω in B.
+    /// From the products of both to D ω in B.
     pub(super) omega: [[f64; 3]; 4],
     /// Beyond this |t| nothing is known of the phases.
     pub(super) reach: f64,
@@ -282,8 +162,10 @@ impl Propagator {
         let is_known = t.abs() <= L::new(self.reach);
         let t = if is_known { t } else { L::new(f64::NAN) };
         let ([x, rest], sign) = clock.at(t);
-        let [even, (odd_re, odd_im)] = series.values(x, rest);
-        let odd = (sign * odd_re, sign * odd_im);
+        let Values {
+            functions: [even, odd],
+            products,
+        } = series.values(x, rest, sign);
         let phase = turns(t, self.rate, DoubleDouble::default());
         let phase = if C::ENDLESS {
             phase
@@ -296,13 +178,7 @@ impl Propagator {
         let [x, y, z, w] = combine(&self.attitude, [a, b, c, d]);
         let inverse = one / (x * x + y * y + z * z + w * w);
         let norm = inverse.sqrt();
-        let bilinear = [
-            even.0 * even.0 + even.1 * even.1,
-            odd.0 * odd.0 + odd.1 * odd.1,
-            even.0 * odd.0 + even.1 * odd.1,
-            even.0 * odd.1 - even.1 * odd.0,
-        ];
-        let [p, q, r] = combine(&self.omega, bilinear);
+        let [p, q, r] = combine(&self.omega, products);
         [
             x * norm,
             y * norm,
@@ -322,6 +198,9 @@ impl Motion for Propagator {
             Clocked::Circular(series, clock) => then.with(&Chosen(self, series, clock)),
             Clocked::Hyperbolic(series, clock) => then.with(&Chosen(self, series, clock)),
             Clocked::Alternating(series, clock) => then.with(&Chosen(self, series, clock)),
+            Clocked::CircularApart(series, clock) => then.with(&Chosen(self, series, clock)),
+            Clocked::HyperbolicApart(series, clock) => then.with(&Chosen(self, series, clock)),
+            Clocked::AlternatingApart(series, clock) => then.with(&Chosen(self, series, clock)),
             Clocked::Endless(series, clock) => then.with(&Chosen(self, series, clock)),
             Clocked::Rational(series, clock) => then.with(&Chosen(self, series, clock)),
         }

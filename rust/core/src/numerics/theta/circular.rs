@@ -5,13 +5,13 @@ use std::f64::consts::PI;
 use super::half_periods::HalfPeriods;
 use crate::numerics::lane::Lane;
 
-/// Cosines and sines of z = πu/2K and its multiples up to 8 z.
+/// Cosines and sines of z = πu/2K and its multiples up to 9 z.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Argument<L> {
     /// cos nz.
-    pub cos: [L; 9],
+    pub cos: [L; 10],
     /// sin nz.
-    pub sin: [L; 9],
+    pub sin: [L; 10],
 }
 
 impl<L: Lane> Argument<L> {
@@ -26,6 +26,7 @@ impl<L: Lane> Argument<L> {
         let second = twice(sine, cosine);
         let fourth = twice(second.0, second.1);
         let sixth = sum(fourth, second);
+        let eighth = twice(fourth.0, fourth.1);
         let all = [
             (zero, one),
             first,
@@ -35,7 +36,8 @@ impl<L: Lane> Argument<L> {
             sum(fourth, first),
             sixth,
             sum(sixth, first),
-            twice(fourth.0, fourth.1),
+            eighth,
+            sum(eighth, first),
         ];
         Self {
             cos: all.map(|(_, c)| c),

@@ -74,7 +74,7 @@ impl Circular {
     #[inline(always)]
     #[must_use]
     pub(crate) fn values<L: Lane>(&self, z: &circular::Argument<L>) -> Values<L> {
-        let odd = |of: &[L; 9]| [of[1], of[3], of[5], of[7]];
+        let odd = |of: &[L; 10]| [of[1], of[3], of[5], of[7]];
         let (sines, cosines) = (odd(&z.sin), odd(&z.cos));
         let [q1, q4, q9] = self.below;
         let (q1, q4, q9) = (L::new(q1), L::new(q4), L::new(q9));
