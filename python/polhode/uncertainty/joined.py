@@ -22,7 +22,8 @@ def joined(values: Any) -> Any:
     Parameters
     ----------
     values : Uncertain, uncertainties.UFloat, or nested sequences of them
-        Plain numbers and arrays are allowed too. An `Uncertain` of an array stands for its rows.
+        Plain numbers and arrays are allowed too. An `Uncertain` that holds an array counts as the list of the
+        rows of this array.
 
     Returns
     -------

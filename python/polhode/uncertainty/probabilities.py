@@ -58,7 +58,7 @@ class ModeProbabilities(NamedTuple):
         Probability that the angular velocity circles axis 1, of the least moment, and that it circles axis 3.
         They add up to one.
     linear : bool or numpy.ndarray, shape (...)
-        Whether the first order is enough, with which they are computed.
+        Whether the first order, by which the probabilities are computed, is accurate enough.
     """
 
     long_axis: Any

@@ -51,8 +51,10 @@ class Propagated(NamedTuple):
         Covariance of the k numbers of the value in C order.
     linear : bool or numpy.ndarray of bool
         Whether the first order is enough for each number, to about a percent of its sigma. For
-        ``"monte-carlo"`` it is False only where the distribution of the random bodies does not fit the second
-        order of the body.
+        ``"monte-carlo"``: whether `sigma` is that accurate, apart from the chance of the draws. It is False
+        if mass, centre of mass and tensor depend so strongly on squares of the uncertain numbers that the
+        body was made of that the random bodies have another distribution. Then draw those numbers
+        themselves: see the notes of :func:`propagate`.
     """
 
     value: Any
@@ -111,12 +113,14 @@ def propagate(
     Let k be the rank of the covariance, at most 10 for a body alone. The function is called about 4 k + 130
     times to first order, 2 k² + 6 k + 130 times to second order, and n + 4 k + 65 times for random bodies.
 
-    Random bodies are normally distributed in the ten numbers; numbers that no body can have are drawn again.
-    For some bodies, such as one that is turned or has no extent along an axis, a normal distribution in the
-    principal moments and in small angles of the axes fits the second order better, and is used instead.
+    Random bodies have a normal distribution of the ten numbers: mass, centre of mass and tensor. Numbers that
+    no body can have are drawn again. In two cases principal moments and small rotations of the axes are drawn
+    in place of the tensor: for a body without extent along an axis, such as a lamina; and where this changes
+    the tensor more nearly as the uncertain numbers do that the body was made of, to second order. An example
+    of the second case is a body that was rotated by an uncertain angle.
 
-    To draw the numbers that a body is made of, make the body inside `f`, pass these numbers as `arguments`,
-    and None as `body`.
+    To draw the uncertain numbers that a body was made of, pass them as `arguments` and None as `body`, and
+    make the body inside `f`.
 
     Examples
     --------
