@@ -29,8 +29,8 @@ def draw(clones: int = 2000) -> Figure:
         n=clones,
     )
     slow, fast = np.quantile(found.spin_ratio, (0.05, 0.95))
-    print(f"spin rate after over before: {slow:.2f} to {fast:.2f} (90 % of the clones)")
-    print(f"pole shift: {np.degrees(np.median(found.pole_shift)):.0f} degrees in the middle")
+    print(f"spin rate after the flyby, divided by that before: {slow:.2f} to {fast:.2f} (90 % of the clones)")
+    print(f"pole shift: {np.degrees(np.median(found.pole_shift)):.0f} degrees (median)")
     for mode, share in found.modes().items():
         print(f"{mode}: {100 * share:.0f} % after")
 

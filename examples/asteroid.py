@@ -36,7 +36,7 @@ def draw() -> Figure:
 
 
 def animate(file: str) -> None:
-    """Write the moving page of one month."""
+    """Write the moving page of 37 days, about five periods of precession."""
     toutatis = RigidBody.from_principal(1.0, MOMENTS)
     motion = toutatis.free_motion_from_periods(ROTATION, PRECESSION, mode="long-axis")
     motion.at(np.linspace(0.0, 37.0, 601)).animate(file, title="Toutatis", time_unit="d", duration=30)

@@ -7,12 +7,15 @@ from matplotlib.figure import Figure
 from polhode import RigidBody, solids
 
 SIDE = 16.0  # mm
+PLASTIC, LEAD = 5.0 / SIDE**3, 0.01134  # g/mm³; the die has 5 g
 
 
 def die(lead: float) -> RigidBody:
-    """Give a die of 5 g with so many grams of lead close to a corner."""
-    plain = solids.cube(SIDE, mass=5.0)
-    return plain + solids.sphere(radius=1.5, mass=lead).translated((5.5, 5.0, 4.0)) if lead else plain
+    """Give a die with a ball of so many grams of lead near a corner, in place of as much plastic."""
+    plain = solids.cube(SIDE, density=PLASTIC)
+    radius = (3.0 * lead / (4.0 * np.pi * LEAD)) ** (1.0 / 3.0)  # 2.76 mm for one gram: it fits
+    more = solids.sphere(radius=radius, density=LEAD - PLASTIC).translated((5.0, 4.5, 3.5)) if lead else None
+    return plain if more is None else plain + more
 
 
 def draw() -> Figure:

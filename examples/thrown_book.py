@@ -1,4 +1,4 @@
-"""A book thrown about each of its three axes: two turns are stable, the third is not."""
+"""A book thrown about each of its three axes: about the middle axis the rotation is unstable."""
 
 import sys
 

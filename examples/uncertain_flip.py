@@ -10,7 +10,10 @@ RACKET = RigidBody.from_principal(0.33, (0.00121, 0.01638, 0.01748))
 
 
 def draw() -> Figure:
-    """Draw how often each time from flip to flip occurs, for hands that are more and less sure."""
+    """Draw how often each time from flip to flip occurs, for hands that are more and less sure.
+
+    ω is (0, 12, 0) rad/s but for errors; `sigma` is that of its two components across the axis.
+    """
     figure = Figure(figsize=(8.0, 4.0), layout="constrained")
     ax = figure.add_subplot()
     rng = np.random.default_rng(7)
@@ -19,7 +22,7 @@ def draw() -> Figure:
         flips = RACKET.free_motion(spins).periods.flip
         flips = flips[np.isfinite(flips)]
         low, middle, high = np.quantile(flips, (0.05, 0.5, 0.95))
-        print(f"{sigma} rad/s across: a flip every {middle:.2f} s, {low:.2f} to {high:.2f}")
+        print(f"across ± {sigma} rad/s: a flip every {middle:.2f} s, {low:.2f} to {high:.2f} for 90 %")
         ax.hist(flips, 60, range=(0.5, 3.5), color=color, alpha=0.75, label=f"{sigma} rad/s across")
     ax.set(xlabel="time from flip to flip (s)", ylabel="throws")
     ax.legend(frameon=False)

@@ -51,13 +51,21 @@ def write(docs: Path) -> None:
             for _ in pool.map(run, missing, [stamp] * len(missing)):
                 pass
     keep(docs / "gallery", dict(pages(groups, {name: words for name, (_, words) in shown.items()})))
+    for gone in {folder for folder in KEPT.iterdir() if folder.name not in names}:
+        shutil.rmtree(gone)
+    for gone in set(PICTURES.glob("*.png")) - {PICTURES / f"{name}.png" for name in names}:
+        gone.unlink()
     for name in names:
         shutil.copy2(KEPT / name / f"{name}.png", PICTURES)
 
 
 def copy(site: Path) -> None:
-    """Put the moving pages and the small pictures where the pages of the gallery look for them."""
+    """Put moving pages and small pictures where the pages look for them; take away those of names gone."""
     if (site / "gallery").is_dir():
+        names = {"index", *(folder.name for folder in KEPT.iterdir())}
+        for file in (site / "gallery").iterdir():
+            if file.name.partition(".")[0] not in names:
+                file.unlink()
         for kind in ("live.html", "light.png", "dark.png"):
             for file in KEPT.glob(f"*/{kind}"):
                 shutil.copy2(file, site / "gallery" / f"{file.parent.name}.{kind}")

@@ -81,7 +81,8 @@ PROBLEMS = (
     (
         "motion",
         "A body that flips",
-        "Each program computes angular velocity and attitude of a free body at 601 times of one minute. The "
+        "Each program computes angular velocity and attitude of a free body at 601 "
+        "instants, evenly spaced over one minute. The "
         "error is the error of the angular velocity, compared with Jacobi's functions in 45 digits. SymPy "
         "gives the attitude in Euler angles, the others give quaternions. The integrators have "
         "a tolerance of 1e-12; heyoka has its default tolerance, and MuJoCo has steps of a millisecond.",

@@ -24,22 +24,23 @@ def sensitivity(self: Trajectory, method: Literal["series", "differences"] = "se
     ----------
     method : {"series", "differences"}
         ``"series"`` integrates the linearised equations of motion. ``"differences"`` takes finite differences
-        of order six between motions that are simulated anew; it gives about nine digits. It serves loads for
-        which there are no series: functions, a motor with a limit, dry friction.
+        of order six between motions that are simulated anew; it gives about nine digits. It also serves
+        the loads for which there are no series: see Raises.
 
     Returns
     -------
     MotionSensitivity
         Derivatives of the attitude, the angular velocity and the states of the load at every time. They are
         taken with respect to the same quantities at the first time, to the principal moments, products of
-        inertia, centre of mass and mass of the body, and to every argument of the load.
+        inertia, centre of mass and mass of the body, and to the numbers of the load. Some arguments of loads
+        are not varied, such as times: see :class:`polhode.MotionSensitivity`.
 
     Raises
     ------
     PolhodeError
-        With ``"series"``, for a load without series: a callback, a compiled function, a magnetic field along
-        an orbit, B-dot, a motor with a limit, dry friction, a feedback on a moving target. With
-        ``"differences"``, if the differences of order four and of order six do not agree.
+        With ``"series"``, for a load without series: a callback, a compiled function, a gravity gradient
+        along an oblate or sampled orbit, a magnetic field along an orbit or at given times, B-dot, a motor
+        with a limit, dry friction, a feedback on a moving target. With ``"differences"``, if the differences of order four and of order six do not agree.
     IntegrationError
         If the integration of the motion or of the derivatives cannot go on.
 

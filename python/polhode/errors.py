@@ -32,7 +32,10 @@ class InvalidInertiaError(PolhodeError):
 
 
 class MeshError(PolhodeError):
-    """A mesh does not bound a solid: it is open, inconsistently wound, inverted or degenerate.
+    """A mesh from which no body can be computed.
+
+    A mesh of a solid may be open, inconsistently wound, inverted or degenerate. A surface may be folded onto
+    itself or have a bad face. A mesh of tetrahedra may have a bad cell or density.
 
     Attributes
     ----------

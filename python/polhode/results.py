@@ -115,8 +115,8 @@ class BoxFit(NamedTuple):
     possible : bool or numpy.ndarray, shape (...)
         Whether every condition holds.
     margin : float or numpy.ndarray, shape (...)
-        Margin of the tightest condition, relative to the square of the size of the box along its axes;
-        negative if the condition is violated.
+        Margin of the tightest condition, divided by the product of the lengths of the box along the two axes
+        of the condition; negative if the condition is violated.
     axes : tuple of str or numpy.ndarray of str, shape (..., 2)
         The two axes of this condition; the same axis twice for a condition on the spread along one axis.
     """
@@ -377,7 +377,8 @@ class MotionSensitivity(NamedTuple):
           respect to ``2 * v``.
         - If the motor of a wheel follows a feedback, the dict has the arguments of the wheel and also those
           of the feedback.
-        - Frames, times of samples, windows and epochs are not varied.
+        - Not varied are `frame`, the `times` of samples, the windows of :func:`polhode.loads.schedule`, and
+          epochs.
     begins : numpy.ndarray, shape (..., k, 3)
         Derivatives of the states of the load at the first time with respect to ω at the first time. A wheel
         that starts with a given rate Ω has the angular momentum ``h = J (Ω + a·ω)``, where J is its moment of

@@ -29,7 +29,8 @@ class Member(NamedTuple):
     Attributes
     ----------
     id : str
-        Names from the whole down to the part, with / between them; a copy has its number.
+        Names on the way from the whole, which is left out, to the part, with / between them. A copy has its
+        number, from 1 on, as the last name: ``"leg/2"``.
     body : RigidBody
         The body in the axes of the whole, in kg and m.
     solid : str

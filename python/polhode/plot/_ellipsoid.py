@@ -174,8 +174,8 @@ def polhode(
 ) -> Axes3D:
     """Draw the polhode of a motion: the path of ω in the body, on the ellipsoid ω·I ω = 2T of its energy.
 
-    For a gyrostat, T does not include the rotation of the wheels relative to the body, and I is the tensor in
-    the equations of motion. A disc marks the start of the motion.
+    For a gyrostat, T is :meth:`polhode.GyrostatMotion.kinetic_energy`, which leaves out energy of the
+    wheels, and I is the tensor in the equations of motion. A disc marks the start of the motion.
 
     Parameters
     ----------

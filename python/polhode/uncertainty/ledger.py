@@ -9,6 +9,9 @@ that of the whole.
 The parts are summed up (*rolled up*) to every level of the tree. Errors are propagated to first order with
 all their correlations: the moments of an assembly depend on the same masses and centres, so that their errors
 are correlated.
+
+Import all names of this page from the package above: ``from polhode.uncertainty import ledger, Ledger``.
+There ``ledger`` is the function. ``made["bus"]`` is the :class:`Part` with the id "bus" of a ledger ``made``.
 """
 
 from __future__ import annotations
