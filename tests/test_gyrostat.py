@@ -187,6 +187,22 @@ def test_a_start_next_to_the_middle_axis_turns_over_when_it_should() -> None:
     assert late.omega[:, 1].min() < 0.9
 
 
+@pytest.mark.parametrize("thin", [0.3, 0.05, 1e-2, 1e-3, 1e-4, 1e-6])
+@pytest.mark.parametrize("h", ["across", "along"])
+def test_a_slender_body_keeps_the_digits_of_its_fast_rate(thin: float, h: str) -> None:
+    """Its rate is a small difference of large terms, over the smallest moment."""
+    rotor, omega = {
+        "across": ((0, 0.02, 0.3), (2, 0.7, -0.9)),
+        "along": ((0.5 * thin, 0, 0), (0.1, 0.05, 1.0)),
+    }[h]
+    body = RigidBody.from_principal(1.0, (thin, 1.0, 1.0 + 0.5 * thin))
+    times = np.array([0.0, *np.linspace(0.1, 3, 12)])
+    inside = loads.damping(-skew(np.array(rotor)))
+    run = body.simulate(times, omega, load=inside, method="taylor", rtol=1e-26)
+    off = body.gyrostat(rotor).free_motion(omega).at(times).omega - run.omega
+    assert np.linalg.norm(off, axis=1).max() < 5e-15 * np.linalg.norm(run.omega, axis=1).max()
+
+
 def test_free_and_held_wheels_are_two_systems() -> None:
     axis, inertia, rate, omega = np.array([1.0, 2.0, 2.0]) / 3, 0.2, 30.0, np.array([0.1, 0.2, 0.3])
     times = np.linspace(0, 5, 11)
