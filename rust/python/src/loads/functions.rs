@@ -165,9 +165,9 @@ pub(crate) fn compiled(
 ///     Time between two updates.
 /// scale : float or array_like, shape (k,), optional
 ///     Typical size of each state. Errors are relative to it, or to the largest value of the state so far if
-///     that is larger. It is needed for a state that stays near zero, or begins at zero with a rate of zero,
-///     such as the last of a chain of lags. Without it the method "dop853" then takes many small steps, and
-///     "radau" fails.
+///     that is larger. It is needed for a state that stays near zero. It is also needed for a body at rest
+///     and a state that begins at zero with a rate of zero, such as the last of a chain of lags. Without it
+///     the method "dop853" then takes many small steps, and "radau" fails.
 ///
 /// Returns
 /// -------

@@ -60,6 +60,8 @@ pub(super) struct Equations<'a, L, const N: usize> {
     pub(super) scales: Scales,
     /// What counts as large of the load's own states besides.
     sizes: Vec<[f64; 2]>,
+    /// The rates of these states where the equations were asked last.
+    rates: Vec<f64>,
 }
 
 impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
@@ -84,6 +86,7 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
         };
         Self {
             sizes: load.sizes(),
+            rates: vec![0.0; own],
             euler: *euler,
             mass: subject.mass,
             is_held: subject.pivoted,
@@ -231,6 +234,10 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
         for i in 0..3 {
             slope[4 + i] = turning[i];
         }
+        let rates = slope.iter().skip(MOVING);
+        for (kept, rate) in self.rates.iter_mut().zip(rates) {
+            *kept = *rate;
+        }
         if N >= MOVING {
             // What is held does not move.
             let moving = if self.is_held {
@@ -284,12 +291,19 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
                 most
             }
         };
+        let fastest = self.scales.omega.max(vector(y_new, 4).norm());
         let own = (0..self.own()).map(|i| {
             let size = error[MOVING + i].abs();
             let [per_omega, least] = self.sizes[i];
             let natural = (per_omega * self.scales.omega).max(least);
-            let scale = self.scales.own[i].max(y_new[MOVING + i].abs()).max(natural);
-            // Of a state that begins at zero nobody knows yet what is large.
+            // Of a state that has been zero all the time nobody knows yet what is large: what it would come to while the body turns
+            // by a radian. Relative to itself the error of one that grows as a power of the time is the same at any step.
+            let begun = if self.scales.own[i] == 0.0 && fastest > 0.0 {
+                self.rates[i].abs() / fastest
+            } else {
+                self.scales.own[i]
+            };
+            let scale = begun.max(y_new[MOVING + i].abs()).max(natural);
             if size == 0.0 || scale == 0.0 {
                 0.0
             } else {
