@@ -40,7 +40,8 @@ def sensitivity(self: Trajectory, method: Literal["series", "differences"] = "se
     PolhodeError
         With ``"series"``, for a load without series: a callback, a compiled function, a gravity gradient
         along an oblate or sampled orbit, a magnetic field along an orbit or at given times, B-dot, a motor
-        with a limit, dry friction, a feedback on a moving target. With ``"differences"``, if the differences of order four and of order six do not agree.
+        with a limit, dry friction, a feedback on a moving target. With ``"differences"``, if the differences
+        of order four and of order six do not agree.
     IntegrationError
         If the integration of the motion or of the derivatives cannot go on.
 
@@ -60,7 +61,8 @@ def sensitivity(self: Trajectory, method: Literal["series", "differences"] = "se
     Differences remain right where the law of the load changes on the way, for example when a wheel stops in
     its bearing or a motor saturates: each of the neighbouring motions finds its own time of the change. All
     numbers of an orbit are varied: also J₂, radius and pole of an oblate attractor, and each position of a
-    table. Each number takes six runs. There are no differences by
+    table. Each number takes six runs. The following cannot be
+    varied, and have no derivatives by differences:
 
     - numbers inside a function,
     - the attitude of a target at rest,

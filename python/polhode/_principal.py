@@ -152,7 +152,7 @@ class PrincipalAxes:
         return _core.ray_kappa(self.moments)
 
     def canonical(self, rtol: float = 1e-6) -> PrincipalAxes:
-        """Choose those principal axes that equal moments leave free, by the directions of the body axes.
+        """Choose principal axes near the body axes where equal moments leave the choice open.
 
         If two moments are equal, every pair of perpendicular axes in their plane is a pair of principal axes.
         The pair chosen here has as its first axis the projection onto the plane of that body axis whose

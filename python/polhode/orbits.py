@@ -137,8 +137,7 @@ class Orbit(Path):
         Parameters
         ----------
         t : array_like, shape (T...)
-            Times. The state at time t is that at ``t - epoch`` after the epoch; without an epoch, at t after
-            it.
+            Times. The orbit has its given state at t equal to the epoch; without an epoch, at t = 0.
 
         Returns
         -------

@@ -86,11 +86,11 @@ class Reduction(ABC):
 
     @abstractmethod
     def merged(self, one: Any, other: Any, n: int) -> Any:
-        """Give the state of two neighbours."""
+        """Merge the states of two neighbouring blocks, and give the state of both together."""
 
     @abstractmethod
     def finished(self, state: Any, left_out: int) -> Any:
-        """Give the result; the state of no member is None."""
+        """Give the result. If there was no member, the state is None."""
 
     def __repr__(self) -> str:
         parts = {name: value for name, value in self.__dict__.items() if name != "of"}

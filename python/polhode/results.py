@@ -230,8 +230,8 @@ class Provenance:
     closure : str
         How an open mesh was closed on request: ``"caps"``, ``"hull"`` or ``""``.
     volume_change : float
-        Change of volume by this closure. The volume before is that which the faces span with the middle of
-        the mesh.
+        Change of volume by this closure. The volume before is the sum of the tetrahedra of each face with the
+        middle of the mesh.
     moments : str
         What the principal moments were computed from: ``"given"``, ``"tensor"``, ``"second moment"`` (before
         it was rounded to a tensor) or ``"second moment in own axes"`` (summed a second time in the principal

@@ -6,5 +6,6 @@ body frame.
 """
 
 from polhode._core import free_precession, least_spin, nutation_damping, steady_precession
+from polhode._tops import NutationDamping
 
-__all__ = ["free_precession", "least_spin", "nutation_damping", "steady_precession"]
+__all__ = ["NutationDamping", "free_precession", "least_spin", "nutation_damping", "steady_precession"]

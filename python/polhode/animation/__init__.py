@@ -64,9 +64,9 @@ def animate(
     shape : (vertices, faces) or list, optional
         A mesh of the body in its frame, (n, 3) and (m, 3); or a list of parts, each a mesh or a body. By
         default the shape is that from which the body was made: solids, sheets, wires, a mesh of up to 20,000
-        triangles, up to 256 particles, or up to 256 such parts. If only the inertia is known, or the body was
-        read from a saved file, it is the uniform box with the same inertia. In a given mesh with more than
-        20,000 triangles, nearby corners are joined, and a message says so.
+        triangles, up to 256 particles, or up to 256 parts of these kinds. If only the inertia is known, or
+        the body was read from a saved file, it is the uniform box with the same inertia. In a given mesh with
+        more than 20,000 triangles, nearby corners are joined, and a message says so.
     frames : int, optional
         Number of states shown, evenly chosen. By default there are as many as needed for a free body, or for
         a heavy top under gravity alone. The closed form then gives further states between the samples, so

@@ -117,7 +117,7 @@ class Ensemble:
 
     @property
     def memory(self) -> Memory:
-        """Memory that the ensemble takes, in bytes."""
+        """Memory in bytes: of a chunk while it runs, and of the results of all members."""
         plan = self.plan
         kept = bytes_of_member(plan)
         rows = min(plan.chunk, plan.n)

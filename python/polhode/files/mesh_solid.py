@@ -95,8 +95,7 @@ def solid_from_file(
 
     Binary STL and binary PLY are read block by block, so that a file may be larger than the memory. Of a PLY
     file only the vertices are kept in memory, since faces refer to them in any order. Other formats are read
-    into memory as a whole, and so is every file whose corners are welded within a length or whose holes are
-    closed.
+    into memory as a whole. The same holds if corners are welded within a length, or if holes are closed.
 
     To find duplicate faces, a file that is read in blocks is read once more for every eight million
     triangles. A component whose faces are wound inward is a cavity if it lies inside another component. This
@@ -110,8 +109,8 @@ def solid_from_file(
     density, mass : float or Uncertain, optional
         Exactly one of them.
     scale : float, optional
-        Length of one unit of the coordinates, in the unit of the result. By default this is in metres if the
-        file or its format states the unit, and 1 otherwise.
+        Length of one unit of the coordinates, in the unit of the result. By default it is the unit of
+        the file in metres, if the file or its format states the unit, and 1 otherwise.
     weld, index_base
         See :func:`read_mesh`.
     closure : {"caps", "hull"}, optional

@@ -39,7 +39,7 @@ def flyby(
     time_unit : str, optional
         Unit of the periods, for the label.
     time_scale : float, optional
-        Length of that unit in units of time: periods are divided by it.
+        How many units of time of the motion `time_unit` is long. Periods are divided by this number.
     bins : int, optional
         Number of bars. The outermost bars also contain the tails, the last percent at each end.
 

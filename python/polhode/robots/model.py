@@ -165,14 +165,14 @@ class Link:
         Whether a simulator computes the inertia from the geometry: in MJCF if none is declared, in SDF if the
         file says so.
     rewrite : callable, optional
-        Function of the source and new mass properties that returns the edits of the file; None if another
-        file contains the link.
+        Function that takes the source and new mass properties and returns the changes of the file; None if
+        the link is in another file.
     file : str
         File that contains the link, if the robot file includes it.
     folder : pathlib.Path, optional
         Folder from which relative addresses of its meshes are read; that of the robot by default.
     key : str
-        Name of the link for joints: its own name with the names of the models that contain it.
+        The name by which joints refer to the link: the names of the models that contain it, and its own.
     defaults : str
         Values that the file leaves out and the format replaces by defaults (SDF: 1 kg, the unit tensor); ""
         for none.

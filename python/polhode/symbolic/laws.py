@@ -96,8 +96,8 @@ def kinetic_energy(
     omega, velocity : sequence of three Expr, optional
         Angular velocity, and velocity of the reference point, components in the body.
     center : sequence of three Expr, optional
-        Vector from the reference point to the centre of mass; zero if the reference point is the centre of
-        mass.
+        Vector from the reference point to the centre of mass. Give (0, 0, 0) if the reference point is the
+        centre of mass; by default it is a vector of symbols.
 
     Returns
     -------

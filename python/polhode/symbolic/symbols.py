@@ -22,7 +22,7 @@ def real(names: str) -> Any:
 
 
 class Symbols(NamedTuple):
-    """The symbols that the theorems use by default.
+    """The symbols that the theorems use by default: ``polhode.symbolic.symbols`` is the object.
 
     Attributes
     ----------

@@ -277,7 +277,7 @@ class Ledger:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Part:
-    """One node of a ledger: a part, or an assembly of parts.
+    """One node of a ledger: a part, or an assembly of parts. ``made[id]`` of a ledger ``made`` is one.
 
     Attributes
     ----------

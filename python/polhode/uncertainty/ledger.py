@@ -11,7 +11,8 @@ all their correlations: the moments of an assembly depend on the same masses and
 are correlated.
 
 Import all names of this page from the package above: ``from polhode.uncertainty import ledger, Ledger``.
-There ``ledger`` is the function. ``made["bus"]`` is the :class:`Part` with the id "bus" of a ledger ``made``.
+There ``ledger`` is the function. ``made["bus"]`` is the :class:`Part` with the id "bus" of a ledger
+``made``.
 """
 
 from __future__ import annotations

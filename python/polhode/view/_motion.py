@@ -58,7 +58,7 @@ def motion(
         Motion of one body. For a motion in closed form as many states are shown as needed. For any other
         motion its samples are shown; the body should turn by no more than 30 degrees from one to the next.
     plotter : pyvista.Plotter, optional
-        Where to show it; a new one by default. If it shows the motion already, another `at` sets its time.
+        Where to show it; a new one by default. If it already shows the motion, `at` sets another time.
     end : float, optional
         For a motion in closed form, which has no times of its own: the motion is shown from 0 to this time.
         The wheels of a `polhode.GyrostatMotion` turn one by one; its states at given times have only the sum
