@@ -32,8 +32,8 @@ class Bifurcations(NamedTuple):
         The ``|L|`` of the bifurcation for the given h. The two equilibria of a fold, or the pair of a
         pitchfork, exist only for larger ``|L|``.
     rotor : numpy.ndarray, shape (n,)
-        The ``|h|`` of the bifurcation for the given ``|L|`` and the given direction of h. The same two
-        equilibria exist only for smaller ``|h|``.
+        The ``|h|`` of the bifurcation for the ``|L|`` that was given to :meth:`Gyrostat.equilibria` and for
+        the direction of h of the gyrostat. The same two equilibria exist only for smaller ``|h|``.
     """
 
     meeting: NDArray[np.str_]

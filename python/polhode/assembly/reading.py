@@ -81,8 +81,9 @@ def read(
       (``"positive"`` or ``"negative"``), ``about``, and ``rtol`` for a table of few digits.
 
     A part is at ``position``, turned by ``rotation``: a table with ``axis`` and ``degrees`` (or ``radians``);
-    ``sequence`` and three of either; ``quaternion_xyzw``; or ``matrix``: ``r = R r_part + position``.
-    ``count`` is the number of copies; each copy is moved from the one before by ``turn`` and ``step``.
+    ``sequence`` with three angles under the key ``degrees`` or ``radians``; ``quaternion_xyzw``; or
+    ``matrix``: ``r = R r_part + position``. ``count`` is the number of copies; each copy is moved from
+    the one before by ``turn`` and ``step``.
 
     Numbers without a unit are lengths in ``length_unit`` of the part or of the file, else in metres; masses
     in kg; densities in kg/m^3. A text may have its own unit: ``"2.7 g/cm^3"``, ``"5.0 ± 0.1 lbm"``, ``"10 20
