@@ -9,7 +9,7 @@ use crate::numerics::number::Number;
 
 /// How many shelves there are, as a power of two, and pages on each.
 const SHELVES: u32 = 10;
-const PAGES: usize = 4;
+pub(super) const PAGES: usize = 4;
 /// Of two to the power of 64, the golden section.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 /// How far units of rates may lie apart for numbers of one to be used in the other: no power of their ratio leaves the range of
@@ -52,7 +52,7 @@ pub(super) struct Page {
 impl Place {
     /// A number that other places hardly have, and the shelf.
     #[inline(always)]
-    fn mark(&self) -> (u64, usize) {
+    pub(super) fn mark(&self) -> (u64, usize) {
         let mixed = self.when.iter().fold(self.terms.0 as u64, |sum, bits| {
             (sum.rotate_left(5) ^ bits).wrapping_mul(GOLDEN)
         });

@@ -320,3 +320,6 @@ fn size<L: Number, const R: usize>(w: &[Pack<L, R>; 3], row: usize) -> f64 {
     let (x, y, z) = (w[0].get(row), w[1].get(row), w[2].get(row));
     (x * x + y * y + z * z).sqrt()
 }
+
+#[cfg(test)]
+mod tests;
