@@ -33,32 +33,11 @@ struct Products<T> {
     third: [T; 4],
 }
 
-/// One order, and the sums that its products with others take.
+/// One order.
 #[derive(Clone, Copy, Debug)]
 struct Order<T> {
     w: [T; 3],
     q: [T; 4],
-    /// ω₁ + ω₂ and ω₂ − ω₁.
-    sum: T,
-    difference: T,
-    /// Real and imaginary part together of α and of β.
-    alpha: T,
-    beta: T,
-}
-
-impl<L: Lane, const R: usize> Order<Pack<L, R>> {
-    #[inline(always)]
-    fn new(rates: [Pack<L, R>; 3], q: [Pack<L, R>; 4]) -> Self {
-        let ([w0, w1, _], [x, y, z, w]) = (rates, q);
-        Self {
-            w: rates,
-            q,
-            sum: w0 + w1,
-            difference: w1 - w0,
-            alpha: w + z,
-            beta: x + y,
-        }
-    }
 }
 
 impl<L: Lane, const R: usize> Products<Pack<L, R>> {
@@ -73,25 +52,27 @@ impl<L: Lane, const R: usize> Products<Pack<L, R>> {
         }
     }
 
-    /// Adds the products of `a` with ω of `b`; but not those with component `STILL` of ω, which are zero.
+    /// Adds the products of `a` with ω of `b`; but not those with component `STILL` of ω, which are zero. The sums in the products are
+    /// made anew: the processor adds while it multiplies, and they need not be loaded.
     #[inline(always)]
     fn add<const STILL: usize>(&mut self, a: &Order<Pack<L, R>>, b: &Order<Pack<L, R>>) {
         // Written out, since a loop would keep the sums in memory.
         let ([_, a1, a2], [x, y, z, w]) = (a.w, a.q);
-        let [b0, _, b2] = b.w;
+        let [b0, b1, b2] = b.w;
+        let (sum, difference) = (b0 + b1, b1 - b0);
         if STILL == NONE {
             self.spins[0] = a1.mul_add(b2, self.spins[0]);
             self.spins[1] = a2.mul_add(b0, self.spins[1]);
             self.spins[2] = a1.mul_add(b0, self.spins[2]);
         }
         if STILL != 0 {
-            self.alpha[0] = a.alpha.mul_add(b0, self.alpha[0]);
-            self.beta[0] = a.beta.mul_add(b0, self.beta[0]);
+            self.alpha[0] = (w + z).mul_add(b0, self.alpha[0]);
+            self.beta[0] = (x + y).mul_add(b0, self.beta[0]);
         }
-        self.alpha[1] = w.mul_add(b.difference, self.alpha[1]);
-        self.alpha[2] = z.mul_add(b.sum, self.alpha[2]);
-        self.beta[1] = x.mul_add(b.sum, self.beta[1]);
-        self.beta[2] = y.mul_add(b.difference, self.beta[2]);
+        self.alpha[1] = w.mul_add(difference, self.alpha[1]);
+        self.alpha[2] = z.mul_add(sum, self.alpha[2]);
+        self.beta[1] = x.mul_add(sum, self.beta[1]);
+        self.beta[2] = y.mul_add(difference, self.beta[2]);
         if STILL != 2 {
             self.third[0] = x.mul_add(b2, self.third[0]);
             self.third[1] = y.mul_add(b2, self.third[1]);
@@ -116,7 +97,10 @@ impl<L: Lane, const B: usize, const R: usize> Series<Pack<L, R>, B> for Abreast<
     fn new() -> Self {
         let zero = Pack::new(0.0);
         Self {
-            orders: [Order::new([zero; 3], [zero; 4]); COUNT],
+            orders: [Order {
+                w: [zero; 3],
+                q: [zero; 4],
+            }; COUNT],
             directions: [[[zero; 3]; B]; COUNT],
             still: NONE,
         }
@@ -124,7 +108,10 @@ impl<L: Lane, const B: usize, const R: usize> Series<Pack<L, R>, B> for Abreast<
 
     #[inline(always)]
     fn start(&mut self, state: &Coefficient<Pack<L, R>, B>) {
-        self.orders[0] = Order::new(state.w, state.q);
+        self.orders[0] = Order {
+            w: state.w,
+            q: state.q,
+        };
         self.directions[0] = state.g;
     }
 
@@ -134,7 +121,7 @@ impl<L: Lane, const B: usize, const R: usize> Series<Pack<L, R>, B> for Abreast<
 
     #[inline(always)]
     fn get(&self, k: usize) -> Coefficient<Pack<L, R>, B> {
-        let Order { w, q, .. } = self.orders[k];
+        let Order { w, q } = self.orders[k];
         Coefficient {
             w,
             q,
@@ -164,10 +151,10 @@ impl<L: Lane, const B: usize, const R: usize> Series<Pack<L, R>, B> for Abreast<
         let half = Pack::new(0.5 * RECIPROCALS[k + 1]);
         let [x, y, z] = *acceleration;
         let [a, b, c, d] = sums.turned;
-        self.orders[k + 1] = Order::new(
-            [x * reciprocal, y * reciprocal, z * reciprocal],
-            [a * half, b * half, c * half, d * half],
-        );
+        self.orders[k + 1] = Order {
+            w: [x * reciprocal, y * reciprocal, z * reciprocal],
+            q: [a * half, b * half, c * half, d * half],
+        };
     }
 }
 

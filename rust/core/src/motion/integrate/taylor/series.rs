@@ -15,7 +15,7 @@
 //! ```
 //!
 //! and a complex product takes three real ones. With `S = Re α + Im α` those of α p are `ω₁ S`, `(ω₁ + ω₂) z` and `(ω₂ − ω₁) w`:
-//! its parts are the first less the second, and the first plus the third. The sums in them are made once an order.
+//! its parts are the first less the second, and the first plus the third.
 //! (Gauss's way; Knuth, The Art of Computer Programming 2, §4.6.4.)
 //!
 //! There are two ways through the sums in doubles: [`Alone`](super::alone::Alone) puts the components of one motion in the
