@@ -88,3 +88,24 @@ def test_clones_on_the_same_orbits_are_each_as_alone(eccentricity: float, end: f
     start = np.concatenate([runs.quaternion[3, 0], omega[3]])
     by_scipy = solve_ivp(rates, (0.0, end), start, "DOP853", rtol=1e-11, atol=1e-12)
     np.testing.assert_allclose(runs.omega[3, -1], by_scipy.y[4:, -1], atol=1e-8)
+
+
+@pytest.mark.parametrize("count", [1, 24])
+def test_the_frame_of_the_series_changes_no_more_than_their_rounding(count: int) -> None:
+    """Seen from the frame of an orbit alone; from space beside a weight, which turns no free body."""
+    rng = np.random.default_rng(11)
+    body = RigidBody.from_principal(2.0, (1.0, 1.7, 2.2))
+    omega = rng.normal(size=(count, 3)) * np.geomspace(0.3, 3.0, count)[:, None]
+    field = loads.gravity_gradient(1.0, (1.0, 0.2, 0.1), (-0.3, 1.1, 0.4))
+    weight = loads.uniform_gravity((0.0, 0.0, -1.0))
+    alone, beside = (
+        body.simulate([0.0, 4.0], omega, START, load=load, method="taylor", rtol=2.3e-15)
+        for load in (field, field + weight)
+    )
+    free = body.simulate([0.0, 4.0], omega, START, method="taylor", rtol=2.3e-15)
+    sizes = np.linalg.norm(beside.omega[:, -1], axis=-1)
+    assert (np.abs(alone.omega[:, -1] - beside.omega[:, -1]).max(axis=-1) < 1e-13 * sizes).all()
+    turns = Rotation.from_quat(alone.quaternion[:, -1]).inv() * Rotation.from_quat(beside.quaternion[:, -1])
+    assert turns.magnitude().max() < 1e-13
+    # The field does turn them.
+    assert (np.abs(free.omega[:, -1] - beside.omega[:, -1]).max(axis=-1) > 1e-3 * sizes).all()

@@ -24,6 +24,8 @@ pub(super) struct Extras<T> {
     /// What the almanac has of the rows, and what motions that were there before have put down.
     orbits: Vec<Orbits>,
     pub(super) almanac: Almanac,
+    /// Whether the series are of the attitude as seen from the orbit's frame at the start of the step.
+    is_from_orbit: bool,
 }
 
 /// Where the orbits of a row come from in a step, in which unit of rates.
@@ -60,7 +62,34 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
             are_carried: vec![false; R],
             orbits: vec![Orbits::Own; R],
             almanac: Almanac::default(),
+            is_from_orbit: Self::FINDS && is_of_orbit_alone(parts),
         }
+    }
+
+    /// The attitude that the series begin with, from that in N.
+    #[inline(always)]
+    pub(super) fn begun(&self, attitude: [Pack<L, R>; 4]) -> [Pack<L, R>; 4] {
+        match &self.gradients[..] {
+            [gradient] if self.is_from_orbit => gradient.seen_from_frame(attitude),
+            _ => attitude,
+        }
+    }
+
+    /// A sum or a coefficient of the attitude's series, in N.
+    #[inline(always)]
+    pub(super) fn in_space(&self, attitude: [Pack<L, R>; 4]) -> [Pack<L, R>; 4] {
+        match &self.gradients[..] {
+            [gradient] if self.is_from_orbit => gradient.in_space(attitude),
+            _ => attitude,
+        }
+    }
+
+    /// What a step adds to the state, its attitude in N.
+    #[inline(always)]
+    pub(super) fn change_in_space(&self, change: [Pack<L, R>; 7]) -> [Pack<L, R>; 7] {
+        let [a, b, c, x, y, z, w] = change;
+        let [x, y, z, w] = self.in_space([x, y, z, w]);
+        [a, b, c, x, y, z, w]
     }
 
     /// Whether nothing but orbits goes with the time.
@@ -93,8 +122,9 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
         }
     }
 
-    /// Whether motions in doubles side by side look up their orbits.
-    const LOOKS_UP: bool = R > 1 && !L::VARIES && !L::Real::CARRIES_ORBITS;
+    /// Whether orbits are found anew in every step, in doubles: then motions side by side look them up.
+    const FINDS: bool = !L::VARIES && !L::Real::CARRIES_ORBITS;
+    const LOOKS_UP: bool = R > 1 && Self::FINDS;
 
     /// Whether the orbits of one row, where a step begins, are known already.
     #[inline(always)]
@@ -223,7 +253,7 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
         field: &Field<Pack<L, R>, B>,
     ) {
         for gradient in &mut self.gradients {
-            gradient.look_ahead(k, series, field);
+            gradient.look_ahead(k, series, field, self.is_from_orbit);
         }
     }
 
@@ -304,6 +334,12 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
             h[row] = if h[row] > most { most } else { h[row] };
         }
     }
+}
+
+/// Whether nothing but one gravity gradient depends on the attitude: then its series may be as seen from any frame.
+fn is_of_orbit_alone(parts: &Parts) -> bool {
+    let sees_space = parts.directions > 0 || parts.on_attitude || parts.is_pushed;
+    parts.gradients == 1 && !sees_space && !parts.is_timed && parts.own == 0
 }
 
 /// Whether quadratic damping acts in one row.

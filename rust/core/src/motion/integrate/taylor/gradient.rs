@@ -6,7 +6,7 @@ use super::circuit::Circuit;
 use super::field::Field;
 use super::frame::of_matrix;
 use super::pack::{Lined, Pack, plus};
-use super::pulled::{Crossed, Squared, Turned, pointed, square_terms};
+use super::pulled::{Attitudes, Paired, Turned, pointed, square_terms};
 use super::series::Series;
 use super::twin::COUNT;
 use crate::motion::loads::OnOrbit;
@@ -30,7 +30,7 @@ pub(super) struct Gradient<T> {
     orbit: Circuit<T>,
     /// The rotation from the orbit's frame at the start of the step to N.
     frame: [T; 4],
-    /// The attitude from that frame, and with the half turn.
+    /// The attitude from that frame, where the series are not of it already, and with the half turn.
     attitude: [[T; 4]; COUNT],
     turned: [[T; 4]; COUNT],
     /// m.
@@ -165,21 +165,50 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
         }
     }
 
-    /// Finds the coefficient of order `k` of the angular acceleration, which needs that of the attitude.
+    /// An attitude in N as seen from the orbit's frame at the start of the step.
     #[inline(always)]
-    pub(super) fn look_ahead<const B: usize>(
+    pub(super) fn seen_from_frame(&self, [x, y, z, w]: [Pack<L, R>; 4]) -> [Pack<L, R>; 4] {
+        let [a, b, c, d] = self.frame;
+        [
+            d.mul_add(x, c * y) - b.mul_add(z, a * w),
+            d.mul_add(y, a * z) - c.mul_add(x, b * w),
+            d.mul_add(z, b * x) - a.mul_add(y, c * w),
+            d.mul_add(w, a * x) + b.mul_add(y, c * z),
+        ]
+    }
+
+    /// The attitude in N of one as seen from that frame.
+    #[inline(always)]
+    pub(super) fn in_space(&self, [x, y, z, w]: [Pack<L, R>; 4]) -> [Pack<L, R>; 4] {
+        let [a, b, c, d] = self.frame;
+        [
+            d.mul_add(x, a * w) + b.mul_add(z, (-c) * y),
+            d.mul_add(y, b * w) + c.mul_add(x, (-a) * z),
+            d.mul_add(z, c * w) + a.mul_add(y, (-b) * x),
+            d.mul_add(w, (-a) * x) - b.mul_add(y, c * z),
+        ]
+    }
+
+    /// Finds the coefficient of order `k` of the angular acceleration, which needs that of the attitude: of one that is seen from the
+    /// orbit's frame, or else in N.
+    #[inline(always)]
+    pub(super) fn look_ahead<S: Series<Pack<L, R>, B>, const B: usize>(
         &mut self,
         k: usize,
-        series: &impl Series<Pack<L, R>, B>,
+        series: &S,
         field: &Field<Pack<L, R>, B>,
+        is_from_orbit: bool,
     ) {
-        // What goes in and out stands in lines of the cache: see Pack.
-        self.attitude[k] = series.get(k).q;
+        if !is_from_orbit {
+            // What goes in and out stands in lines of the cache: see Pack.
+            self.attitude[k] = self.seen_from_frame(series.get(k).q);
+        }
         // A function of its own: within a larger one the sums are not kept in registers, and the caller of numbers with
         // derivatives is not compiled for the widest lanes.
         dispatch(Next {
             gradient: self,
             k,
+            series: is_from_orbit.then_some(series),
             field,
         });
     }
@@ -230,14 +259,17 @@ impl<N: Number, const R: usize> Kernel for Expand<'_, Pack<N, R>> {
     }
 }
 
-/// The next coefficient of a gradient, in place of whose attitude of that order stands the attitude in N.
-struct Next<'a, L, const R: usize, const B: usize> {
+/// The next coefficient of a gradient, whose attitude is that of the series or its own.
+struct Next<'a, L, S, const R: usize, const B: usize> {
     gradient: &'a mut Gradient<Pack<L, R>>,
     k: usize,
+    series: Option<&'a S>,
     field: &'a Field<Pack<L, R>, B>,
 }
 
-impl<N: Number, const R: usize, const B: usize> Kernel for Next<'_, N, R, B> {
+impl<N: Number, S: Series<Pack<N, R>, B>, const R: usize, const B: usize> Kernel
+    for Next<'_, N, S, R, B>
+{
     type Output = ();
 
     /// Sums of what is known before `q` come first, and what the newest order takes part in last: it is linear in it, and the
@@ -247,22 +279,21 @@ impl<N: Number, const R: usize, const B: usize> Kernel for Next<'_, N, R, B> {
         let Self {
             gradient: it,
             k,
+            series,
             field,
         } = self;
-        let known = it.pointing[..k].get(1..).unwrap_or(&[]);
-        let Lined([first, second, third]) = dispatch(Crossed(known));
-        let known = it.turned[..k].get(1..).unwrap_or(&[]);
-        let Lined([along, aside, above]) = dispatch(Squared(known));
-        let (half_turn, earlier) = (&it.orbit.half_turn()[1..=k], &it.attitude[..k]);
-        let Lined([e, f, g, h]) = dispatch(Turned(half_turn, earlier));
-        let ([x, y, z, w], [a, b, c, d]) = (it.attitude[k], it.frame);
-        let attitude = [
-            d.mul_add(x, c * y) - b.mul_add(z, a * w),
-            d.mul_add(y, a * z) - c.mul_add(x, b * w),
-            d.mul_add(z, b * x) - a.mul_add(y, c * w),
-            d.mul_add(w, a * x) + b.mul_add(y, c * z),
-        ];
-        it.attitude[k] = attitude;
+        let pointing = it.pointing[..k].get(1..).unwrap_or(&[]);
+        let turned = it.turned[..k].get(1..).unwrap_or(&[]);
+        let Lined([first, second, third, along, aside, above]) =
+            dispatch(Paired { pointing, turned });
+        let half_turn = &it.orbit.half_turn()[1..=k];
+        let (Lined([e, f, g, h]), attitude) = match series {
+            Some(series) => (
+                dispatch(Turned(half_turn, Attitudes::<_, _, B>::new(series))),
+                series.get(k).q,
+            ),
+            None => (dispatch(Turned(half_turn, &it.attitude)), it.attitude[k]),
+        };
         // Written out, since a closure of `map` would be compiled without the instructions of the level.
         let [x, y, z, w] = attitude;
         let turned = if k > 0 {
@@ -273,7 +304,7 @@ impl<N: Number, const R: usize, const B: usize> Kernel for Next<'_, N, R, B> {
         it.turned[k] = turned;
         let [x, y, z, w] = turned;
         let (pointing, products) = if k == 0 {
-            let pointing = pointed(square_terms(&turned, &turned, [[Pack::new(0.0); 4]; 3]));
+            let pointing = pointed(square_terms(&turned, &turned, [Pack::new(0.0); 8]));
             let [a, b, c] = pointing;
             (pointing, [b * c, c * a, a * b])
         } else {

@@ -1,65 +1,58 @@
 //! The sums of products of series that the torque of a gravity gradient is made of: see [`Gradient`](super::gradient::Gradient).
 
-use super::pack::{Lined, Pack, plus};
+use std::marker::PhantomData;
+
+use super::pack::{Lined, Pack};
+use super::series::Series;
 use crate::numerics::dispatch::Kernel;
 use crate::numerics::lane::Lane;
 use crate::numerics::number::Number;
 
 // The components are written out, since a loop would keep the sums in memory.
 
-/// `sums` and the coefficients of `c̄ q`: Re and Im of `(a − ib)(x + iy)`, then of `(a − ib)(w + iz)` as (z, w), each as what is
-/// added and what is taken away.
+/// `sums` and the products that make the coefficients of `c̄ q`, which are `(a − ib)(x + iy)` and `(a − ib)(w + iz)`: three of each,
+/// as in [`series`](super::series). They are those of `a` with `x + y`, of `a + b` with x, of `a − b` with y; Re is the first less the
+/// third, Im the first less the second.
 #[inline(always)]
 fn turn_terms<L: Number, const R: usize>(
     [a, b]: &[Pack<L, R>; 2],
     [x, y, z, w]: &[Pack<L, R>; 4],
-    [plus, cross]: [[Pack<L, R>; 4]; 2],
-) -> [[Pack<L, R>; 4]; 2] {
+    [beta, alpha]: [[Pack<L, R>; 3]; 2],
+) -> [[Pack<L, R>; 3]; 2] {
+    let (sum, difference) = (*a + *b, *a - *b);
     [
         [
-            a.mul_add(*x, plus[0]),
-            a.mul_add(*y, plus[1]),
-            a.mul_add(*z, plus[2]),
-            a.mul_add(*w, plus[3]),
+            a.mul_add(*x + *y, beta[0]),
+            sum.mul_add(*x, beta[1]),
+            difference.mul_add(*y, beta[2]),
         ],
         [
-            b.mul_add(*y, cross[0]),
-            b.mul_add(*x, cross[1]),
-            b.mul_add(*w, cross[2]),
-            b.mul_add(*z, cross[3]),
+            a.mul_add(*w + *z, alpha[0]),
+            sum.mul_add(*w, alpha[1]),
+            difference.mul_add(*z, alpha[2]),
         ],
     ]
 }
 
-/// The sums of the products that make m: x², w², y², z²; xy twice and zw twice; xz twice and yw twice.
-type Squares<T> = [[T; 4]; 3];
+/// The sums of the squares that make m: of x, y, z, w, then of x + y, z + w, x + z, y + w.
+type Squares<T> = [T; 8];
 
 /// `sums` and the products of two orders, each once.
 #[inline(always)]
 pub(super) fn square_terms<L: Number, const R: usize>(
     [x, y, z, w]: &[Pack<L, R>; 4],
     [p, q, r, s]: &[Pack<L, R>; 4],
-    [along, second, third]: Squares<Pack<L, R>>,
+    sums: Squares<Pack<L, R>>,
 ) -> Squares<Pack<L, R>> {
     [
-        [
-            x.mul_add(*p, along[0]),
-            w.mul_add(*s, along[1]),
-            y.mul_add(*q, along[2]),
-            z.mul_add(*r, along[3]),
-        ],
-        [
-            x.mul_add(*q, second[0]),
-            y.mul_add(*p, second[1]),
-            z.mul_add(*s, second[2]),
-            w.mul_add(*r, second[3]),
-        ],
-        [
-            x.mul_add(*r, third[0]),
-            z.mul_add(*p, third[1]),
-            y.mul_add(*s, third[2]),
-            w.mul_add(*q, third[3]),
-        ],
+        x.mul_add(*p, sums[0]),
+        y.mul_add(*q, sums[1]),
+        z.mul_add(*r, sums[2]),
+        w.mul_add(*s, sums[3]),
+        (*x + *y).mul_add(*p + *q, sums[4]),
+        (*z + *w).mul_add(*r + *s, sums[5]),
+        (*x + *z).mul_add(*p + *r, sums[6]),
+        (*y + *w).mul_add(*q + *s, sums[7]),
     ]
 }
 
@@ -77,86 +70,109 @@ fn crossed_terms<L: Number, const R: usize>(
     ]
 }
 
-/// Half of the coefficient of m from the products of two orders, each once; the coefficient from those of one order with itself.
+/// Half of the coefficient of m = (x² + w² − y² − z², 2 (xy − zw), 2 (xz + yw)) from the products of two orders, each once; the
+/// coefficient from those of one order with itself.
 #[inline(always)]
 pub(super) fn pointed<L: Number, const R: usize>(
-    [a, b, c]: Squares<Pack<L, R>>,
+    [x, y, z, w, xy, zw, xz, yw]: Squares<Pack<L, R>>,
 ) -> [Pack<L, R>; 3] {
-    let along = (a[0] + a[1]) - (a[2] + a[3]);
+    let (first, last) = (x + y, z + w);
     [
-        along,
-        (b[0] + b[1]) - (b[2] + b[3]),
-        (c[0] + c[1]) + (c[2] + c[3]),
+        (x - y) + (w - z),
+        (xy - first) - (zw - last),
+        (xz + yw) - (first + last),
     ]
 }
 
 // Each of these sums is a function of its own: within a larger one they are not kept in registers.
 
-/// The sum over a slice of coefficients of m, the first with the last and so on: what they give to a coefficient of (m₂m₃, m₃m₁, m₁m₂).
-pub(super) struct Crossed<'a, T>(pub(super) &'a [[T; 3]]);
+/// The sums over slices of coefficients of m and of Q, the first with the last and so on: what they give to a coefficient of
+/// (m₂m₃, m₃m₁, m₁m₂), and to one of m.
+pub(super) struct Paired<'a, T> {
+    pub(super) pointing: &'a [[T; 3]],
+    /// As many.
+    pub(super) turned: &'a [[T; 4]],
+}
 
-impl<N: Number, const R: usize> Kernel for Crossed<'_, Pack<N, R>> {
-    type Output = Lined<[Pack<N, R>; 3]>;
+impl<N: Number, const R: usize> Kernel for Paired<'_, Pack<N, R>> {
+    type Output = Lined<[Pack<N, R>; 6]>;
 
     #[inline(always)]
     fn run<L: Lane>(self) -> Self::Output {
-        let half = self.0.len() / 2;
-        let mut sums = [[Pack::new(0.0); 2]; 3];
-        let late = &self.0[self.0.len() - half..];
-        for (early, late) in self.0[..half].iter().rev().zip(late) {
-            sums = crossed_terms(early, late, sums);
+        let Self { pointing, turned } = self;
+        let count = pointing.len();
+        let half = count / 2;
+        let mut crossed = [[Pack::new(0.0); 2]; 3];
+        let mut squared = [Pack::new(0.0); 8];
+        let early = pointing[..half].iter().zip(&turned[..half]).rev();
+        let late = pointing[count - half..].iter().zip(&turned[count - half..]);
+        for ((m, q), (n, p)) in early.zip(late) {
+            crossed = crossed_terms(m, n, crossed);
+            squared = square_terms(q, p, squared);
         }
-        let [first, second, third] = sums;
+        let [first, second, third] = crossed;
         let (x, y) = (first[0] + first[1], second[0] + second[1]);
         let z = third[0] + third[1];
-        if self.0.len().is_multiple_of(2) {
-            return Lined([x, y, z]);
+        let [s, t, u] = pointed(squared);
+        let [s, t, u] = [s + s, t + t, u + u];
+        if count.is_multiple_of(2) {
+            return Lined([x, y, z, s, t, u]);
         }
-        let [a, b, c] = self.0[half];
-        Lined([b.mul_add(c, x), c.mul_add(a, y), a.mul_add(b, z)])
+        let ([a, b, c], middle) = (pointing[half], &turned[half]);
+        let [d, e, f] = pointed(square_terms(middle, middle, [Pack::new(0.0); 8]));
+        Lined([
+            b.mul_add(c, x),
+            c.mul_add(a, y),
+            a.mul_add(b, z),
+            s + d,
+            t + e,
+            u + f,
+        ])
     }
 }
 
-/// The sum over a slice of coefficients of Q, the first with the last and so on: what they give to a coefficient of m.
-pub(super) struct Squared<'a, T>(pub(super) &'a [[T; 4]]);
+/// Coefficients of an attitude.
+pub(super) trait Coefficients<T> {
+    fn at(&self, order: usize) -> [T; 4];
+}
 
-impl<N: Number, const R: usize> Kernel for Squared<'_, Pack<N, R>> {
-    type Output = Lined<[Pack<N, R>; 3]>;
-
+impl<T: Copy, const COUNT: usize> Coefficients<T> for &[[T; 4]; COUNT] {
     #[inline(always)]
-    fn run<L: Lane>(self) -> Self::Output {
-        let half = self.0.len() / 2;
-        let mut sums = [[Pack::new(0.0); 4]; 3];
-        let late = &self.0[self.0.len() - half..];
-        for (early, late) in self.0[..half].iter().rev().zip(late) {
-            sums = square_terms(early, late, sums);
-        }
-        let m = pointed(sums);
-        let m = plus(m, m);
-        if self.0.len().is_multiple_of(2) {
-            return Lined(m);
-        }
-        let middle = &self.0[half];
-        Lined(plus(
-            m,
-            pointed(square_terms(middle, middle, [[Pack::new(0.0); 4]; 3])),
-        ))
+    fn at(&self, order: usize) -> [T; 4] {
+        self[order]
     }
 }
 
-/// The sum of the products of the first slice backward with the second: what they give to a coefficient of `c̄ q`.
-pub(super) struct Turned<'a, T>(pub(super) &'a [[T; 2]], pub(super) &'a [[T; 4]]);
+/// Those of the series of a motion.
+pub(super) struct Attitudes<'a, S, T, const B: usize>(&'a S, PhantomData<T>);
 
-impl<N: Number, const R: usize> Kernel for Turned<'_, Pack<N, R>> {
+impl<'a, S, T, const B: usize> Attitudes<'a, S, T, B> {
+    #[inline(always)]
+    pub(super) fn new(series: &'a S) -> Self {
+        Self(series, PhantomData)
+    }
+}
+
+impl<T: Copy, S: Series<T, B>, const B: usize> Coefficients<T> for Attitudes<'_, S, T, B> {
+    #[inline(always)]
+    fn at(&self, order: usize) -> [T; 4] {
+        self.0.get(order).q
+    }
+}
+
+/// The sum of the products of the slice backward with the coefficients from order 0 on: what they give to a coefficient of `c̄ q`.
+pub(super) struct Turned<'a, T, Q>(pub(super) &'a [[T; 2]], pub(super) Q);
+
+impl<N: Number, Q: Coefficients<Pack<N, R>>, const R: usize> Kernel for Turned<'_, Pack<N, R>, Q> {
     type Output = Lined<[Pack<N, R>; 4]>;
 
     #[inline(always)]
     fn run<L: Lane>(self) -> Self::Output {
-        let mut sums = [[Pack::new(0.0); 4]; 2];
-        for (half, q) in self.0.iter().rev().zip(self.1) {
-            sums = turn_terms(half, q, sums);
+        let mut sums = [[Pack::new(0.0); 3]; 2];
+        for (order, half) in self.0.iter().rev().enumerate() {
+            sums = turn_terms(half, &self.1.at(order), sums);
         }
-        let [p, s] = sums;
-        Lined([p[0] + s[0], p[1] - s[1], p[2] - s[2], p[3] + s[3]])
+        let [[p, q, r], [s, t, u]] = sums;
+        Lined([p - r, p - q, s - t, s - u])
     }
 }

@@ -133,6 +133,7 @@ where
         let mut series = Vec::with_capacity(order);
         for k in 1..=order {
             let Coefficient { w, q, .. } = self.series.get(k);
+            let q = self.extras.in_space(q);
             let [w0, w1, w2, x, y, z, s] = [w[0], w[1], w[2], q[0], q[1], q[2], q[3]];
             let coefficient = [w0, w1, w2, x, y, z, s].map(|number| number.real(0));
             series.push(course.in_body(&coefficient).map(L::Real::rounded));

@@ -59,7 +59,7 @@ where
             }
         }
         let change = increment(&self.series, order, signed);
-        self.state.add(&change);
+        self.state.add(&self.extras.change_in_space(change));
         if let Some(push) = &mut self.push {
             let change = push.increment(order, signed);
             push.add(&change);
@@ -98,17 +98,6 @@ where
     #[inline(always)]
     pub(super) fn expand(&mut self) {
         let order = self.settings.order;
-        let [w0, w1, w2, x, y, z, w] = self.state.value;
-        let q = [x, y, z, w];
-        let mut g = self.directions;
-        for g in &mut g {
-            *g = seen(&q, g);
-        }
-        self.series.start(&Coefficient {
-            w: [w0, w1, w2],
-            q,
-            g,
-        });
         if self.extras.is_timed() {
             for row in 0..R {
                 if let Some(lead) = &self.leads[row] {
@@ -125,6 +114,17 @@ where
             }
             self.extras.expand(order);
         }
+        let [w0, w1, w2, x, y, z, w] = self.state.value;
+        let q = [x, y, z, w];
+        let mut g = self.directions;
+        for g in &mut g {
+            *g = seen(&q, g);
+        }
+        self.series.start(&Coefficient {
+            w: [w0, w1, w2],
+            q: self.extras.begun(q),
+            g,
+        });
         self.extras.start(&self.fastest, &self.field);
         if let Some(carried) = &mut self.carried {
             carried.start();
@@ -225,7 +225,9 @@ where
         let mut within = Pack::new(0.0);
         within.put(row, time);
         let order = self.settings.order;
-        let state = (self.state).moved(&increment(&self.series, order, within), row);
+        let change = increment(&self.series, order, within);
+        let change = self.extras.change_in_space(change);
+        let state = self.state.moved(&change, row);
         // No `map`: its closure would be compiled without the instructions of the level.
         let place = match &self.push {
             Some(push) => Some(push.moved(&push.increment(order, within), row)),

@@ -71,3 +71,61 @@ fn pages_are_read_before_one_is_put_down() {
         assert_eq!(displaced, 1, "the page that was read was never displaced");
     }
 }
+
+/// A law that sees space beside the orbit has the series in N; the attitude goes to the orbit's frame and back.
+#[test]
+fn series_are_seen_from_the_orbit_if_nothing_else_sees_space() {
+    let alone = Parts {
+        gradients: 1,
+        on_omega: true,
+        quadratic: true,
+        ..Parts::default()
+    };
+    let besides = [
+        Parts {
+            gradients: 2,
+            ..alone
+        },
+        Parts {
+            directions: 1,
+            ..alone
+        },
+        Parts {
+            on_attitude: true,
+            ..alone
+        },
+        Parts {
+            is_pushed: true,
+            ..alone
+        },
+        Parts {
+            is_timed: true,
+            ..alone
+        },
+        Parts { own: 1, ..alone },
+        Parts {
+            gradients: 0,
+            ..alone
+        },
+    ];
+    let q = [0.5, -0.1, 0.7, 0.5];
+    let attitude = q.map(Pair::new);
+    let get = |q: [Pair; 4]| q.map(|x| x.get(0));
+    for parts in besides {
+        let extras = Extras::<Pair>::new(&parts);
+        assert_eq!(get(extras.begun(attitude)), q, "{parts:?}");
+        assert_eq!(get(extras.in_space(attitude)), q, "{parts:?}");
+    }
+    let mut extras = Extras::<Pair>::new(&alone);
+    // Twice a right angle about (1, 1, 0) takes x to y, y to x and z to −z.
+    let half = 0.5_f64.sqrt();
+    extras.gradients[0].start_at(0, [half, half, 0.0, 0.0, 0.1, 0.2, 0.3, 0.4]);
+    let begun = get(extras.begun(attitude));
+    // −(1, 1, 0)/√2 times q.
+    let expected = [-1.2, 0.2, 0.6, 0.4].map(|x: f64| x * half);
+    let back = get(extras.in_space(extras.begun(attitude)));
+    for i in 0..4 {
+        assert!((begun[i] - expected[i]).abs() < 1e-15, "{begun:?}");
+        assert!((back[i] - q[i]).abs() < 1e-15, "{back:?}");
+    }
+}
