@@ -182,9 +182,9 @@ impl PyFreeMotion {
     /// ErrorBar
     ///     Bounds to first order, for errors in the worst directions: ``attitude`` bounds the angle by which
     ///     the attitude is wrong, in radians; ``omega`` bounds the length of the error of the angular
-    ///     velocity. The computation takes its input as exact, and its own error is far smaller. One part of
-    ///     it grows with time: the error of the phases, 2⁻⁹⁰ of the angle turned. The bounds include it, even
-    ///     with ``rtol=0``. A bound is infinite where nothing is known about the state. A moment of zero is
+    ///     velocity. The error of the computation itself is far smaller than such errors of the input. One part
+    ///     of it grows with time: the error of the phases, 2⁻⁹⁰ of the angle turned. The bounds include this
+    ///     part, even with ``rtol=0``. A bound is infinite where nothing is known about the state. A moment of zero is
     ///     taken as exact.
     ///
     /// Examples

@@ -101,8 +101,8 @@ impl PyGyrostat {
     /// Raises
     /// ------
     /// PolhodeError
-    ///     When `omega` is not finite, `attitude` is not a rotation, the body has a zero moment, or more than
-    ///     seven of sixteen digits would be lost.
+    ///     When `omega` is not finite, `attitude` is not a rotation, the body has a zero moment, or ω would
+    ///     have lost more than seven of its sixteen digits.
     ///
     /// Notes
     /// -----

@@ -119,7 +119,7 @@ pub(crate) fn gravity_gradient(
 /// Notes
 /// -----
 /// For a fixed moment in a uniform field the method "auto" is "taylor". For any other magnetic load "auto" is
-/// "dop853", and there are no sensitivities.
+/// "dop853", and derivatives are by differences: :meth:`polhode.Trajectory.sensitivity` with ``"differences"``.
 ///
 /// Examples
 /// --------

@@ -53,8 +53,8 @@ impl PyLoad {
         PyTuple::new(py, self.stack_shape()?)
     }
 
-    /// The load with `t` as the epoch of those orbits that have none. It serves to continue a motion that
-    /// started at `t`.
+    /// Give the same load for a motion that is continued and that had started at `t`. Orbits without an epoch
+    /// get `t` as their epoch.
     fn anchored(&self, py: Python<'_>, t: f64) -> PyResult<Self> {
         self.with_epoch(py, t)
     }

@@ -53,9 +53,9 @@ pub(crate) fn rotor(py: Python<'_>, momentum: &Bound<'_, PyAny>) -> PyResult<PyL
 ///
 /// Its state is its angular momentum about its axis a, ``h = J (Ω + a·ω)``, where Ω is its rate relative to
 /// the body. The inertia of the body includes the wheel as if it were locked. The equation of the wheel is
-/// ``ḣ = τ - c Ω - c₀ sign(Ω)``, where τ is the torque of the motor on the wheel; ``-a ḣ`` acts on the rest
-/// of the body. If ``speed`` is given in place of ``torque``, the motor exerts the torque that this speed
-/// needs.
+/// ``ḣ = τ - c Ω - c₀ sign(Ω)``, where τ is the torque of the motor on the wheel. On the rest of the body,
+/// whose tensor is ``I - J a aᵀ``, the wheel exerts the torque ``-a ḣ - ω × h a``. If ``speed`` is given in
+/// place of ``torque``, the motor exerts the torque that this speed needs.
 ///
 /// Parameters
 /// ----------
@@ -66,8 +66,8 @@ pub(crate) fn rotor(py: Python<'_>, momentum: &Bound<'_, PyAny>) -> PyResult<PyL
 /// rate : array_like, shape (...), optional
 ///     Ω at the start; zero by default.
 /// torque : float, array_like of shape (n,), or Load, optional
-///     Torque τ of the motor on the wheel: a constant; one value from each of `times` on; or a
-///     :func:`feedback`. The motor then exerts on the body the component along a of the torque of that
+///     Torque τ of the motor on the wheel: a constant; values at `times`, each of which is held until the
+///     next; or a :func:`feedback`. The motor then exerts on the body the component along a of the torque of that
 ///     feedback.
 /// speed : float or array_like of shape (n,), optional
 ///     Rate Ω, in radians per unit of time: a constant, or values at `times` with straight lines in between.
@@ -291,7 +291,8 @@ fn asked(
 /// A spherical damper: a ball (the slug) in a viscous fluid inside the body. It dissipates energy at constant
 /// angular momentum.
 ///
-/// Its states are σ, the angular velocity of the slug relative to space, components in the body frame. They
+/// Its states are σ, the angular velocity of the slug relative to space, components in the body frame. At the
+/// start σ is the angular velocity of the body, unless `simulate` is given another by ``states``. The states
 /// obey ``J σ̇ + ω × J σ = -k (σ - ω)``; the torque on the body is ``k (σ - ω)``. The slug is a simple model
 /// for everything loose or flexible in a body: nutation is damped, and a long body that spins about its long
 /// axis goes over into a flat spin.

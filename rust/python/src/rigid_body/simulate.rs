@@ -54,23 +54,27 @@ impl PyRigidBody {
     ///     * "exact" is the closed form of a free body without a load, and of a symmetric top under uniform
     ///       gravity whose axis passes through the fixed origin. Its cost and error do not grow with time.
     ///     * "taylor" sums Taylor series. Their order is chosen so that the work is nearly least: 18 at the
-    ///       default `rtol`, 26 at 2.3e-15. It serves any load without callbacks.
+    ///       default `rtol`, 26 at 2.3e-15. It serves every load but those for which
+    ///       :meth:`polhode.Trajectory.sensitivity` has no series either: functions, gravity gradients along an oblate
+    ///       or sampled orbit, magnetic fields along an orbit or at given times, B-dot, motors with a limit,
+    ///       dry friction, feedbacks on a moving target.
     ///     * "dop853" is the explicit Runge-Kutta method of order 8 by Dormand and Prince, with a dense
     ///       output of order 7. It serves any load.
     ///     * "radau" is the implicit Runge-Kutta method Radau IIA of order 5. It serves any load, and is made
     ///       for stiff ones such as strong damping.
     ///     * "splitting" alternates exact free motions with impulses of the load. It serves loads that depend
     ///       on time, attitude and position alone, and is made for long times, since the energy does not
-    ///       drift. Its steps have one length, until a comparison with two half steps asks for shorter ones,
-    ///       or a load begins or ends. If the body takes more than twenty steps for a radian, the error of
-    ///       each step is held below `rtol`, since the errors add up.
+    ///       drift. All its steps have the same length. The length changes where a load begins or ends, or
+    ///       where a comparison with two half steps shows that shorter steps are needed. If the body takes more
+    ///       than twenty steps for a radian, the error of each step is held below `rtol`, since the errors add
+    ///       up.
     /// rtol : float, optional
     ///     Error allowed in a step, relative to the unit quaternion and to the largest angular speed,
     ///     distance and speed so far. The range is 2.3e-15 to 0.1; for "taylor" it begins at 1e-28. Below
     ///     2.3e-15 (ten units of rounding) "taylor" sums its series in numbers of twice the precision and
     ///     rounds the result once. This takes many times as long. It is meant for reference solutions, and
-    ///     for motions whose rounding errors grow with time, such as those near a separatrix. There "auto"
-    ///     takes "taylor" even where "exact" could serve.
+    ///     for motions whose rounding errors grow with time, such as those near a separatrix. With such an
+    ///     `rtol` "auto" takes "taylor" even where "exact" could serve.
     /// atol : float, optional
     ///     Absolute error of the angular velocity that is allowed in addition, in radians per unit of time;
     ///     zero by default.
