@@ -96,15 +96,14 @@ pub(super) fn moving(given: &Given<'_>, start: &Start, spinor: &Spinor) -> (Prop
     let (pace, omega) = match spinor.regime {
         Regime::Circular => {
             let squares = squares(&columns);
-            let (ratios, plain) = (
-                Ratios::by_sines(spinor),
-                omega(given, start, &squares, None),
-            );
-            let apart = omega(given, start, &squares, Some(&ratios));
-            if ratios.are_better(&apart, &plain) {
-                (circling(spinor, Some(ratios.sines())), apart)
-            } else {
-                (circling(spinor, None), plain)
+            let plain = omega(given, start, &squares, None);
+            let better = given.is_slender().then(|| {
+                let ratios = Ratios::by_sines(spinor);
+                (ratios, omega(given, start, &squares, Some(&ratios)))
+            });
+            match better.filter(|(ratios, apart)| ratios.are_better(apart, &plain)) {
+                Some((ratios, apart)) => (circling(spinor, Some(ratios.sines())), apart),
+                None => (circling(spinor, None), plain),
             }
         }
         Regime::Hyperbolic => {
@@ -119,13 +118,16 @@ pub(super) fn moving(given: &Given<'_>, start: &Start, spinor: &Spinor) -> (Prop
             let squares = squares(&columns);
             let plain = omega(given, start, &squares, None);
             if let Some(in_time) = spinor.in_time {
-                let ratios = Ratios::by_exponentials(spinor);
-                let apart = omega(given, start, &squares, Some(&ratios));
-                if ratios.are_better(&apart, &plain) {
-                    let products = ratios.exponentials(spinor.is_alternating);
-                    (returning(spinor, in_time, Some(products)), apart)
-                } else {
-                    (returning(spinor, in_time, None), plain)
+                let better = given.is_slender().then(|| {
+                    let ratios = Ratios::by_exponentials(spinor);
+                    (ratios, omega(given, start, &squares, Some(&ratios)))
+                });
+                match better.filter(|(ratios, apart)| ratios.are_better(apart, &plain)) {
+                    Some((ratios, apart)) => {
+                        let products = ratios.exponentials(spinor.is_alternating);
+                        (returning(spinor, in_time, Some(products)), apart)
+                    }
+                    None => (returning(spinor, in_time, None), plain),
                 }
             } else {
                 (passing(spinor), plain)

@@ -20,6 +20,16 @@ pub(super) struct Given<'a> {
     pub(super) attitude: &'a UnitQuaternion<f64>,
 }
 
+/// Moments that are further apart than that are those of a slender body.
+const SLENDER: f64 = 16.0;
+
+impl Given<'_> {
+    /// Whether roundings of the products may count for more than others: as many times as the moments are apart.
+    pub(super) fn is_slender(&self) -> bool {
+        SLENDER * self.moments[0].high < self.moments[2].high
+    }
+}
+
 /// `u†σu`, `v†σv`, `u†σv` of both columns, with `u†u` and so on as the fourth of each.
 pub(super) struct Squares {
     even: [Number; 4],
