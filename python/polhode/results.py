@@ -354,7 +354,8 @@ class MotionSensitivity(NamedTuple):
     ----------
     state : numpy.ndarray, shape (..., T, 6, 6)
         Derivatives with respect to the state at the first time: the state-transition matrix. The momentum of
-        a wheel with a given speed cannot be chosen; the derivatives with respect to it are zero.
+        a wheel whose speed is given follows from this speed; the derivatives with respect to this momentum
+        are zero.
     moments : numpy.ndarray, shape (..., T, 6, 3)
         Derivatives with respect to the principal moments, in ascending order. They are the moments about the
         point `about` of the motion. Principal axes, mass and centre of mass stay fixed. NaN for a body with a

@@ -56,11 +56,11 @@ class Verdict(NamedTuple):
         Line of the link in the file.
     verdict : str
         ``"good"``; ``"suspect"``: possible, but far from what its shape has; ``"coarse"``: larger than
-        its shape has room for, but by no more than the error of the shape;
+        its shape has room for, but by no more than its shape may differ from the true one;
         ``"placeholder"``: the unit tensor, the same multiple of it in links of different masses, or zero;
-        ``"impossible"``: no body has it, or no body of that size; ``"missing"``: no mass where a joint
-        moves; ``"unreadable"``: a number is missing or is not a number; ``"none"``: nothing is declared, nor
-        needed; ``"inferred"``: nothing is declared, and a simulator computes it from the geometry.
+        ``"impossible"``: no body has it, or no body of the size of the link; ``"missing"``: no mass
+        where a joint moves; ``"unreadable"``: a number is missing or is not a number; ``"none"``: nothing is
+        declared, nor needed; ``"inferred"``: nothing is declared, and a simulator computes it from the geometry.
     reason : str
         The law that fails, and by how much.
     mass : float or None

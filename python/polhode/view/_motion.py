@@ -61,8 +61,8 @@ def motion(
         Where to show it; a new one by default. If it already shows the motion, `at` sets another time.
     end : float, optional
         For a motion in closed form, which has no times of its own: the motion is shown from 0 to this time.
-        The wheels of a `polhode.GyrostatMotion` turn one by one; its states at given times have only the sum
-        of their momenta.
+        Each wheel of a `polhode.GyrostatMotion` is shown to turn. A trajectory of given times does not
+        contain the single wheels, only the sum of their momenta.
     at : float, optional
         Time to begin with, rounded to the nearest state that is shown; the start by default.
     shape : (vertices, faces), optional
