@@ -60,7 +60,8 @@ class Verdict(NamedTuple):
         ``"placeholder"``: the unit tensor, the same multiple of it in links of different masses, or zero;
         ``"impossible"``: no body has it, or no body of the size of the link; ``"missing"``: no mass
         where a joint moves; ``"unreadable"``: a number is missing or is not a number; ``"none"``: nothing is
-        declared, nor needed; ``"inferred"``: nothing is declared, and a simulator computes it from the geometry.
+        declared, nor needed; ``"inferred"``: nothing is declared, and a simulator computes it from the
+        geometry.
     reason : str
         The law that fails, and by how much.
     mass : float or None

@@ -27,8 +27,8 @@ class Shape:
     ----------
     name : str
     room : str
-        ``"solids"``, ``"laminae"`` or ``"rods"``: the module with a function that has the name of the shape and
-        makes it from numbers.
+        ``"solids"``, ``"laminae"`` or ``"rods"``: the module with a function that has the name of the shape
+        and makes it from numbers.
     sizes : dict of str and Symbol or tuple of Symbol
         Symbols of the sizes, by the names of the arguments of that function.
     mass : Symbol
