@@ -112,11 +112,7 @@ mod _core {
     #[pymodule_export]
     use crate::laminae::{annulus, disk, ellipse, polygon, rectangle, triangle};
     #[pymodule_export]
-    use crate::loads::{
-        PyLoad, callback, compiled, constant_force, constant_torque, damping, feedback,
-        gravity_gradient, magnetic, rotor, sampled, schedule, slug, torque_callback,
-        uniform_gravity, wheel, with_states,
-    };
+    use crate::loads::{PyLoad, callback, compiled, schedule, torque_callback, with_states};
     #[pymodule_export]
     use crate::orbits::{
         dipole_field, kepler_period, kepler_states, local_frames, oblate_states, sampled_states,
@@ -160,6 +156,7 @@ mod _core {
         // panic: use it now.
         drop(PyArray1::<f64>::zeros(module.py(), 0, false).readonly());
         crate::environment::obey()?;
+        crate::loads::declare_laws(module)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

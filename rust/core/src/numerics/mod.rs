@@ -24,6 +24,7 @@
 //! | [`covariance`] | factors of covariances, also of semidefinite ones |
 //! | [`quadrature`] | adaptive integrals over boxes, with their errors |
 //! | [`sign_changes`] | all places in an interval at which a polynomial changes its sign |
+//! | `stored_form` | values as `serde` stores them |
 //! | [`threads`] | large stacks on all cores, with progress and Ctrl-C |
 //! | [`eigen3`] | eigenvalues and eigenvectors of symmetric 3×3 matrices |
 //!
@@ -51,6 +52,8 @@ pub(crate) mod quaternion;
 pub(crate) mod reduce;
 pub(crate) mod sign_changes;
 pub(crate) mod split_vector;
+#[cfg(feature = "serde")]
+pub(crate) mod stored_form;
 pub(crate) mod theta;
 pub(crate) mod threads;
 pub(crate) mod turns;

@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::form::{Rows, matrix, rows, stored, vector};
 use crate::error::{BodyFault, Error, all_finite};
 use crate::io::TriangleMesh;
 use crate::mass::provenance::{Checks, MomentsFrom, Provenance};
 use crate::mass::validity::{check_rotation, check_symmetry};
 use crate::mass::{Amount, ErrorBound, RigidBody};
+use crate::numerics::stored_form::{Rows, matrix, rows, stored, vector};
 use crate::principal::PrincipalAxes;
 
 stored!(

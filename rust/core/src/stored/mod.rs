@@ -6,10 +6,10 @@
 //! | bodies, and what is told of them | `mass` |
 //! | where the numbers of a body come from | `provenance` |
 //! | states, methods, events | `motion` |
-//! | loads that are plain numbers | `loads` |
+//!
+//! Loads that are plain numbers have their forms in their own files.
 
 mod form;
-mod loads;
 mod mass;
 mod motion;
 mod provenance;

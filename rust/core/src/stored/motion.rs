@@ -2,13 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::form::{attitude, named, stored, vector};
+use super::form::{attitude, named};
 use crate::error::{Error, all_finite, finite};
 use crate::motion::attitude::components;
 use crate::motion::euler_angles::Sequence;
 use crate::motion::free::Mode;
 use crate::motion::kinematics::Frame;
 use crate::motion::simulate::{Crossing, Direction, Effort, Method, Phase, State, Tolerance};
+use crate::numerics::stored_form::{stored, vector};
 use crate::principal::Top;
 
 named! {

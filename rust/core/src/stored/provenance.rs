@@ -2,9 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::form::{named, stored};
+use super::form::named;
 use crate::error::{Error, finite};
 use crate::mass::provenance::{Checks, Closure, MomentsFrom, Provenance, Source};
+use crate::numerics::stored_form::stored;
 
 named! {
     Source {

@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::load::PyLoad;
+use super::made::made;
 use super::part::Acts;
 use super::recipe::recipe;
 use super::terms::matrices;
@@ -83,6 +84,8 @@ pub(crate) fn feedback(
     let recipe = recipe(py, "feedback", arguments)?;
     Ok(PyLoad::one(Acts::Term(terms), recipe))
 }
+
+made!(Feedback by feedback);
 
 /// The targets; what makes them again into `kept`.
 fn aims(

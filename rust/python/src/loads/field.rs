@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::load::PyLoad;
+use super::made::made;
 use super::part::Acts;
 use super::recipe::recipe;
 use crate::arrays::{read, samples, series, try_rows, write};
@@ -97,6 +98,8 @@ pub(crate) fn gravity_gradient(
     Ok(PyLoad::one(Acts::Term(terms), recipe))
 }
 
+made!(GravityGradient by gravity_gradient);
+
 /// The torque of a magnetic field on a body with a magnetic moment: ``N = m × B``.
 ///
 /// Parameters
@@ -170,6 +173,8 @@ pub(crate) fn magnetic(
     let recipe = recipe(py, "magnetic", arguments)?;
     Ok(PyLoad::one(Acts::Term(terms), recipe))
 }
+
+made!(Magnetic by magnetic);
 
 /// One field or a stack of them.
 fn fields(

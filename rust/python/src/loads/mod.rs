@@ -14,6 +14,7 @@
 //! | `load` | the sum of them |
 //! | `operators` | what Python's operators and pickle do with it |
 //! | `terms`, `control`, `field`, `functions` | the functions that make loads |
+//! | `made` | which function makes which law |
 //! | `acting` | a load at work on a body |
 //! | `evaluate` | what a load exerts at a time and a state |
 
@@ -26,6 +27,7 @@ mod field;
 mod functions;
 mod inside;
 mod load;
+mod made;
 mod named;
 mod operators;
 mod own;
@@ -36,12 +38,8 @@ mod terms;
 mod wheels;
 
 pub(crate) use acting::{Acting, Fault};
-pub(crate) use control::feedback;
-pub(crate) use field::{gravity_gradient, magnetic};
 pub(crate) use functions::{callback, compiled, torque_callback, with_states};
 pub(crate) use load::PyLoad;
+pub(crate) use made::declare_laws;
 pub(crate) use named::{Named, Slot, reported};
-pub(crate) use terms::{
-    constant_force, constant_torque, damping, sampled, schedule, uniform_gravity,
-};
-pub(crate) use wheels::{rotor, slug, wheel};
+pub(crate) use terms::schedule;

@@ -6,6 +6,7 @@ use polhode::motion::loads::{Damping, Sampled, Term};
 use pyo3::prelude::*;
 
 use super::load::{PyLoad, schedule_load};
+use super::made::made;
 use super::part::Acts;
 use super::recipe::recipe;
 use crate::arrays::{as_array, read, samples, series, try_rows, write};
@@ -45,6 +46,8 @@ pub(crate) fn constant_torque(
     let recipe = recipe(py, "constant_torque", (write(py, &vector)?, frame))?;
     Ok(PyLoad::one(Acts::Term(terms), recipe))
 }
+
+made!(ConstantTorque by constant_torque);
 
 /// A force that stays constant, at a point of the body.
 ///
@@ -94,6 +97,8 @@ pub(crate) fn constant_force(
     Ok(PyLoad::one(Acts::Term(terms), recipe))
 }
 
+made!(ConstantForce by constant_force);
+
 /// The weight of a body in a uniform field: a force m g at its centre of mass.
 ///
 /// A free body falls; a body simulated with ``about="origin"`` is a pendulum or a top.
@@ -120,6 +125,8 @@ pub(crate) fn uniform_gravity(py: Python<'_>, gravity: &Bound<'_, PyAny>) -> PyR
     let recipe = recipe(py, "uniform_gravity", (write(py, &gravity)?,))?;
     Ok(PyLoad::one(Acts::Term(terms), recipe))
 }
+
+made!(UniformGravity by uniform_gravity);
 
 /// A torque against the angular velocity, ``-D ω - E |ω| ω``.
 ///
@@ -162,6 +169,8 @@ pub(crate) fn damping(
     let recipe = recipe(py, "damping", (write(py, &linear)?, write(py, &quadratic)?))?;
     Ok(PyLoad::one(Acts::Term(terms), recipe))
 }
+
+made!(Damping by damping);
 
 /// A torque that is known at given times, with a cubic spline in between.
 ///
@@ -217,6 +226,8 @@ pub(crate) fn sampled(
     let recipe = recipe(py, "sampled", arguments)?;
     Ok(PyLoad::one(Acts::Term(terms), recipe))
 }
+
+made!(Sampled by sampled);
 
 /// A load that is switched on and off at given times.
 ///

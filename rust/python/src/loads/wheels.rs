@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::load::PyLoad;
+use super::made::made;
 use super::part::Acts;
 use super::recipe::recipe;
 use super::stateful::check_name;
@@ -48,6 +49,8 @@ pub(crate) fn rotor(py: Python<'_>, momentum: &Bound<'_, PyAny>) -> PyResult<PyL
     let recipe = recipe(py, "rotor", (write(py, &momentum)?,))?;
     Ok(PyLoad::one(Acts::Term(terms), recipe))
 }
+
+made!(Rotor by rotor);
 
 /// A wheel in the body, with a motor and friction in its bearing.
 ///
@@ -215,6 +218,8 @@ pub(crate) fn wheel(
     Ok(PyLoad::one(Acts::Term(terms), recipe).named(name))
 }
 
+made!(Wheel by wheel);
+
 /// No torque.
 fn nothing(py: Python<'_>, times: Option<&Bound<'_, PyAny>>) -> PyResult<Held> {
     if times.is_some() {
@@ -341,3 +346,5 @@ pub(crate) fn slug(
     let recipe = recipe(py, "slug", (number(&inertia)?, number(&damping)?, name))?;
     Ok(PyLoad::one(Acts::Term(terms), recipe).named(name))
 }
+
+made!(Slug by slug);

@@ -2,11 +2,11 @@
 
 use super::bearing::Bearing;
 use super::carried::Carried;
+use super::laws::Term;
 use super::load::Load;
 use super::now::Now;
 use super::subject::Subject;
 use super::switch::{Change, Switch};
-use super::term::Term;
 use super::wrench::Wrench;
 use crate::error::Error;
 use crate::motion::state::Phase;

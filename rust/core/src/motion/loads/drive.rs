@@ -1,8 +1,8 @@
 //! What turns a wheel.
 
-use super::feedback::Feedback;
 use super::held::Held;
 use super::law::Law;
+use super::laws::feedback::Feedback;
 use super::subject::Subject;
 use crate::error::Error;
 

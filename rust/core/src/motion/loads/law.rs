@@ -91,7 +91,7 @@ pub struct Parts {
     pub on_omega: bool,
     /// Whether a torque is linear in the attitude's quaternion.
     pub on_attitude: bool,
-    /// Whether a torque goes with |ω| ω.
+    /// Whether a torque goes with |ω|, which changes its law where ω passes through zero.
     pub quadratic: bool,
     /// Whether it would with other numbers of the law.
     pub may_be_quadratic: bool,

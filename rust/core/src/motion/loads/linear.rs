@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Matrix3x4, Vector3, Vector4};
 
 use super::axes::Exact;
 use super::forcing::Timed;
+use super::formula::Formula;
 
 /// Torques about the reference point in principal axes, linear in what varies, and what is not linear besides.
 #[derive(Clone, Debug)]
@@ -14,8 +15,8 @@ pub(crate) struct Linear<'a, X: Exact> {
     pub on_omega: Matrix3<X>,
     /// Times the attitude (x, y, z, w) of the principal axes.
     pub on_attitude: Matrix3x4<X>,
-    /// E of a torque `−E |ω| ω`.
-    pub quadratic: Matrix3<X>,
+    /// Torques that are not linear in ω.
+    pub formulas: Vec<Formula<X>>,
     /// Torques `M R_PN v` of vectors v fixed in space.
     pub on_space: Vec<(Vector3<X>, Matrix3<X>)>,
     /// Force in N.
@@ -36,7 +37,7 @@ impl<X: Exact> Default for Linear<'_, X> {
             constant: Vector3::zeros(),
             on_omega: Matrix3::zeros(),
             on_attitude: Matrix3x4::zeros(),
-            quadratic: Matrix3::zeros(),
+            formulas: Vec::new(),
             on_space: Vec::new(),
             force: Vector3::zeros(),
             thrust: Vector3::zeros(),

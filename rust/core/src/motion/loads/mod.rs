@@ -16,7 +16,7 @@
 //! | any of them on and off | windows of time | [`schedule`] |
 //! | what the caller knows | a closure of time and state | `callback` |
 //!
-//! A law more is a file more here, which answers what a `Law` is asked, and its name in the list in `term.rs`.
+//! A law more is a file more in `laws`, which answers what a `Law` is asked, and its lines in the list, `laws.rs`.
 //!
 //! # Examples
 //!
@@ -67,36 +67,28 @@ mod axes;
 mod bearing;
 mod callback;
 mod carried;
-pub mod constant_force;
-pub mod constant_torque;
-pub mod damping;
 mod drive;
-pub mod feedback;
 mod forcing;
-pub mod gravity_gradient;
+mod formula;
 pub mod held;
 pub mod kepler;
 mod law;
+mod laws;
 mod linear;
+mod list;
 mod load;
-pub mod magnetic;
 mod now;
 mod oblate;
 mod parameter;
 mod path;
 mod resting;
-pub mod rotor;
-pub mod sampled;
 pub mod schedule;
-pub mod slug;
 mod spline;
 mod stumpff;
 mod subject;
 mod switch;
 mod term;
-pub mod uniform_gravity;
 pub(in crate::motion) mod variables;
-pub mod wheel;
 mod wrench;
 
 pub use self::aim::{Aim, Sampling};
@@ -105,32 +97,22 @@ pub(crate) use self::axes::{Axes, Exact};
 pub use self::bearing::Bearing;
 pub use self::callback::Callback;
 pub use self::carried::Carried;
-pub use self::constant_force::ConstantForce;
-pub use self::constant_torque::ConstantTorque;
-pub use self::damping::Damping;
 pub use self::drive::Drive;
-pub use self::feedback::Feedback;
 pub(crate) use self::forcing::{Forcing, OnOrbit, When};
-pub use self::gravity_gradient::GravityGradient;
+pub(crate) use self::formula::{Formula, Step};
 pub use self::held::Held;
 pub use self::law::Kept;
 pub(crate) use self::law::Parts;
+pub use self::laws::*;
 pub(crate) use self::linear::{Linear, Own};
 pub use self::load::Load;
-pub use self::magnetic::{Magnetic, MagneticField};
 pub use self::oblate::Oblate;
 pub use self::parameter::Parameter;
 pub use self::path::Path;
 pub(in crate::motion) use self::resting::Resting;
 pub use self::resting::wrench_at;
-pub use self::rotor::Rotor;
-pub use self::sampled::Sampled;
 pub use self::schedule::Windows;
-pub use self::slug::Slug;
 pub use self::subject::Subject;
 pub use self::switch::{Change, Switch};
-pub use self::term::Term;
-pub use self::uniform_gravity::UniformGravity;
-pub use self::wheel::Wheel;
 pub use self::wrench::Wrench;
 pub use super::kinematics::Frame;

@@ -92,6 +92,21 @@ impl Windows {
     }
 }
 
+#[cfg(feature = "serde")]
+crate::numerics::stored_form::form! {
+    Times of Windows as it { windows: Vec<(f64, Option<f64>)> = ends(it) } => {
+        let end = |&(on, off): &(f64, Option<f64>)| (on, off.unwrap_or(f64::INFINITY));
+        Self::new(&it.windows.iter().map(end).collect::<Vec<_>>())
+    };
+}
+
+/// Windows of which the last may have no end.
+#[cfg(feature = "serde")]
+fn ends(windows: &Windows) -> Vec<(f64, Option<f64>)> {
+    let end = |&(on, off): &(f64, f64)| (on, off.is_finite().then_some(off));
+    windows.as_slice().iter().map(end).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

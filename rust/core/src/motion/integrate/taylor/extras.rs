@@ -4,11 +4,12 @@ use nalgebra::Vector3;
 
 use super::almanac::{Almanac, Place, rounded};
 use super::field::Field;
+use super::formulas::Formulas;
 use super::frame::Precision;
 use super::gradient::Gradient;
 use super::pack::{Pack, plus};
 use super::series::Series;
-use super::terms::{Analytic, Forced, Quadratic};
+use super::terms::{Analytic, Forced};
 use crate::motion::loads::{Forcing, OnOrbit, Parts};
 use crate::numerics::number::Number;
 
@@ -16,7 +17,7 @@ use crate::numerics::number::Number;
 #[derive(Clone, Debug)]
 pub(super) struct Extras<T> {
     is_empty: bool,
-    quadratic: Option<Box<Quadratic<T>>>,
+    pub(super) formulas: Formulas<T>,
     forced: Option<Box<Forced<T>>>,
     gradients: Vec<Gradient<T>>,
     /// The rows whose orbits have come from the step before.
@@ -47,12 +48,8 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
             gradients.push(Gradient::new());
         }
         Self {
-            is_empty: !parts.quadratic && !parts.is_timed && parts.gradients == 0,
-            quadratic: if parts.quadratic {
-                Some(Box::new(Quadratic::new()))
-            } else {
-                None
-            },
+            is_empty: !parts.is_timed && parts.gradients == 0,
+            formulas: Formulas::default(),
             forced: if parts.is_timed {
                 Some(Box::new(Forced::new()))
             } else {
@@ -226,6 +223,7 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
     pub(super) fn vacate(&mut self, row: usize) {
         self.restart(row);
         self.orbits[row] = Orbits::Own;
+        self.formulas.vacate(row);
         self.set(row, &Forcing::default(), &Vector3::zeros());
     }
 
@@ -238,9 +236,7 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
         for gradient in &mut self.gradients {
             gradient.start(field);
         }
-        if let Some(quadratic) = &mut self.quadratic {
-            quadratic.start(fastest);
-        }
+        self.formulas.start(fastest);
     }
 
     /// Finds what of order `k` depends on the attitude alone, whose coefficient of that order is known sooner than that of ω: the processor
@@ -266,11 +262,9 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
         field: &Field<Pack<L, R>, B>,
         mut sum: [Pack<L, R>; 3],
     ) -> [Pack<L, R>; 3] {
+        sum = self.formulas.plus_coefficients(k, series, sum);
         if self.is_empty {
             return sum;
-        }
-        if let Some(quadratic) = &mut self.quadratic {
-            sum = plus(sum, quadratic.coefficient(k, series, field));
         }
         if let Some(forced) = &mut self.forced {
             sum = plus(sum, forced.coefficient(k, series, field));
@@ -280,81 +274,12 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
         }
         sum
     }
-
-    /// Whether the series of one row, whose ω was `start`, are another law's where it is `omega`.
-    pub(super) fn is_reversed<const B: usize>(
-        &self,
-        row: usize,
-        field: &Field<Pack<L, R>, B>,
-        start: &[f64; 3],
-        omega: &[f64; 3],
-    ) -> bool {
-        let quadratic = self.quadratic.as_ref();
-        is_damped(field, row) && quadratic.is_some_and(|it| it.is_reversed(row, start, omega))
-    }
-
-    /// Whether the law of one row changes where ω passes through zero.
-    pub(super) fn may_reverse<const B: usize>(
-        &self,
-        row: usize,
-        field: &Field<Pack<L, R>, B>,
-    ) -> bool {
-        let quadratic = self.quadratic.as_ref();
-        is_damped(field, row) && quadratic.is_some_and(|it| it.is_under_way(row))
-    }
-
-    /// Keeps the steps of motions under quadratic damping so short that those almost at rest stay so and that others do not
-    /// come to rest at their present rate: see [`Quadratic`].
-    #[inline(always)]
-    pub(super) fn limit<const B: usize>(
-        &self,
-        series: &impl Series<Pack<L, R>, B>,
-        field: &Field<Pack<L, R>, B>,
-        fastest: &[f64; R],
-        h: &mut [f64; R],
-    ) {
-        if self.quadratic.is_none() {
-            return;
-        }
-        let (w, change) = (series.get(0).w, series.get(1).w);
-        for row in 0..R {
-            if !is_damped(field, row) {
-                continue;
-            }
-            let (still, speed, rate) = (
-                L::Real::STILL * fastest[row],
-                size(&w, row),
-                size(&change, row),
-            );
-            let most = if speed <= still {
-                2.0 * still / rate
-            } else {
-                0.8 * speed / rate
-            };
-            h[row] = if h[row] > most { most } else { h[row] };
-        }
-    }
 }
 
 /// Whether nothing but one gravity gradient depends on the attitude: then its series may be as seen from any frame.
 fn is_of_orbit_alone(parts: &Parts) -> bool {
     let sees_space = parts.directions > 0 || parts.on_attitude || parts.is_pushed;
     parts.gradients == 1 && !sees_space && !parts.is_timed && parts.own == 0
-}
-
-/// Whether quadratic damping acts in one row.
-#[inline(always)]
-fn is_damped<L: Number, const R: usize, const B: usize>(
-    field: &Field<Pack<L, R>, B>,
-    row: usize,
-) -> bool {
-    field.quadratic.iter().flatten().any(|x| x.get(row) != 0.0)
-}
-
-#[inline(always)]
-fn size<L: Number, const R: usize>(w: &[Pack<L, R>; 3], row: usize) -> f64 {
-    let (x, y, z) = (w[0].get(row), w[1].get(row), w[2].get(row));
-    (x * x + y * y + z * z).sqrt()
 }
 
 #[cfg(test)]

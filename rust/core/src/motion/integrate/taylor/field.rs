@@ -23,8 +23,6 @@ pub(super) struct Field<T, const B: usize> {
     pub(super) on_omega: Square<T>,
     pub(super) on_attitude: [[T; 4]; 3],
     pub(super) on_space: [Square<T>; B],
-    /// E of the torque `E |ω| ω`, over the moments.
-    pub(super) quadratic: Square<T>,
     /// Force over mass in N, and that constant in the body.
     pub(super) force: [T; 3],
     pub(super) thrust: [T; 3],
@@ -43,7 +41,6 @@ impl<T: Copy, const B: usize> Field<T, B> {
             on_omega: [[zero; 3]; 3],
             on_attitude: [[zero; 4]; 3],
             on_space: [[[zero; 3]; 3]; B],
-            quadratic: [[zero; 3]; 3],
             force: [zero; 3],
             thrust: [zero; 3],
         }
@@ -63,7 +60,6 @@ impl<X: Copy + Default + PartialEq, const B: usize> Field<X, B> {
                 .chain(pulled)
                 .chain(&self.on_omega[n])
                 .chain(&self.on_attitude[n])
-                .chain(&self.quadratic[n])
                 .chain(on_space)
                 .all(|x| *x == zero)
         })
@@ -87,7 +83,6 @@ impl<L: Number, const R: usize, const B: usize> Field<Pack<L, R>, B> {
             self.thrust[n].put(row, field.thrust[n]);
             for i in 0..3 {
                 self.on_omega[n][i].put(row, field.on_omega[n][i]);
-                self.quadratic[n][i].put(row, field.quadratic[n][i]);
             }
             for i in 0..4 {
                 self.on_attitude[n][i].put(row, field.on_attitude[n][i]);

@@ -5,7 +5,7 @@
 //! | `frame` | the principal axes, in doubles or in numbers of twice the precision |
 //! | `course` | one motion: its load in principal axes, from break to break, in a unit of its own |
 //! | `field` | the equations that are linear in the coefficients of one order |
-//! | `terms`, `gradient`, `pulled`, `extras` | the recurrences of terms that are not |
+//! | `formulas`, `terms`, `gradient`, `pulled`, `extras` | the recurrences of terms that are not |
 //! | `circuit`, `almanac` | the series of an orbit, and where motions look them up |
 //! | `series` | the coefficients, and what is asked of the sums of their products |
 //! | `alone`, `abreast` | these sums, the lanes over the components of one motion or over motions |
@@ -40,6 +40,7 @@ mod directions;
 mod drive;
 mod extras;
 mod field;
+mod formulas;
 mod frame;
 mod gradient;
 mod job;

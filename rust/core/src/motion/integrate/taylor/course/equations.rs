@@ -6,7 +6,7 @@ use super::segments::Course;
 use crate::motion::integrate::taylor::field::Field;
 use crate::motion::integrate::taylor::frame::Precision;
 use crate::motion::loads::variables::{Block, MASS, Variables};
-use crate::motion::loads::{Forcing, Own, Parts, Term, When};
+use crate::motion::loads::{Forcing, Formula, Own, Parts, Term, When};
 use crate::numerics::number::Real;
 use crate::numerics::power_of_two::power_below;
 
@@ -62,7 +62,6 @@ impl<X: Precision> Course<'_, X> {
         let inverse = Matrix3::from_diagonal(&self.inverse_moments);
         let rate = X::from(1.0 / self.unit);
         let on_omega = inverse * linear.on_omega * rate;
-        let quadratic = -(inverse * linear.quadratic);
         let on_attitude = inverse * linear.on_attitude * rate * rate;
         // What the wheels that turn freely add to the tensor, along the axes and across them.
         let (along, across) = (linear.turning.diagonal(), linear.turning);
@@ -80,7 +79,6 @@ impl<X: Precision> Course<'_, X> {
             on_omega: rows(&on_omega),
             on_attitude: [0, 1, 2].map(|n| [0, 1, 2, 3].map(|i| on_attitude[(n, i)])),
             on_space: [[[X::zero(); 3]; 3]; B],
-            quadratic: rows(&quadratic),
             force: (linear.force / mass * rate * rate).into(),
             thrust: (linear.thrust / mass * rate * rate).into(),
         };
@@ -97,6 +95,18 @@ impl<X: Precision> Course<'_, X> {
             }
         }
         field
+    }
+
+    /// The formulas of the segment under way, each with its matrix over the moments in units of rates.
+    pub(in crate::motion::integrate::taylor) fn formulas(
+        &self,
+    ) -> impl Iterator<Item = (&Formula<X>, [[X; 3]; 3])> {
+        let inverse = Matrix3::from_diagonal(&self.inverse_moments);
+        self.linear.formulas.iter().map(move |formula| {
+            // Units are powers of two.
+            let scale = X::from(self.unit.powi(formula.degree - 2));
+            (formula, rows(&(inverse * formula.matrix * scale)))
+        })
     }
 
     /// The directions in N that the torques of what is fixed in space are made of: the vertical axis, or all.

@@ -177,7 +177,6 @@ impl<'a, X: Precision> Course<'a, X> {
             let constant = linear.constant.map(X::rounded);
             let on_omega = linear.on_omega.map(X::rounded);
             let on_attitude = linear.on_attitude.map(X::rounded);
-            let quadratic = linear.quadratic.map(X::rounded);
             let mut turned = on_omega;
             // ω along the axis is constant; where it is zero, what it would do does not matter.
             if state[n].rounded() == 0.0 {
@@ -187,8 +186,11 @@ impl<'a, X: Precision> Course<'a, X> {
                 (constant[n].abs(), constant.norm()),
                 (turned.row(n).norm(), on_omega.norm()),
                 (on_attitude.row(n).norm(), on_attitude.norm()),
-                (quadratic.row(n).norm(), quadratic.norm()),
             ];
+            for formula in &linear.formulas {
+                let matrix = formula.matrix.map(X::rounded);
+                parts.push((matrix.row(n).norm(), matrix.norm()));
+            }
             for (vector, matrix) in &linear.on_space {
                 let (size, matrix) = (vector.map(X::rounded).norm(), matrix.map(X::rounded));
                 parts.push((matrix.row(n).norm() * size, matrix.norm() * size));

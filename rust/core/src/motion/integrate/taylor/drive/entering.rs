@@ -93,6 +93,12 @@ where
         let field = course.field();
         self.field.set(row, &field);
         self.still[row] = field.stillness();
+        for (_, matrix) in course.formulas() {
+            for n in 0..3 {
+                self.still[row][n] &= matrix[n] == [L::Real::default(); 3];
+            }
+        }
+        self.extras.formulas.set(row, course.formulas());
         for (packs, direction) in self
             .directions
             .iter_mut()

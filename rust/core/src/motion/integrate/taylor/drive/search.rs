@@ -73,7 +73,7 @@ where
             };
             seek(&value, course.side(index));
         }
-        if self.extras.may_reverse(row, &self.field) {
+        if self.extras.formulas.may_reverse(row) {
             let start = [0, 1, 2].map(|i| self.state.value[i].get(row));
             let along = |k: usize| {
                 let w = self.series.get(k).w;

@@ -27,7 +27,8 @@ where
         self.expand();
         let mut h = longest(&self.series, order, last_term, &self.fastest);
         self.extras
-            .limit(&self.series, &self.field, &self.fastest, &mut h);
+            .formulas
+            .limit(&self.series, &self.fastest, &mut h);
         self.series.limit(&mut h);
         if let Some(carried) = &mut self.carried {
             carried.limit(order, last_term, &self.fastest, &mut h);
@@ -248,6 +249,6 @@ where
         let start = [0, 1, 2].map(|i| self.state.value[i].get(row));
         let omega = [0, 1, 2].map(|i| state[i].rounded());
         lead.is_some_and(|lead| lead.job.course.has_flipped(state))
-            || (self.extras).is_reversed(row, &self.field, &start, &omega)
+            || (self.extras.formulas).is_reversed(row, &start, &omega)
     }
 }

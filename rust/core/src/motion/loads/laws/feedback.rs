@@ -4,17 +4,17 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix3, Matrix3x4, UnitQuaternion, Vector3, Vector4};
 
-use super::aim::Aim;
-use super::axes::{Axes, Exact};
-use super::law::{Character, Kept, Law, Parts};
-use super::linear::Linear;
-use super::now::Now;
-use super::parameter::Parameter;
-use super::subject::Subject;
-use super::switch::{Switch, off};
-use super::variables::Variables;
-use super::wrench::Wrench;
 use crate::error::{Error, all_finite};
+use crate::motion::loads::aim::Aim;
+use crate::motion::loads::axes::{Axes, Exact};
+use crate::motion::loads::law::{Character, Kept, Law, Parts};
+use crate::motion::loads::linear::Linear;
+use crate::motion::loads::now::Now;
+use crate::motion::loads::parameter::Parameter;
+use crate::motion::loads::subject::Subject;
+use crate::motion::loads::switch::{Switch, off};
+use crate::motion::loads::variables::Variables;
+use crate::motion::loads::wrench::Wrench;
 use crate::motion::state::Phase;
 use crate::numerics::quaternion::{conjugate, product};
 

@@ -2,13 +2,14 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::axes::{Axes, Exact};
-use super::law::{Character, Kept, Law, Parts};
-use super::linear::Linear;
-use super::parameter::Parameter;
-use super::subject::Subject;
-use super::wrench::Wrench;
 use crate::error::{Error, all_finite};
+use crate::motion::loads::axes::{Axes, Exact};
+use crate::motion::loads::formula::{OMEGA, Steps};
+use crate::motion::loads::law::{Character, Kept, Law, Parts};
+use crate::motion::loads::linear::Linear;
+use crate::motion::loads::parameter::Parameter;
+use crate::motion::loads::subject::Subject;
+use crate::motion::loads::wrench::Wrench;
 use crate::motion::state::Phase;
 
 /// `N = −D ω − E |ω| ω`: linear damping, as of a viscous film, and quadratic, as of a stirred fluid.
@@ -49,6 +50,12 @@ impl Damping {
     fn exerted(&self, x: f64, y: f64, z: f64) -> Wrench {
         Wrench::couple(self.torque(&Vector3::new(x, y, z)))
     }
+}
+
+#[cfg(feature = "serde")]
+crate::numerics::stored_form::form! {
+    Damper of Damping as it { linear: crate::numerics::stored_form::Rows = crate::numerics::stored_form::rows(&it.linear), quadratic: crate::numerics::stored_form::Rows = crate::numerics::stored_form::rows(&it.quadratic) }
+        => Self::new(&crate::numerics::stored_form::matrix(&it.linear), &crate::numerics::stored_form::matrix(&it.quadratic));
 }
 
 impl Law for Damping {
@@ -105,7 +112,13 @@ impl Law for Damping {
 
     fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
         linear.on_omega -= axes.tensor(&axes.matrix(&self.linear, 0));
-        linear.quadratic += axes.tensor(&axes.matrix(&self.quadratic, 9));
+        if self.quadratic != Matrix3::zeros() || axes.varies(9, 9) {
+            let mut steps = Steps::default();
+            let speed = steps.speed();
+            let vector = steps.times(speed, OMEGA);
+            let matrix = -axes.tensor(&axes.matrix(&self.quadratic, 9));
+            linear.formulas.push(steps.torque(matrix, vector));
+        }
     }
 }
 

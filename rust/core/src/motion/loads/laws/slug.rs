@@ -2,15 +2,15 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::axes::{Axes, Exact};
-use super::carried::Carried;
-use super::law::{Character, Kept, Law, Parts};
-use super::linear::{Linear, Own};
-use super::now::Now;
-use super::parameter::Parameter;
-use super::subject::Subject;
-use super::wrench::Wrench;
 use crate::error::{Error, MotionFault, finite};
+use crate::motion::loads::axes::{Axes, Exact};
+use crate::motion::loads::carried::Carried;
+use crate::motion::loads::law::{Character, Kept, Law, Parts};
+use crate::motion::loads::linear::{Linear, Own};
+use crate::motion::loads::now::Now;
+use crate::motion::loads::parameter::Parameter;
+use crate::motion::loads::subject::Subject;
+use crate::motion::loads::wrench::Wrench;
 use crate::motion::state::Phase;
 
 /// A sphere that turns in the body with the angular velocity σ (of the sphere relative to N, components in B), slowed by the fluid
@@ -47,6 +47,12 @@ impl Slug {
     fn drag(&self, omega: &Vector3<f64>, own: &[f64]) -> Vector3<f64> {
         (Vector3::from_column_slice(own) - omega) * self.damping
     }
+}
+
+#[cfg(feature = "serde")]
+crate::numerics::stored_form::form! {
+    Sphere of Slug as it { inertia: f64 = it.inertia, damping: f64 = it.damping }
+        => Self::new(it.inertia, it.damping);
 }
 
 impl Law for Slug {

@@ -2,18 +2,18 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::axes::{Axes, Exact};
-use super::forcing::{Forcing, OnOrbit, Timed, When};
-use super::kepler::Orbit;
-use super::law::{Character, Kept, Law, Parts};
-use super::linear::Linear;
-use super::parameter::Parameter;
-use super::path::Path;
 use super::slug::positive;
-use super::subject::Subject;
-use super::variables::Variables;
-use super::wrench::Wrench;
 use crate::error::{Error, MotionFault};
+use crate::motion::loads::axes::{Axes, Exact};
+use crate::motion::loads::forcing::{Forcing, OnOrbit, Timed, When};
+use crate::motion::loads::kepler::Orbit;
+use crate::motion::loads::law::{Character, Kept, Law, Parts};
+use crate::motion::loads::linear::Linear;
+use crate::motion::loads::parameter::Parameter;
+use crate::motion::loads::path::Path;
+use crate::motion::loads::subject::Subject;
+use crate::motion::loads::variables::Variables;
+use crate::motion::loads::wrench::Wrench;
 use crate::motion::state::Phase;
 
 /// `N_C = 3μ/r⁵ r×(I_C r)`, r from the attractor to C, on an orbit that the body's attitude does not change.

@@ -4,15 +4,15 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use super::axes::{Axes, Exact};
-use super::law::{Character, Kept, Law, Parts, directions_of};
-use super::linear::Linear;
-use super::parameter::Parameter;
-use super::path::Path;
-use super::spline::Spline;
-use super::subject::Subject;
-use super::wrench::{Wrench, times};
 use crate::error::{Error, MotionFault, all_finite, finite};
+use crate::motion::loads::axes::{Axes, Exact};
+use crate::motion::loads::law::{Character, Kept, Law, Parts, directions_of};
+use crate::motion::loads::linear::Linear;
+use crate::motion::loads::parameter::Parameter;
+use crate::motion::loads::path::Path;
+use crate::motion::loads::spline::Spline;
+use crate::motion::loads::subject::Subject;
+use crate::motion::loads::wrench::{Wrench, times};
 use crate::motion::state::Phase;
 use crate::numerics::quaternion::cross_matrix;
 

@@ -2,14 +2,14 @@
 
 use nalgebra::Vector3;
 
-use super::axes::{Axes, Exact};
-use super::law::{Character, Kept, Law, Parts, directions_of};
-use super::linear::Linear;
-use super::parameter::Parameter;
-use super::subject::Subject;
-use super::wrench::{Wrench, in_body, times};
 use crate::error::{Error, all_finite};
 use crate::motion::kinematics::Frame;
+use crate::motion::loads::axes::{Axes, Exact};
+use crate::motion::loads::law::{Character, Kept, Law, Parts, directions_of};
+use crate::motion::loads::linear::Linear;
+use crate::motion::loads::parameter::Parameter;
+use crate::motion::loads::subject::Subject;
+use crate::motion::loads::wrench::{Wrench, in_body, times};
 use crate::motion::state::Phase;
 use crate::numerics::quaternion::cross_matrix;
 
@@ -52,6 +52,18 @@ impl ConstantForce {
     fn turns(&self, pivoted: bool) -> bool {
         pivoted || self.point.is_some()
     }
+}
+
+#[cfg(feature = "serde")]
+crate::numerics::stored_form::form! {
+    Force of ConstantForce as it {
+        vector: [f64; 3] = it.vector.into(),
+        frame: Frame = it.frame,
+        point: Option<[f64; 3]> = it.point.map(Into::into),
+    } => {
+        let point = it.point.map(|point| crate::numerics::stored_form::vector("point", point)).transpose()?;
+        Self::new(&it.vector.into(), it.frame, point.as_ref())
+    };
 }
 
 impl Law for ConstantForce {

@@ -2,13 +2,13 @@
 
 use nalgebra::Vector3;
 
-use super::axes::{Axes, Exact};
-use super::law::{Character, Kept, Law, Parts, directions_of};
-use super::linear::Linear;
-use super::parameter::Parameter;
-use super::subject::Subject;
-use super::wrench::{Wrench, times};
 use crate::error::{Error, all_finite};
+use crate::motion::loads::axes::{Axes, Exact};
+use crate::motion::loads::law::{Character, Kept, Law, Parts, directions_of};
+use crate::motion::loads::linear::Linear;
+use crate::motion::loads::parameter::Parameter;
+use crate::motion::loads::subject::Subject;
+use crate::motion::loads::wrench::{Wrench, times};
 use crate::motion::state::Phase;
 use crate::numerics::quaternion::cross_matrix;
 
@@ -28,6 +28,12 @@ impl UniformGravity {
         all_finite("gravity", gravity)?;
         Ok(Self { gravity: *gravity })
     }
+}
+
+#[cfg(feature = "serde")]
+crate::numerics::stored_form::form! {
+    Gravity of UniformGravity as it { gravity: [f64; 3] = it.gravity.into() }
+        => Self::new(&it.gravity.into());
 }
 
 impl Law for UniformGravity {

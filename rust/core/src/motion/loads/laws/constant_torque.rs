@@ -2,14 +2,14 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::axes::{Axes, Exact};
-use super::law::{Character, Kept, Law, Parts, directions_of};
-use super::linear::Linear;
-use super::parameter::Parameter;
-use super::subject::Subject;
-use super::wrench::{Wrench, in_body, times};
 use crate::error::{Error, all_finite};
 use crate::motion::kinematics::Frame;
+use crate::motion::loads::axes::{Axes, Exact};
+use crate::motion::loads::law::{Character, Kept, Law, Parts, directions_of};
+use crate::motion::loads::linear::Linear;
+use crate::motion::loads::parameter::Parameter;
+use crate::motion::loads::subject::Subject;
+use crate::motion::loads::wrench::{Wrench, in_body, times};
 use crate::motion::state::Phase;
 
 /// A torque about the reference point of the motion, constant in `frame`.
@@ -33,6 +33,12 @@ impl ConstantTorque {
             frame,
         })
     }
+}
+
+#[cfg(feature = "serde")]
+crate::numerics::stored_form::form! {
+    Torque of ConstantTorque as it { vector: [f64; 3] = it.vector.into(), frame: Frame = it.frame }
+        => Self::new(&it.vector.into(), it.frame);
 }
 
 impl Law for ConstantTorque {

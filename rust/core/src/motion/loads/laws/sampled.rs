@@ -3,17 +3,17 @@
 use nalgebra::Vector3;
 use std::sync::Arc;
 
-use super::axes::{Axes, Exact, exact};
-use super::forcing::{Forcing, Timed, When};
-use super::law::{Character, Kept, Law, Parts};
-use super::linear::Linear;
-use super::parameter::Parameter;
-use super::spline::{Spline, pieces};
-use super::subject::Subject;
-use super::variables::Variables;
-use super::wrench::{Wrench, in_body};
 use crate::error::Error;
 use crate::motion::kinematics::Frame;
+use crate::motion::loads::axes::{Axes, Exact, exact};
+use crate::motion::loads::forcing::{Forcing, Timed, When};
+use crate::motion::loads::law::{Character, Kept, Law, Parts};
+use crate::motion::loads::linear::Linear;
+use crate::motion::loads::parameter::Parameter;
+use crate::motion::loads::spline::{Spline, pieces};
+use crate::motion::loads::subject::Subject;
+use crate::motion::loads::variables::Variables;
+use crate::motion::loads::wrench::{Wrench, in_body};
 use crate::motion::state::Phase;
 
 /// A torque about the reference point, given at times and interpolated by a cubic spline, smooth to the second derivative.

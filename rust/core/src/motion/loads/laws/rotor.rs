@@ -2,15 +2,15 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::axes::{Axes, Exact};
-use super::carried::Carried;
-use super::law::{Character, Kept, Law, Parts};
-use super::linear::Linear;
-use super::now::Now;
-use super::parameter::Parameter;
-use super::subject::Subject;
-use super::wrench::{Wrench, times};
 use crate::error::{Error, all_finite};
+use crate::motion::loads::axes::{Axes, Exact};
+use crate::motion::loads::carried::Carried;
+use crate::motion::loads::law::{Character, Kept, Law, Parts};
+use crate::motion::loads::linear::Linear;
+use crate::motion::loads::now::Now;
+use crate::motion::loads::parameter::Parameter;
+use crate::motion::loads::subject::Subject;
+use crate::motion::loads::wrench::{Wrench, times};
 use crate::motion::state::Phase;
 
 /// `N = −ω × h`: what a wheel that turns at constant speed relative to the body does to it, h its momentum relative to the body,
@@ -34,6 +34,12 @@ impl Rotor {
             momentum: *momentum,
         })
     }
+}
+
+#[cfg(feature = "serde")]
+crate::numerics::stored_form::form! {
+    Momentum of Rotor as it { momentum: [f64; 3] = it.momentum.into() }
+        => Self::new(&it.momentum.into());
 }
 
 impl Law for Rotor {

@@ -2,19 +2,19 @@
 
 use nalgebra::{Vector3, Vector4};
 
-use super::axes::{Axes, Exact, exact};
-use super::carried::Carried;
-use super::drive::Drive;
 use super::feedback::Feedback;
-use super::law::{Character, Kept, Law, Parts};
-use super::linear::{Linear, Own};
-use super::now::Now;
-use super::parameter::Parameter;
 use super::slug::{not_negative, positive};
-use super::subject::Subject;
-use super::switch::Switch;
-use super::wrench::Wrench;
 use crate::error::{Error, MotionFault, finite};
+use crate::motion::loads::axes::{Axes, Exact, exact};
+use crate::motion::loads::carried::Carried;
+use crate::motion::loads::drive::Drive;
+use crate::motion::loads::law::{Character, Kept, Law, Parts};
+use crate::motion::loads::linear::{Linear, Own};
+use crate::motion::loads::now::Now;
+use crate::motion::loads::parameter::Parameter;
+use crate::motion::loads::subject::Subject;
+use crate::motion::loads::switch::Switch;
+use crate::motion::loads::wrench::Wrench;
 use crate::motion::state::Phase;
 
 /// The places of its numbers among its parameters: of a wheel whose speed is given, the speed stands where the others have their rate.

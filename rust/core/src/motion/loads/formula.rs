@@ -1,0 +1,122 @@
+//! A torque that is not linear in ω, as a formula: steps that an engine of series goes through order by order.
+
+use nalgebra::Matrix3;
+
+use super::axes::Exact;
+
+/// A step of a formula. Scalars and vectors are numbered in the order of the steps that make them; the vector 0 is ω.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Step {
+    /// The scalar ω·ω.
+    Square,
+    /// The scalar |ω|, the root of the scalar of this number, which is ω·ω.
+    Speed(usize),
+    /// A scalar times a vector.
+    Times(usize, usize),
+}
+
+/// A scalar of a formula, and its degree in ω.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scalar {
+    number: usize,
+    degree: i32,
+}
+
+/// A vector of a formula, and its degree in ω.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Vector {
+    number: usize,
+    degree: i32,
+}
+
+/// ω.
+pub(crate) const OMEGA: Vector = Vector {
+    number: 0,
+    degree: 1,
+};
+
+/// The torque `M v` about the reference point: a matrix, and a vector that is made of ω step by step; in principal axes.
+#[derive(Clone, Debug)]
+pub(crate) struct Formula<X: Exact> {
+    /// How the vector is made.
+    pub steps: Vec<Step>,
+    /// The number of the vector.
+    pub vector: usize,
+    /// Its degree in ω, so that the torque is known in every unit of rates.
+    pub degree: i32,
+    /// M.
+    pub matrix: Matrix3<X>,
+}
+
+/// A formula as a law states it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Steps {
+    steps: Vec<Step>,
+    scalars: usize,
+    vectors: usize,
+}
+
+impl Steps {
+    fn scalar(&mut self, step: Step, degree: i32) -> Scalar {
+        self.steps.push(step);
+        self.scalars += 1;
+        Scalar {
+            number: self.scalars - 1,
+            degree,
+        }
+    }
+
+    /// `ω·ω`.
+    pub(crate) fn square(&mut self) -> Scalar {
+        self.scalar(Step::Square, 2)
+    }
+
+    /// |ω|. Of a torque with it the law [says so](super::Parts::quadratic): where ω passes through zero, a step must end.
+    pub(crate) fn speed(&mut self) -> Scalar {
+        let square = self.square();
+        self.scalar(Step::Speed(square.number), 1)
+    }
+
+    /// A scalar times a vector.
+    pub(crate) fn times(&mut self, factor: Scalar, vector: Vector) -> Vector {
+        self.steps.push(Step::Times(factor.number, vector.number));
+        self.vectors += 1;
+        Vector {
+            number: self.vectors,
+            degree: factor.degree + vector.degree,
+        }
+    }
+
+    /// The torque `matrix · vector`, the matrix in principal axes.
+    pub(crate) fn torque<X: Exact>(self, matrix: Matrix3<X>, vector: Vector) -> Formula<X> {
+        Formula {
+            steps: self.steps,
+            vector: vector.number,
+            degree: vector.degree,
+            matrix,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn degrees_are_counted() {
+        let mut steps = Steps::default();
+        let (speed, square) = (steps.speed(), steps.square());
+        let once = steps.times(speed, OMEGA);
+        let twice = steps.times(square, once);
+        let formula = steps.torque(Matrix3::<f64>::identity(), twice);
+        assert_eq!((formula.degree, formula.vector), (4, 2));
+        let all = [
+            Step::Square,
+            Step::Speed(0),
+            Step::Square,
+            Step::Times(1, 0),
+            Step::Times(2, 1),
+        ];
+        assert_eq!(formula.steps, all);
+    }
+}
