@@ -11,7 +11,8 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from polhode import RigidBody, _core, orbits, regions
+from documented import arrays, takes_arrays_alone
+from polhode import RigidBody, _core, loads, orbits, regions
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -208,6 +209,13 @@ ROWS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
 }
 
 #: Calls whose absurdity is of another kind than that of many rows.
+# Loads whose arguments are numbers, vectors, matrices: their docstrings tell what they take.
+ROWS |= {
+    name: (function, arrays(function))
+    for name in loads.__all__
+    if name not in ROWS and takes_arrays_alone(function := getattr(loads, name))
+}
+
 OTHERS: dict[str, Callable[[], object]] = {
     "FreeMotion.polhode": lambda: MOTION.polhode(10**12),
     "FreeMotion.polhode of 2**62": lambda: MOTION.polhode(2**62),

@@ -7,7 +7,9 @@ import importlib.util
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from documented import arrays, takes_arrays_alone
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -48,3 +50,18 @@ def test_a_type_that_no_docstring_tells_is_refused() -> None:
     (parameter,) = declared.inspect.signature(declared._core.uniform_gravity).parameters.values()
     with pytest.raises(SystemExit, match=r"uniform_gravity: the type of gravity is not known from 'a thing'"):
         declared.typed("loads", "uniform_gravity", parameter, "a thing")
+
+
+def test_docstrings_tell_what_a_load_takes() -> None:
+    """So that hostile and absurd calls are made of a new load without a word in their files."""
+    loads = importlib.import_module("polhode.loads")
+    assert {name: np.shape(value) for name, value in arrays(loads.damping).items()} == {
+        "matrix": (3, 3),
+        "quadratic": (3, 3),
+    }
+    assert takes_arrays_alone(loads.damping)
+    assert takes_arrays_alone(loads.rotor)
+    assert np.shape(arrays(loads.slug)["inertia"]) == ()
+    assert not takes_arrays_alone(loads.slug)  # a name besides
+    assert not takes_arrays_alone(loads.sampled)  # as many rows as times
+    assert not takes_arrays_alone(loads.callback)

@@ -100,6 +100,8 @@ pub use self::carried::Carried;
 pub use self::drive::Drive;
 pub(crate) use self::forcing::{Forcing, OnOrbit, When};
 pub(crate) use self::formula::{Formula, Step};
+#[cfg(test)]
+pub(crate) use self::formula::{OMEGA, Steps};
 pub use self::held::Held;
 pub use self::law::Kept;
 pub(crate) use self::law::Parts;
