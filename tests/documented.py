@@ -6,7 +6,7 @@ import inspect
 import re
 from typing import Any
 
-#: A value for each kind of array that a docstring may name, without axes before it; numbers that float32 has too.
+#: A value for each kind of array that docstrings name, as one row; numbers that float32 has too.
 KINDS: dict[str, Any] = {
     "(...)": 0.5,
     "(..., 3)": [0.5, 0.0, 0.25],

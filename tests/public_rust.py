@@ -65,6 +65,8 @@ def opened(path: Path, texts: dict[Path, str], found: Public, source: Path, home
         if not hidden:
             file = folder / f"{name}.rs"
             opened(file if file in texts else folder / name / "mod.rs", texts, found, source, homes)
+    for name in re.findall(r"^pub use self::(\w+)::\*;", text, re.MULTILINE):
+        opened(folder / f"{name}.rs", texts, found, source, homes)
     for handed in re.findall(r"^pub use ([^;]+);", text, re.MULTILINE):
         where, _, names = " ".join(handed.split()).rpartition("::{")
         for name in re.findall(r"(\w+)(?=[ ,}]|$)", names if where else handed.rpartition("::")[2]):

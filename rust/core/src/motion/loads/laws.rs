@@ -46,27 +46,27 @@ laws!(
     #[derive(Clone, Debug, PartialEq)]
     #[non_exhaustive]
     pub enum Term {
-        /// A torque about the reference point of the motion.
+        /// A torque N about the reference point of the motion.
         ConstantTorque(ConstantTorque),
-        /// A force at a point of the body.
+        /// A force at a point p of the body: `N = (p − P)×F`.
         ConstantForce(ConstantForce),
         /// The weight m g at C.
         UniformGravity(UniformGravity),
-        /// The torque of a distant attractor's field on a body in a Kepler orbit.
+        /// The torque of a distant attractor's field on a body in an orbit: `N = 3μ/r⁵ r×(I_C r)`.
         GravityGradient(GravityGradient),
-        /// A torque against ω.
+        /// A torque against ω: `N = −D ω − E |ω| ω`.
         Damping(Damping),
-        /// A torque known at some times.
+        /// A torque known at some times, with a cubic spline in between.
         Sampled(Sampled),
-        /// A torque that turns the body toward an attitude.
+        /// A torque that turns the body toward an attitude: `N = −K sign(w) vec(q_target⁻¹∘q) − D (ω − ω_target)`.
         Feedback(Feedback),
-        /// The torque of a magnetic field.
+        /// The torque of a magnetic field: `N = (d − k Ḃ) × B`.
         Magnetic(Magnetic),
-        /// A rotor that keeps its momentum in the body.
+        /// A rotor that keeps its momentum in the body: `N = −ω × h`.
         Rotor(Rotor),
-        /// A wheel with motor and friction.
+        /// A wheel with motor and friction: `ḣ = τ − c Ω − c₀ sign(Ω)`.
         Wheel(Wheel),
-        /// A spherical damper.
+        /// A spherical damper: `N = k (σ − ω)`.
         Slug(Slug),
     }
 );

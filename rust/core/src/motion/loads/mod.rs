@@ -1,20 +1,17 @@
 //! What acts on a body: a closed set of analytic terms, and a trait for what only the caller knows.
 //!
-//! | term | law | file |
-//! |---|---|---|
-//! | constant torque | N | [`constant_torque`] |
-//! | constant force at a point | `N = (p − P)×F` | [`constant_force`] |
-//! | uniform gravity | m g at C | [`uniform_gravity`] |
-//! | gravity gradient | `N = 3μ/r⁵ r×(I_C r)` on an orbit | [`gravity_gradient`], `path`, [`kepler`], `oblate` |
-//! | damping | `N = −D ω − E \|ω\| ω` | [`damping`] |
-//! | attitude feedback | `N = −K sign(w) vec(q_target⁻¹∘q) − D (ω − ω_target)` | [`feedback`], `aim` |
-//! | a torque sampled in time | cubic spline | [`sampled`] |
-//! | a magnetic field | `N = (d − k Ḃ) × B` | [`magnetic`] |
-//! | a rotor | `N = −ω × h` | [`rotor`] |
-//! | a wheel with motor and friction | `ḣ = τ − c Ω − c₀ sign(Ω)` | [`wheel`], `drive`, [`held`], `bearing`, `resting` |
-//! | a spherical damper | `N = k (σ − ω)` | [`slug`] |
-//! | any of them on and off | windows of time | [`schedule`] |
-//! | what the caller knows | a closure of time and state | `callback` |
+//! The laws are the variants of [`Term`]. Each of them may act [in windows of time](schedule) only; what the caller alone knows is a
+//! closure of time and state, [`Callback`].
+//!
+//! | file | what it knows |
+//! |---|---|
+//! | `laws` | the list of the laws, each of which is a file of its own in the folder |
+//! | `law` | what every law is asked |
+//! | `list`, `term` | the type of a term, made from the list, and how it is made |
+//! | `linear`, `formula`, `forcing` | what a law adds to the equations of a series |
+//! | `path`, [`kepler`], `oblate` | orbits |
+//! | `aim` | where a feedback turns the body |
+//! | [`held`], `drive`, `bearing`, `resting` | motors and friction of wheels |
 //!
 //! A law more is a file more in `laws`, which answers what a `Law` is asked, and its lines in the list, `laws.rs`.
 //!
