@@ -51,14 +51,14 @@ pub(crate) struct Formula<X: Exact> {
 /// A formula as a law states it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Steps {
-    steps: Vec<Step>,
+    list: Vec<Step>,
     scalars: usize,
     vectors: usize,
 }
 
 impl Steps {
     fn scalar(&mut self, step: Step, degree: i32) -> Scalar {
-        self.steps.push(step);
+        self.list.push(step);
         self.scalars += 1;
         Scalar {
             number: self.scalars - 1,
@@ -79,7 +79,7 @@ impl Steps {
 
     /// A scalar times a vector.
     pub(crate) fn times(&mut self, factor: Scalar, vector: Vector) -> Vector {
-        self.steps.push(Step::Times(factor.number, vector.number));
+        self.list.push(Step::Times(factor.number, vector.number));
         self.vectors += 1;
         Vector {
             number: self.vectors,
@@ -90,7 +90,7 @@ impl Steps {
     /// The torque `matrix · vector`, the matrix in principal axes.
     pub(crate) fn torque<X: Exact>(self, matrix: Matrix3<X>, vector: Vector) -> Formula<X> {
         Formula {
-            steps: self.steps,
+            steps: self.list,
             vector: vector.number,
             degree: vector.degree,
             matrix,

@@ -319,12 +319,13 @@ mod tests {
     use super::super::series::Coefficient;
     use super::*;
     use crate::motion::loads::{OMEGA, Steps};
-    use crate::numerics::lane::Double;
+
+    type One = crate::numerics::lane::Double<false>;
 
     /// The coefficients of `M u² ω` with `u = ω·ω`, of `ω = (1 + t, 0, 2)`, for which `u² = 25 + 20 t + 14 t² + 4 t³ + t⁴`.
     #[test]
     fn products_of_products() {
-        let number = |x: f64| Pack([Double::new(x)]);
+        let number = |x: f64| Pack([<One as Number>::new(x)]);
         let mut steps = Steps::default();
         let square = steps.square();
         let cube = steps.times(square, OMEGA);
@@ -333,7 +334,7 @@ mod tests {
         let mut formulas = Formulas::default();
         let matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0]];
         formulas.set(0, [(&formula, matrix)].into_iter());
-        let mut series = Alone::<Double, 0>::new();
+        let mut series = Alone::<One, 0>::new();
         series.start(&Coefficient {
             w: [number(1.0), number(0.0), number(2.0)],
             q: [number(0.0), number(0.0), number(0.0), number(1.0)],
@@ -365,7 +366,7 @@ mod tests {
         };
         let (once, twice) = (formula(1.0), formula(2.0));
         let rows = |by: f64| [[by, 0.0, 0.0], [0.0, by, 0.0], [0.0, 0.0, by]];
-        let mut formulas = Formulas::<Pack<Double, 2>>::default();
+        let mut formulas = Formulas::<Pack<One, 2>>::default();
         formulas.set(1, [(&twice, rows(2.0))].into_iter());
         formulas.set(0, [(&once, rows(1.0)), (&twice, rows(2.0))].into_iter());
         let matrices = |row: usize| -> Vec<f64> {
