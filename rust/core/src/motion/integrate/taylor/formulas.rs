@@ -30,6 +30,8 @@ struct Worked<T> {
     vectors: Vec<Vector<T>>,
     /// The number of |ω|, if it is in the formula.
     speed: Option<usize>,
+    /// Whether the vector is |ω| ω.
+    is_quadratic: bool,
     /// What |ω| is small against, and `1/2s₀`.
     fastest: T,
     half_over_speed: T,
@@ -196,6 +198,8 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
             scalars,
             vectors,
             speed,
+            is_quadratic: formula.steps == [Step::Square, Step::Speed(0), Step::Times(1, 0)]
+                && formula.vector == 1,
             fastest: Pack::new(1.0),
             half_over_speed: zero,
         }
@@ -214,6 +218,29 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
         k: usize,
         series: &impl Series<Pack<L, R>, B>,
     ) -> [Pack<L, R>; 3] {
+        let vector = if self.is_quadratic {
+            // In one piece: what a step gives to the next one stays in registers.
+            let speeds = self.set_speed(k, 1, square(k, series));
+            times(k, speeds, |j| series.get(j).w)
+        } else {
+            self.step_by_step(k, series)
+        };
+        let mut sum = [Pack::new(0.0); 3];
+        for n in 0..3 {
+            for i in 0..3 {
+                sum[n] = self.matrix[n][i].mul_add(vector[i], sum[n]);
+            }
+        }
+        sum
+    }
+
+    /// The coefficient of order `k` of the vector of any formula.
+    #[inline(always)]
+    fn step_by_step<const B: usize>(
+        &mut self,
+        k: usize,
+        series: &impl Series<Pack<L, R>, B>,
+    ) -> [Pack<L, R>; 3] {
         let (mut scalars, mut vectors) = (0, 0);
         for i in 0..self.steps.len() {
             match self.steps[i] {
@@ -223,7 +250,7 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
                 }
                 Step::Speed(of) => {
                     let square = self.scalars[of].0[k];
-                    self.set_speed(k, scalars, square);
+                    let _speeds = self.set_speed(k, scalars, square);
                     scalars += 1;
                 }
                 Step::Times(factor, vector) => {
@@ -239,22 +266,15 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
                 }
             }
         }
-        let vector = match self.vector {
+        match self.vector {
             0 => series.get(k).w,
             number => self.vectors[number - 1].0[k],
-        };
-        let mut sum = [Pack::new(0.0); 3];
-        for n in 0..3 {
-            for i in 0..3 {
-                sum[n] = self.matrix[n][i].mul_add(vector[i], sum[n]);
-            }
         }
-        sum
     }
 
     /// The coefficient of order `k` of |ω|, the scalar of this number, from that of ω·ω.
     #[inline(always)]
-    fn set_speed(&mut self, k: usize, number: usize, square: Pack<L, R>) {
+    fn set_speed(&mut self, k: usize, number: usize, square: Pack<L, R>) -> &[Pack<L, R>; COUNT] {
         let speeds = &mut self.scalars[number].0;
         speeds[k] = Pack::new(0.0);
         if k == 0 {
@@ -275,6 +295,7 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
             }
             speeds[k] = rest * self.half_over_speed;
         }
+        speeds
     }
 }
 
@@ -353,6 +374,35 @@ mod tests {
         formulas.set(0, std::iter::empty());
         let none = formulas.plus_coefficients(0, &series, [number(0.0); 3]);
         assert_eq!(none.map(|x| x.get(0)), [0.0; 3]);
+    }
+
+    /// |ω| ω in one piece and step by step.
+    #[test]
+    fn the_quick_way_has_the_same_bits() {
+        let number = |x: f64| Pack([<One as Number>::new(x)]);
+        let mut steps = Steps::default();
+        let speed = steps.speed();
+        let vector = steps.times(speed, OMEGA);
+        let formula = steps.torque(Matrix3::<f64>::identity(), vector);
+        let (mut quick, mut slow) = (Worked::new(&formula), Worked::new(&formula));
+        assert!(quick.is_quadratic);
+        slow.is_quadratic = false;
+        for worked in [&mut quick, &mut slow] {
+            worked.matrix = [[number(0.3); 3]; 3];
+        }
+        let mut series = Alone::<One, 0>::new();
+        series.start(&Coefficient {
+            w: [number(0.6), number(-0.1), number(0.3)],
+            q: [number(0.0), number(0.0), number(0.0), number(1.0)],
+            g: [],
+        });
+        for k in 0..20 {
+            let sums = series.sums(k);
+            let [a, b] = [&mut quick, &mut slow].map(|it| it.coefficient(k, &series));
+            assert_eq!(a.map(|x| x.get(0)), b.map(|x| x.get(0)));
+            series.extend(k, &sums, &a);
+        }
+        assert!(series.get(20).w[0].get(0) != 0.0);
     }
 
     /// Of two formulas alike each keeps a place of its own, also where another row has one of them alone.
