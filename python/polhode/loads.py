@@ -5,8 +5,9 @@ about the reference point of the motion: the centre of mass of a free body, or t
 that point is fixed in space.
 
 A :func:`rotor`, a :func:`wheel` and a :func:`slug` are carried by the body. They are loads too, since they
-act on the body. Angular momentum and energy of the trajectory include theirs, and :attr:`Trajectory.states
-<polhode.Trajectory>` has their states.
+act on the body. The angular momentum of the trajectory includes theirs. Its energy includes that of wheels
+and slugs, but not that of a rotor, whose speed is not known. :attr:`Trajectory.states <polhode.Trajectory>`
+has their states.
 """
 
 from polhode._core import (

@@ -55,7 +55,7 @@ class Verdict(NamedTuple):
     line : int
         Line of the link in the file.
     verdict : str
-        ``"good"``; ``"suspect"``: possible, but far from what its shape has; ``"coarse"``: larger than
+        ``"good"``; ``"suspect"``: far from what its shape has; ``"coarse"``: larger than
         its shape has room for, but by no more than its shape may differ from the true one;
         ``"placeholder"``: the unit tensor, the same multiple of it in links of different masses, or zero;
         ``"impossible"``: no body has it, or no body of the size of the link; ``"missing"``: no mass

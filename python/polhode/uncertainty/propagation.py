@@ -115,9 +115,10 @@ def propagate(
 
     Random bodies have a normal distribution of the ten numbers: mass, centre of mass and tensor. Numbers that
     no body can have are drawn again. In two cases principal moments and small rotations of the axes are drawn
-    in place of the tensor: for a body without extent along an axis, such as a lamina; and where this changes
-    the tensor more nearly as the uncertain numbers do that the body was made of, to second order. An example
-    of the second case is a body that was rotated by an uncertain angle.
+    in place of the tensor. The first case is a body without extent along an axis, such as a lamina. The
+    second case is a body whose tensor depends on the uncertain numbers it was made of in such a way that
+    these draws agree better with it to second order. An example is a body that was rotated by an uncertain
+    angle.
 
     To draw the uncertain numbers that a body was made of, pass them as `arguments` and None as `body`, and
     make the body inside `f`.
