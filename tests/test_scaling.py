@@ -83,6 +83,6 @@ def test_reductions_send_as_little_as_is_said() -> None:
         sent = len(pickle.dumps(nodes_of_chunk(plan, (reduction,), 0)))
         assert sent < 1.1e3 or name == "quantiles"
         assert sent > 300
-    # Three numbers of a member, each of them eight bytes.
+    # Three components, each of them 65536 numbers of eight bytes.
     assert 3 * 65536 * 8 < 1.6e6
-    assert "up to 0.5 MB for each number" in PAGE
+    assert "up to 0.5 MB in each chunk for each component of the quantity" in PAGE
