@@ -7,6 +7,9 @@ both programs, on one thread, every second round the other one first. The ratio 
 of the ratios of all rounds: the least times would hide a kernel that is slow in most processes, for example
 where the stack begins at an unlucky address. The quartiles show the spread. Kernels near the limit run
 four times as many rounds more. NAMEs pick the kernels whose names contain them.
+
+With ``--software`` it measures nothing, and names the functions of the first program that multiply and
+add by the routine in software: they are part of a kernel, but not inlined into it.
 """
 
 from __future__ import annotations
@@ -53,10 +56,15 @@ def main() -> None:
     parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("--rounds", type=int, default=9)
     parser.add_argument("--json", type=Path, metavar="FILE", help="keep the ratios")
+    parser.add_argument("--software", action="store_true", help="look for parts of kernels in software")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         target = Path(os.environ.get("CARGO_TARGET_DIR", Path(folder) / "target"))
-        programs = built(Path(folder), target)
+        if options.software:
+            (program,) = built(Path(folder), target, ("release",))
+            found = software(program)
+            raise SystemExit("\n".join(["multiply and add in software:", *found]) if found else 0)
+        programs = built(Path(folder), target, ("release", "wheel"))
         rounds = measured(programs, options.names, options.rounds)
         again = [name for name, pairs in rounds.items() if ratio(pairs) > NEAR]
         if again:
@@ -81,8 +89,8 @@ def main() -> None:
         raise SystemExit(f"slower than the wheel's build by more than {FAR - 1:.0%}: {', '.join(far)}")
 
 
-def built(folder: Path, target: Path) -> list[Path]:
-    """The programs as a stranger and as the wheel's profile build them."""
+def built(folder: Path, target: Path, profiles: tuple[str, ...]) -> list[Path]:
+    """The programs as a stranger ("release") and as the wheel's profile build them."""
     release = tomllib.loads((ROOT / "Cargo.toml").read_text("utf-8"))["profile"]["release"]
     manifest = MANIFEST.format(
         core=json.dumps(str(ROOT / "rust" / "core")), lto=release["lto"], units=release["codegen-units"]
@@ -93,11 +101,34 @@ def built(folder: Path, target: Path) -> list[Path]:
     shutil.copy(ROOT / "rust" / "core" / "benches" / "kernels.rs", folder / "src" / "main.rs")
     environment = {**os.environ, "CARGO_TARGET_DIR": str(target)}
     programs = []
-    for profile in ("release", "wheel"):
+    for profile in profiles:
         command = ["cargo", "build", "--quiet", "--profile", profile]
         subprocess.run(command, cwd=folder, env=environment, check=True)
         programs.append(target / profile / "stranger")
     return programs
+
+
+def software(program: Path) -> list[str]:
+    """The functions of a program for x86-64 that call `fma`, but for kernels for every machine.
+
+    Each takes the address of `fma` from a place in the table of addresses, which the loader fills.
+    """
+
+    def said(*command: str) -> list[str]:
+        told = subprocess.run([*command, program], check=True, capture_output=True, text=True)
+        return told.stdout.splitlines()
+
+    symbols = [line.split() for line in said("nm")]
+    (address,) = {parts[0].lstrip("0") for parts in symbols if parts[-1] == "fma"}
+    relocations = [line.split() for line in said("readelf", "--relocs", "--wide")]
+    places = {parts[0].lstrip("0") for parts in relocations if len(parts) == 4 and parts[3] == address}
+    found, function = set(), ""
+    for line in said("objdump", "--disassemble", "--demangle", "--no-show-raw-insn"):
+        if line.endswith(">:"):
+            function = line.split(" ", 1)[1].strip("<>:")
+        elif "# " in line and line.split("# ")[1].split()[0] in places:
+            found.add(function)
+    return sorted(name for name in found if not name.startswith("polhode::numerics::dispatch::baseline"))
 
 
 def measured(programs: list[Path], names: list[str], rounds: int) -> dict[str, list[tuple[float, float]]]:

@@ -145,6 +145,53 @@ def test_through_saturation() -> None:
     assert abs(left) < 1e-8
 
 
+@pytest.mark.parametrize("name", ["damping", "torque", "sampled", "feedback", "magnetic", "motor", "wheel"])
+@pytest.mark.parametrize(("moment", "speed"), [(1.0, 1.0), (2e-3, 0.1), (1e8, 1e-3), (1e-46, 1e12)])
+@pytest.mark.parametrize("at_rest", [False, True])
+def test_numbers_that_are_zero(name: str, moment: float, speed: float, at_rest: bool) -> None:
+    """Nothing tells their scale: neither a molecule nor a space station is moved too far or too little."""
+    body = RigidBody.from_principal(moment, moment * np.array([1.0, 1.4, 1.9]))
+    times = T / speed
+    load = {
+        "damping": loads.damping(0.1 * moment * speed),
+        "torque": loads.constant_torque((0, 0, 0), "space"),
+        "sampled": loads.sampled([0.0, *times[1:], 2 * times[2]], np.zeros((4, 3)), "body"),
+        "feedback": loads.feedback(0.0, 0.0),
+        "magnetic": loads.magnetic((0, 0, 0), (0, 1e-5, 3e-5)),
+        "motor": loads.wheel((0, 0.6, 0.8), 0.1 * moment, 0.0, torque=0.0),
+        "wheel": loads.wheel((0, 0.6, 0.8), 0.1 * moment, 0.0),
+    }[name]
+    omega = np.zeros(3) if at_rest else speed * np.array([0.3, -0.2, 0.5])
+    run = body.simulate(times, omega, load=load)
+    found, exact = run.sensitivity("differences").load[0], run.sensitivity().load[0]
+    assert found
+    for number, got in found.items():
+        series = exact[number].reshape(*got.shape[:2], -1)
+        for part in (slice(0, 3), slice(3, 6), slice(6, None)):
+            one, other = got.reshape(series.shape)[:, part], series[:, part]
+            if other.any():
+                near(one, other)
+            elif number == "field":  # of no effect where the dipole is zero
+                assert np.abs(one).max(initial=0.0) * 1e-5 < (speed if part.start == 3 else 1.0) * 1e-12
+
+
+@pytest.mark.parametrize("at", [0.0, 1e-3])
+def test_numbers_that_must_not_be_negative(at: float) -> None:
+    """Where they are zero their derivatives are by more of them."""
+    for load, number in (
+        (loads.wheel(ALONG, 0.2, 3.0, friction=at), "friction"),
+        (loads.slug(0.3, at), "damping"),
+    ):
+        run = BODY.simulate(T, OMEGA, ATTITUDE, load=load)
+        found, exact = run.sensitivity("differences").load[0], run.sensitivity().load[0]
+        near(found[number], exact[number])
+    # Of dry friction c₀ there is no series: (I − J) ω̇ = c₀ while the wheel turns.
+    run = PLAIN.simulate([0.0, 2.0], (0, 0, 0), load=loads.wheel(ALONG, J, 10.0, dry_friction=at))
+    (wheel,) = run.sensitivity("differences").load
+    near(wheel["dry_friction"][:, 5], np.array([0.0, 2.0 / LESS]))
+    near(wheel["dry_friction"][:, 6], np.array([0.0, -2.0]))
+
+
 def test_what_does_not_settle_is_refused() -> None:
     """At the stop itself h has a corner by the rate of the wheel."""
     rate, friction = 10.0, 0.25

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from dataclasses import fields, is_dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, cast
 
 import numpy as np
@@ -22,20 +23,43 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Recipe = tuple[str, tuple[Any, ...]]
+    Changed = Callable[[Floats], Recipe]
 
 __all__ = ["by_differences"]
 
 STEP: Final = 2e-3
 """Relative to what counts as large of a number."""
-STEPS: Final = np.array([1.0, 2.0, 3.0, -1.0, -2.0, -3.0])
-SIX: Final = np.array([45.0, -9.0, 1.0, -45.0, 9.0, -1.0]) / 60.0
-FOUR: Final = np.array([8.0, -1.0, 0.0, -8.0, 1.0, 0.0]) / 12.0
-"""Differences of order six, and of order four from the same motions."""
+
+
+class _Scheme(NamedTuple):
+    """Steps, and the factors of differences of order six, and of order four from the same motions."""
+
+    steps: Floats
+    six: Floats
+    four: Floats
+
+
+CENTRAL: Final = _Scheme(
+    np.array([1.0, 2.0, 3.0, -1.0, -2.0, -3.0]),
+    np.array([45.0, -9.0, 1.0, -45.0, 9.0, -1.0]) / 60.0,
+    np.array([8.0, -1.0, 0.0, -8.0, 1.0, 0.0]) / 12.0,
+)
+FORWARD: Final = _Scheme(
+    np.arange(7.0),
+    np.array([-147.0, 360.0, -450.0, 400.0, -225.0, 72.0, -10.0]) / 60.0,
+    np.array([-25.0, 48.0, -36.0, 16.0, -3.0, 0.0, 0.0]) / 12.0,
+)
+"""For what must not be negative, such as friction, and is zero."""
 SETTLED: Final = 1e-5
 """What the two may differ by, relative to the largest derivative by the same number."""
 NOISE: Final = 1e-9
 """What may be wrong in a motion, relative to what is large in it."""
 RTOL: Final = 1e-13
+LEAST: Final = 1e-90
+FARTHEST: Final = 1e6
+MANY: Final = 1000
+"""The first step that is tried for a number that is zero, and how much longer the next one is, at most;
+and how many times as many steps of integration as the motion itself a neighbour may take."""
 HELD: Final = ("times", "t", "epoch", "target")
 """Arguments of loads that are not varied."""
 
@@ -85,6 +109,7 @@ class _Row:
         self.given = {name: self.states[name] for name in run.__dict__.get("_given", ())}
         known = _known(self.load, self.recipes)
         self.free = {name: values for name, values in self.states.items() if name not in known}
+        self.most_steps: int | None = None
         self.tensor = self.body.inertia_about("origin") if run.pivoted else self.body.inertia
 
     def sensitivity(self) -> MotionSensitivity:
@@ -97,7 +122,7 @@ class _Row:
         state = [self.by("turn", k, 1.0, self.free) for k in range(3)]
         state += [self.by("omega", k, speed, self.free) for k in range(3)]
         for name, values in self.states.items():
-            size = float(np.nanmax(np.abs(run.states[name][self.place]))) or 1.0
+            size = float(np.nanmax(np.abs(run.states[name][self.place])))
             for k in range(len(values)):
                 is_free = name in self.free
                 state.append(self.by(name, k, size, self.free) if is_free else np.zeros_like(state[0]))
@@ -129,13 +154,13 @@ class _Row:
         moved = _core.RigidBody(starts.mass, **options).simulate(
             run.t, starts.omega, _product(self.quaternion[0], _exponential(starts.turn)), load=load,
             position=run.position[self.place][0], about=run._about_word(), rtol=RTOL,
-            states=starts.states or None, **at_start,
+            states=starts.states or None, max_steps=self.most_steps, **at_start,
         )  # fmt: skip
         back = self.quaternion * np.array([-1.0, -1.0, -1.0, 1.0])
         tilt = _logarithm(_product(back, moved.quaternion))
         return np.concatenate([tilt, moved.omega, *moved.states.values()], axis=-1)
 
-    def starts(self, held: dict[str, Floats], count: int = len(STEPS)) -> _Starts:
+    def starts(self, held: dict[str, Floats], count: int = 1) -> _Starts:
         """Give the start so many times, with these states."""
         body, many = self.body, np.ones((count, 1))
         states = {name: many * values for name, values in held.items()}
@@ -145,45 +170,62 @@ class _Row:
 
     def by(self, name: str, k: int, size: float, held: dict[str, Floats]) -> Floats:
         """By one number that counts as large where it is `size`, with these states held, shape (T, 6 + k)."""
-        starts = self.starts(held)
-        values = starts.states[name] if name in starts.states else getattr(starts, name)
-        values.reshape(len(STEPS), -1)[:, k] += STEPS * STEP * size  # they are new
-        return self.combined(self.ends(starts, self.load), STEP * size, name)
+
+        def moved(steps: Floats) -> Floats:
+            starts = self.starts(held, len(steps))
+            values = starts.states[name] if name in starts.states else getattr(starts, name)
+            values.reshape(len(steps), -1)[:, k] += steps  # they are new
+            return self.ends(starts, self.load)
+
+        return self.along(moved, size, name)
 
     def by_tensor(self, along: Floats, size: float) -> Floats:
         """By the tensor along another."""
-        starts = self.starts(self.given)
-        starts.tensor[:] += (STEPS * STEP * size)[:, None, None] * along
-        return self.combined(self.ends(starts, self.load), STEP * size, "tensor")
+
+        def moved(steps: Floats) -> Floats:
+            starts = self.starts(self.given, len(steps))
+            starts.tensor[:] += steps[:, None, None] * along
+            return self.ends(starts, self.load)
+
+        return self.along(moved, size, "tensor")
 
     def by_load(self) -> Iterator[dict[str, Floats]]:
         """By the numbers of each part of the load."""
-        one = self.starts(self.given, 1)
         for place, recipe in enumerate(self.recipes):
             found: dict[str, Floats] = {}
             for name, values, changed in _numbers(recipe):
-                size = float(np.max(np.abs(values))) or 1.0
+                size = float(np.max(np.abs(values)))
                 columns = []
                 for index in np.ndindex(values.shape):
-                    ends = []
-                    for step in STEPS * STEP * size:
-                        moved = values.copy()
-                        moved[index] += step
-                        parts = [*self.recipes[:place], changed(moved), *self.recipes[place + 1 :]]
-                        ends.append(self.ends(one, _core.Load._from_parts(parts))[0])
-                    columns.append(self.combined(np.array(ends), STEP * size, name))
+                    other = partial(self.other_load, place, changed, values, index)
+                    moved = partial(self.under, other)
+                    columns.append(self.along(moved, size, name, partial(_scheme, other)))
                 found[name] = np.moveaxis(np.array(columns), 0, -1).reshape(*columns[0].shape, *values.shape)
             yield found
+
+    def other_load(
+        self, place: int, changed: Changed, values: Floats, index: tuple[int, ...], step: float
+    ) -> _core.Load:
+        """Give the load where one of the numbers of a part is more by a step."""
+        others = values.copy()
+        others[index] += step
+        parts = [*self.recipes[:place], changed(others), *self.recipes[place + 1 :]]
+        return _core.Load._from_parts(parts)
+
+    def under(self, other: Callable[[float], _core.Load], steps: Floats) -> Floats:
+        """Give the motion under other loads."""
+        start = self.starts(self.given)
+        return np.array([self.ends(start, other(step))[0] for step in steps])
 
     def begins(self, speed: float) -> Floats:
         """By ω at the first time, the states there that are not given; they are linear in it."""
         columns = []
         for axis in np.eye(3):
-            starts = self.starts(self.given)
-            starts.omega[:2] = self.omega[0] + speed * np.outer((1.0, -1.0), axis)
+            starts = self.starts(self.given, 2)
+            starts.omega[:] += speed * np.outer((1.0, -1.0), axis)
             there = self.body.simulate(
-                self.run.t[:1], starts.omega[:2], load=self.load, about=self.run._about_word(),
-                states={name: values[:2] for name, values in starts.states.items()} or None,
+                self.run.t[:1], starts.omega, load=self.load, about=self.run._about_word(),
+                states=starts.states or None,
             )  # fmt: skip
             parts = [
                 values[:, 0] if name in self.free else np.zeros_like(values[:, 0])
@@ -193,15 +235,51 @@ class _Row:
             columns.append((states[0] - states[1]) / (2 * speed))
         return np.stack(columns, axis=-1)
 
-    def combined(self, ends: Floats, step: float, name: str) -> Floats:
-        """Combine six motions; both orders agree where the motion is smooth in the number."""
-        found = np.asarray(np.tensordot(SIX, ends, 1) / step)
-        off = np.abs(found - np.tensordot(FOUR, ends, 1) / step)
-        # Attitudes, rates and each state have units of their own.
-        size, noise = np.abs(found).max(axis=0), np.abs(ends).max(axis=(0, 1))
-        for part in (slice(0, 3), slice(3, 6)):
-            size[part], noise[part] = size[part].max(), noise[part].max()
-        noise[:3] = 1.0
+    def along(
+        self,
+        moved: Callable[[Floats], Floats],
+        size: float,
+        name: str,
+        scheme: Callable[[float], _Scheme] = lambda _: CENTRAL,
+    ) -> Floats:
+        """By a number that counts as large where it is `size`.
+
+        `moved` gives the motions where it is more by these steps, `scheme` the differences to take.
+        """
+        step = STEP * size if size > 0.0 else self.step_from_zero(moved)
+        return self.combined(scheme(step), moved, step, name)
+
+    def step_from_zero(self, moved: Callable[[Floats], Floats]) -> float:
+        """Find the step of a number that is zero, whose scale nothing tells: it moves the motion by `STEP`.
+
+        It comes from below, since with a step that is much too long the motion takes very many steps.
+        Nor does it go on to such a step where the number has no effect.
+        """
+        here = moved(np.zeros(1))
+        large = _large(here)
+        large[large == 0.0] = np.inf
+        step = LEAST
+        self.most_steps = MANY * (1 + int(np.max(self.run.steps[self.place])))
+        while step < 1.0 / LEAST:
+            try:
+                there = moved(np.array([step]))
+            except PolhodeError:
+                step /= FARTHEST
+                break
+            change = float(np.max(np.abs(there - here) / large))
+            factor = STEP / change if change > 0.0 else FARTHEST
+            if 0.1 < factor < 10.0:
+                break
+            step *= min(max(factor, 1.0 / FARTHEST), FARTHEST)
+        self.most_steps = None
+        return step
+
+    def combined(self, scheme: _Scheme, moved: Callable[[Floats], Floats], step: float, name: str) -> Floats:
+        """Combine the motions of a scheme; both orders agree where the motion is smooth in the number."""
+        ends = moved(scheme.steps * step)
+        found = np.asarray(np.tensordot(scheme.six, ends, 1) / step)
+        off = np.abs(found - np.tensordot(scheme.four, ends, 1) / step)
+        size, noise = _together(np.abs(found).max(axis=0)), _large(ends)
         late = np.flatnonzero(~(off <= SETTLED * size + NOISE * noise / step).all(axis=-1))
         if len(late):
             raise PolhodeError(
@@ -210,6 +288,29 @@ class _Row:
                 "motion too sensitive; ask for other or earlier times"
             )
         return found
+
+
+def _scheme(other: Callable[[float], _core.Load], step: float) -> _Scheme:
+    """Give the differences that a number takes which may have reached the least that is allowed."""
+    try:
+        other(float(min(CENTRAL.steps)) * step)
+    except PolhodeError:
+        return FORWARD
+    return CENTRAL
+
+
+def _together(sizes: Floats) -> Floats:
+    """Give the largest of the attitude and of ω for each component; each state has a unit of its own."""
+    for part in (slice(0, 3), slice(3, 6)):
+        sizes[part] = sizes[part].max()
+    return sizes
+
+
+def _large(ends: Floats) -> Floats:
+    """Give what is large in each number of motions: of an attitude, one."""
+    large = _together(np.abs(ends).max(axis=(0, 1)))
+    large[:3] = 1.0
+    return large
 
 
 def _recipes(load: _core.Load | None) -> list[Recipe]:
@@ -230,7 +331,7 @@ def _known(load: _core.Load | None, recipes: list[Recipe]) -> set[str]:
     return {name for (kind, given), name in own if kind == "wheel" and given[-1]["speed"] is not None}
 
 
-def _numbers(recipe: Recipe) -> Iterator[tuple[str, Floats, Callable[[Floats], Recipe]]]:
+def _numbers(recipe: Recipe) -> Iterator[tuple[str, Floats, Changed]]:
     """Give the numbers among the arguments of a part by name, and the recipe with others in their place."""
     around, recipe = _unwrapped(recipe)
     if around:
@@ -265,7 +366,7 @@ def _unwrapped(recipe: Recipe) -> tuple[list[Recipe], Recipe]:
     return around, recipe
 
 
-def _wrapped(around: list[Recipe], changed: Callable[[Floats], Recipe]) -> Callable[[Floats], Recipe]:
+def _wrapped(around: list[Recipe], changed: Changed) -> Changed:
     def placed(values: Floats) -> Recipe:
         recipe = changed(values)
         for name, arguments in reversed(around):
@@ -294,13 +395,9 @@ def _within(path: Any, name: str, placed: Callable[[Floats], Any]) -> Callable[[
     return lambda values: replace(path, **{name: placed(values)})
 
 
-def _with(
-    made_by: str, named: dict[str, Any], name: str, placed: Callable[[Floats], Any]
-) -> Callable[[Floats], Recipe]:
+def _with(made_by: str, named: dict[str, Any], name: str, placed: Callable[[Floats], Any]) -> Changed:
     return lambda values: (made_by, (named | {name: placed(values)},))
 
 
-def _with_load(
-    made_by: str, named: dict[str, Any], name: str, changed: Callable[[Floats], Recipe]
-) -> Callable[[Floats], Recipe]:
+def _with_load(made_by: str, named: dict[str, Any], name: str, changed: Changed) -> Changed:
     return lambda values: (made_by, (named | {name: _core.Load._from_parts([changed(values)])},))

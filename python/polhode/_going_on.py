@@ -61,8 +61,10 @@ def sensitivity(self: Trajectory, method: Literal["series", "differences"] = "se
     Differences remain right where the law of the load changes on the way, for example when a wheel stops in
     its bearing or a motor saturates: each of the neighbouring motions finds its own time of the change. All
     numbers of an orbit are varied: also J₂, radius and pole of an oblate attractor, and each position of a
-    table. Each number takes six runs. The following cannot be
-    varied, and have no derivatives by differences:
+    table. Each number takes six runs, and more if it is zero: they find a step that fits the motion. A number
+    that is zero and must not be negative, such as a friction, is only increased.
+
+    The following numbers cannot be varied, and have no derivatives by differences:
 
     - numbers inside a function,
     - the attitude of a target at rest,

@@ -22,7 +22,8 @@ use polhode::motion::free::FreeMotion;
 use polhode::motion::heavy_top::{HeavyTop, PivotedTop};
 use polhode::motion::integrate::taylor::solve_many;
 use polhode::motion::loads::{
-    Analytic, Callback, Damping, Frame, GravityGradient, Magnetic, MagneticField, Term,
+    Analytic, Callback, Damping, Drive, Frame, GravityGradient, Held, Magnetic, MagneticField,
+    Sampled, Term, Wheel,
 };
 use polhode::motion::simulate::{Method, NoEvents, Phase, Run, State, Task, Tolerance, simulate};
 use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
@@ -244,7 +245,8 @@ fn runs() {
     start.velocity = Vector3::new(0.0, 0.35, 0.0);
     let times: Vec<f64> = (0..=100).map(f64::from).collect();
     let matrix = Matrix3::from_diagonal(&Vector3::new(0.02, 0.01, 0.03));
-    let loads: [(&str, Vec<Term>); 5] = [
+    let torques = [0.1, -0.2, 0.3, 0.1].map(|x| Vector3::new(x, 0.05, -x));
+    let loads: [(&str, Vec<Term>); 7] = [
         ("free", vec![]),
         (
             "torque",
@@ -276,6 +278,30 @@ fn runs() {
                 )
                 .expect("finite"),
             )],
+        ),
+        (
+            "wheels",
+            [Vector3::x(), Vector3::y(), Vector3::z()]
+                .map(|axis| {
+                    Wheel::new(
+                        &axis,
+                        0.1,
+                        2.0,
+                        0.01,
+                        Drive::Torque(Held::constant("torque", 0.0).expect("finite")),
+                    )
+                    .expect("a wheel")
+                })
+                .map(Term::from)
+                .into(),
+        ),
+        (
+            "sampled",
+            vec![
+                Sampled::new(&[0.0, 30.0, 70.0, 100.0], &torques, Frame::Space)
+                    .expect("finite")
+                    .into(),
+            ],
         ),
     ];
     let task = |method, tolerance| {

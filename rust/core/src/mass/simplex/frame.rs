@@ -100,18 +100,24 @@ impl Place for Turned {
     #[inline(always)]
     fn place<L: Lane>(&self, r: [L; 3]) -> [L; 3] {
         let inverse = L::new(self.inverse);
-        let d =
-            [0, 1, 2].map(|k| two_sum(r[k] * inverse, L::new(-self.reference[k] * self.inverse)));
-        self.axes.map(|axis| {
-            let v = axis.map(L::new);
-            let (p, e) = two_product(d[0].0, v[0]);
-            let (q, f) = two_product(d[1].0, v[1]);
-            let (r, g) = two_product(d[2].0, v[2]);
+        let [x, y, z] = self.reference;
+        let ((x, x_low), (y, y_low), (z, z_low)) = (
+            two_sum(r[0] * inverse, L::new(-x * self.inverse)),
+            two_sum(r[1] * inverse, L::new(-y * self.inverse)),
+            two_sum(r[2] * inverse, L::new(-z * self.inverse)),
+        );
+        // No `map`: its closure would be compiled without the instructions of the level.
+        let mut placed = r;
+        for (coordinate, [a, b, c]) in placed.iter_mut().zip(self.axes) {
+            let (a, b, c) = (L::new(a), L::new(b), L::new(c));
+            let ((p, e), (q, f), (r, g)) =
+                (two_product(x, a), two_product(y, b), two_product(z, c));
             let (partial, h) = two_sum(p, q);
             let (sum, i) = two_sum(partial, r);
-            let low = dot([d[0].1, d[1].1, d[2].1], v);
-            sum + (low + (e + f + g) + (h + i))
-        })
+            let low = dot([x_low, y_low, z_low], [a, b, c]);
+            *coordinate = sum + (low + (e + f + g) + (h + i));
+        }
+        placed
     }
 }
 

@@ -88,9 +88,9 @@ pub(crate) trait Timed<X: Exact>: Debug {
     /// Adds what it does in a step to `forcing`, where torques are not yet over the moments.
     fn force(&self, forcing: &mut Forcing<X>, axes: &Axes<'_, X>, when: &When<X>);
 
-    /// About the square of the fastest rate that it makes in a segment that ends at `end`; `over_moment` is one over the least
-    /// moment of inertia.
-    fn square_of_rate(&self, subject: &Subject, end: f64, over_moment: f64) -> f64;
+    /// About the square of the fastest rate that it makes in a segment with the time `middle` in it; `over_moment` is one over the
+    /// least moment of inertia.
+    fn square_of_rate(&self, subject: &Subject, middle: f64, over_moment: f64) -> f64;
 
     /// The sizes of its torques around a time along a unit vector of B, and in all; none where they cannot be along one axis.
     fn torques_along(&self, axis: &Vector3<f64>, middle: f64) -> Vec<(f64, f64)>;

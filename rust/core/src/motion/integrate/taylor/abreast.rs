@@ -1,8 +1,9 @@
 //! Several motions, the lanes over the motions.
 
 use super::directions::{add_squares, axis, from_squares, halved, roots};
-use super::pack::Pack;
+use super::pack::{Lined, Pack};
 use super::series::{COUNT, Coefficient, RECIPROCALS, Series};
+use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
 
 /// `R` motions, the lanes over the motions.
@@ -134,9 +135,9 @@ impl<L: Lane, const B: usize, const R: usize> Series<Pack<L, R>, B> for Abreast<
     #[inline(always)]
     fn sums(&mut self, k: usize) -> Self::Sums {
         match self.still {
-            0 => self.products::<0>(k),
-            2 => self.products::<2>(k),
-            _ => self.products::<NONE>(k),
+            0 => dispatch(Sum::<_, B, R, 0>(self, k)).0,
+            2 => dispatch(Sum::<_, B, R, 2>(self, k)).0,
+            _ => dispatch(Sum::<_, B, R, NONE>(self, k)).0,
         }
     }
 
@@ -187,6 +188,23 @@ impl<L: Lane, const B: usize, const R: usize> Abreast<L, B, R> {
         }
         self.directions[k] = squares.directions();
         products.sums()
+    }
+}
+
+/// The sums of one order: a function of its own, since within a larger one they are not kept in registers.
+struct Sum<'a, L, const B: usize, const R: usize, const STILL: usize>(
+    &'a mut Abreast<L, B, R>,
+    usize,
+);
+
+impl<N: Lane, const B: usize, const R: usize, const STILL: usize> Kernel
+    for Sum<'_, N, B, R, STILL>
+{
+    type Output = Lined<AbreastSums<Pack<N, R>>>;
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> Self::Output {
+        Lined(self.0.products::<STILL>(self.1))
     }
 }
 

@@ -2,12 +2,14 @@
 
 use super::frame::Precision;
 use super::pace::Pace;
-use super::pack::{Pack, cross_term};
+use super::pack::{Lined, Pack, cross_term, plus};
 use super::series::Series;
-use super::step::compensate;
+use super::step::{compensate, exp2, limit};
 use super::twin::COUNT;
 use crate::motion::loads::Own;
 use crate::motion::loads::variables::WIDTH;
+use crate::numerics::dispatch::{Kernel, dispatch};
+use crate::numerics::lane::Lane;
 use crate::numerics::number::Number;
 
 /// The states z of a load, and their series in a step:
@@ -141,6 +143,20 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
         series: &impl Series<Pack<L, R>, B>,
         sum: [Pack<L, R>; 3],
     ) -> [Pack<L, R>; 3] {
+        let Lined(by_states) = dispatch(Next {
+            carried: self,
+            k,
+            series,
+        });
+        plus(sum, by_states)
+    }
+
+    #[inline(always)]
+    fn coefficient<const B: usize>(
+        &mut self,
+        k: usize,
+        series: &impl Series<Pack<L, R>, B>,
+    ) -> [Pack<L, R>; 3] {
         let zero = Pack::new(0.0);
         let (mut momentum, mut torque) = ([zero; 3], [zero; 3]);
         for state in &self.states {
@@ -156,7 +172,8 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
             torque = cross_term(&self.momentum[j], &series.get(k - j).w, torque);
         }
         self.extend(k, series);
-        [0, 1, 2].map(|i| torque[i].mul_add(self.inverse_moments[i], sum[i]))
+        let ([x, y, z], [a, b, c]) = (torque, self.inverse_moments);
+        [x * a, y * b, z * c]
     }
 
     /// The coefficients of order k + 1 of the states.
@@ -202,20 +219,31 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
         if L::VARIES {
             return self.keep_pace(steps);
         }
-        for state in &self.states {
-            for row in 0..R {
+        for row in 0..R {
+            let (mut last, mut last_but_one) = (0.0, 0.0);
+            // What is not a number is lost among the largest, but not in the sum.
+            let mut sum = 0.0;
+            for state in &self.states {
                 let natural = state.size.get(row) * fastest[row];
-                let scale = natural.max(state.largest.get(row));
-                for k in [order - 1, order] {
-                    let part = (state.series[k].get(row) / scale).abs();
-                    if part > 0.0 {
-                        let most = ((tolerance - part.log2()) / k as f64).exp2();
-                        steps[row] = if steps[row] > most { most } else { steps[row] };
-                    } else if part.is_nan() {
-                        steps[row] = f64::NAN;
-                    }
-                }
+                let largest = state.largest.get(row);
+                let scale = if natural > largest { natural } else { largest };
+                let (one, other) = (state.series[order], state.series[order - 1]);
+                let (one, other) = (one.get(row).abs() / scale, other.get(row).abs() / scale);
+                last = if one > last { one } else { last };
+                last_but_one = if other > last_but_one {
+                    other
+                } else {
+                    last_but_one
+                };
+                sum += one + other;
             }
+            let (a, b) = (
+                limit(last, order, tolerance),
+                limit(last_but_one, order - 1, tolerance),
+            );
+            let most = exp2(if a < b { a } else { b });
+            let h = steps[row];
+            steps[row] = if h > most { most } else { h } + 0.0 * sum;
         }
     }
 
@@ -251,12 +279,15 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
     }
 
     /// The states of one row after the time `h`.
+    #[inline(always)]
     pub(super) fn within(&self, row: usize, order: usize, h: Pack<L, R>) -> Vec<L::Real> {
-        let moved = self.states.iter().map(|state| {
+        let mut moved = Vec::with_capacity(self.states.len());
+        // No `map`: its closure would be compiled without the instructions of the level.
+        for state in &self.states {
             let change = state.increment(order, h) + state.rest;
-            state.value.real(row) + change.real(row)
-        });
-        moved.collect()
+            moved.push(state.value.real(row) + change.real(row));
+        }
+        moved
     }
 
     /// Goes on by the time `h`.
@@ -284,6 +315,24 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
     pub(super) fn coefficients(&self, row: usize, k: usize) -> Vec<L::Real> {
         let coefficients = self.states.iter().map(|state| state.series[k].real(row));
         coefficients.collect()
+    }
+}
+
+/// The coefficients of one order: a function of its own, as that of the [sums](super::abreast).
+struct Next<'a, L, S, const R: usize, const B: usize> {
+    carried: &'a mut Carried<Pack<L, R>>,
+    k: usize,
+    series: &'a S,
+}
+
+impl<N: Number<Real: Precision>, S: Series<Pack<N, R>, B>, const R: usize, const B: usize> Kernel
+    for Next<'_, N, S, R, B>
+{
+    type Output = Lined<[Pack<N, R>; 3]>;
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> Self::Output {
+        Lined(self.carried.coefficient(self.k, self.series))
     }
 }
 

@@ -49,7 +49,7 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
         }
         Self {
             is_empty: !parts.is_timed && parts.gradients == 0,
-            formulas: Formulas::default(),
+            formulas: Formulas::new(),
             forced: if parts.is_timed {
                 Some(Box::new(Forced::new()))
             } else {

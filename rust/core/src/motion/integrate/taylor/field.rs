@@ -149,16 +149,19 @@ impl<L: Number, const R: usize, const B: usize> Field<Pack<L, R>, B> {
     /// ```text
     /// −I_ki x_i x_j + I_ij x_k x_i + I_jk (x_k² − x_j²)
     /// ```
+    #[inline(always)]
     pub(super) fn tilt(
         &self,
         p: &[Pack<L, R>; 3],
         mixed: &[Pack<L, R>; 3],
         squares: &[Pack<L, R>; 3],
     ) -> [Pack<L, R>; 3] {
-        [(0, 1, 2), (1, 2, 0), (2, 0, 1)].map(|(i, j, k)| {
+        let mut sum = [Pack::new(0.0); 3];
+        for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
             let torque = p[k] * mixed[j] - p[j] * mixed[k] + p[i] * (squares[k] - squares[j]);
-            torque * self.inverse_moments[i]
-        })
+            sum[i] = torque * self.inverse_moments[i];
+        }
+        sum
     }
 
     /// `I⁻¹ N` to first order in these elements, from N over the moments.

@@ -1,10 +1,12 @@
 //! Torques that are not linear in ω, by the formulas that their laws state.
 
 use super::frame::Precision;
-use super::pack::Pack;
+use super::pack::{Lined, Pack};
 use super::series::Series;
 use super::twin::COUNT;
 use crate::motion::loads::{Formula, Step};
+use crate::numerics::dispatch::{Kernel, dispatch};
+use crate::numerics::lane::Lane;
 use crate::numerics::number::{Number, Real};
 
 /// The coefficients of a scalar.
@@ -32,8 +34,7 @@ struct Worked<T> {
     speed: Option<usize>,
     /// Whether the vector is |ω| ω.
     is_quadratic: bool,
-    /// What |ω| is small against, and `1/2s₀`.
-    fastest: T,
+    /// `1/2s₀`.
     half_over_speed: T,
 }
 
@@ -47,36 +48,48 @@ struct Worked<T> {
 ///
 /// Rounding in s grows as `1/s(t)` does, so a step does not go as far as ω would take to zero at its present rate. Where ω
 /// passes through zero all the same the step ends, and at ω = 0 there is no series, and of |ω| ω no second derivative: below
-/// [`STILL`](Precision::STILL) of the fastest ω the speed counts as zero, in steps over which what it does stays below rounding.
+/// [`STILL`](Precision::STILL) of the fastest ω, or the same [beside torques](Precision::STILL_BESIDE_TORQUES), the speed counts as
+/// zero, in steps over which what it does stays below rounding.
 #[derive(Clone, Debug)]
-pub(super) struct Formulas<T>(Vec<Worked<T>>);
-
-impl<T> Default for Formulas<T> {
-    fn default() -> Self {
-        Self(Vec::new())
-    }
+#[repr(align(64))] // see Pack
+pub(super) struct Formulas<T> {
+    worked: Vec<Worked<T>>,
+    /// The speed below which a row is still, and the part of it beside torques.
+    still: T,
+    beside_torques: T,
 }
 
 impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
-    /// Takes those of one row, each with its matrix over the moments.
+    pub(super) fn new() -> Self {
+        let zero = Pack::new(0.0);
+        Self {
+            worked: Vec::new(),
+            still: zero,
+            beside_torques: zero,
+        }
+    }
+
+    /// Takes those of one row, each with its matrix over the moments, and the rate that other torques make at rest.
     pub(super) fn set<'a>(
         &mut self,
         row: usize,
         formulas: impl Iterator<Item = (&'a Formula<L::Real>, [[L::Real; 3]; 3])>,
+        driven: f64,
     ) {
         self.vacate(row);
-        let mut taken = vec![false; self.0.len()];
+        (self.beside_torques).set(row, L::Real::STILL_BESIDE_TORQUES * driven);
+        let mut taken = vec![false; self.worked.len()];
         for (formula, matrix) in formulas {
             let fits = |(i, worked): (usize, &Worked<_>)| {
                 !taken[i] && worked.steps == formula.steps && worked.vector == formula.vector
             };
-            let place = (self.0.iter().enumerate().position(fits)).unwrap_or_else(|| {
-                self.0.push(Worked::new(formula));
+            let place = (self.worked.iter().enumerate().position(fits)).unwrap_or_else(|| {
+                self.worked.push(Worked::new(formula));
                 taken.push(false);
                 taken.len() - 1
             });
             taken[place] = true;
-            for (packs, numbers) in self.0[place].matrix.iter_mut().zip(matrix) {
+            for (packs, numbers) in self.worked[place].matrix.iter_mut().zip(matrix) {
                 for (pack, number) in packs.iter_mut().zip(numbers) {
                     pack.put(row, number);
                 }
@@ -86,21 +99,19 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
 
     /// Leaves one row without formulas.
     pub(super) fn vacate(&mut self, row: usize) {
-        for x in self
-            .0
-            .iter_mut()
-            .flat_map(|it| it.matrix.as_flattened_mut())
-        {
-            x.set(row, 0.0);
+        for worked in &mut self.worked {
+            for x in worked.matrix.as_flattened_mut() {
+                x.set(row, 0.0);
+            }
         }
     }
 
     #[inline(always)]
     pub(super) fn start(&mut self, fastest: &[f64; R]) {
-        for worked in &mut self.0 {
-            for row in 0..R {
-                worked.fastest.set(row, fastest[row]);
-            }
+        for row in 0..R {
+            let (still, least) = (L::Real::STILL * fastest[row], self.beside_torques.get(row));
+            self.still
+                .set(row, if still > least { still } else { least });
         }
     }
 
@@ -112,8 +123,14 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
         series: &impl Series<Pack<L, R>, B>,
         mut sum: [Pack<L, R>; 3],
     ) -> [Pack<L, R>; 3] {
-        for worked in &mut self.0 {
-            let [x, y, z] = worked.coefficient(k, series);
+        let still = self.still;
+        for worked in &mut self.worked {
+            let Lined([x, y, z]) = dispatch(Next {
+                worked,
+                k,
+                series,
+                still,
+            });
             sum = [sum[0] + x, sum[1] + y, sum[2] + z];
         }
         sum
@@ -121,7 +138,7 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
 
     /// Those with |ω| that act in one row.
     fn with_speed(&self, row: usize) -> impl Iterator<Item = &Scalar<Pack<L, R>>> {
-        let acting = self.0.iter().filter(move |it| it.acts(row));
+        let acting = self.worked.iter().filter(move |it| it.acts(row));
         acting.filter_map(|it| Some(&it.scalars[it.speed?]))
     }
 
@@ -144,10 +161,9 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
     pub(super) fn limit<const B: usize>(
         &self,
         series: &impl Series<Pack<L, R>, B>,
-        fastest: &[f64; R],
         h: &mut [f64; R],
     ) {
-        if self.0.is_empty() {
+        if self.worked.is_empty() {
             return;
         }
         let (w, change) = (series.get(0).w, series.get(1).w);
@@ -155,11 +171,7 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
             if self.with_speed(row).next().is_none() {
                 continue;
             }
-            let (still, speed, rate) = (
-                L::Real::STILL * fastest[row],
-                size(&w, row),
-                size(&change, row),
-            );
+            let (still, speed, rate) = (self.still.get(row), size(&w, row), size(&change, row));
             let most = if speed <= still {
                 2.0 * still / rate
             } else {
@@ -174,6 +186,25 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
 fn size<L: Number, const R: usize>(w: &[Pack<L, R>; 3], row: usize) -> f64 {
     let (x, y, z) = (w[0].get(row), w[1].get(row), w[2].get(row));
     (x * x + y * y + z * z).sqrt()
+}
+
+/// The coefficient of order `k`: a function of its own, since loops within that of the steps keep its sums out of registers.
+struct Next<'a, L, S, const R: usize, const B: usize> {
+    worked: &'a mut Worked<Pack<L, R>>,
+    k: usize,
+    series: &'a S,
+    still: Pack<L, R>,
+}
+
+impl<N: Number<Real: Precision>, S: Series<Pack<N, R>, B>, const R: usize, const B: usize> Kernel
+    for Next<'_, N, S, R, B>
+{
+    type Output = Lined<[Pack<N, R>; 3]>;
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> Self::Output {
+        Lined(self.worked.coefficient(self.k, self.series, self.still))
+    }
 }
 
 impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
@@ -200,7 +231,6 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
             speed,
             is_quadratic: formula.steps == [Step::Square, Step::Speed(0), Step::Times(1, 0)]
                 && formula.vector == 1,
-            fastest: Pack::new(1.0),
             half_over_speed: zero,
         }
     }
@@ -217,13 +247,14 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
         &mut self,
         k: usize,
         series: &impl Series<Pack<L, R>, B>,
+        still: Pack<L, R>,
     ) -> [Pack<L, R>; 3] {
         let vector = if self.is_quadratic {
             // In one piece: what a step gives to the next one stays in registers.
-            let speeds = self.set_speed(k, 1, square(k, series));
+            let speeds = self.set_speed(k, 1, square(k, series), still);
             times(k, speeds, |j| series.get(j).w)
         } else {
-            self.step_by_step(k, series)
+            self.step_by_step(k, series, still)
         };
         let mut sum = [Pack::new(0.0); 3];
         for n in 0..3 {
@@ -240,6 +271,7 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
         &mut self,
         k: usize,
         series: &impl Series<Pack<L, R>, B>,
+        still: Pack<L, R>,
     ) -> [Pack<L, R>; 3] {
         let (mut scalars, mut vectors) = (0, 0);
         for i in 0..self.steps.len() {
@@ -250,7 +282,7 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
                 }
                 Step::Speed(of) => {
                     let square = self.scalars[of].0[k];
-                    let _speeds = self.set_speed(k, scalars, square);
+                    let _speeds = self.set_speed(k, scalars, square, still);
                     scalars += 1;
                 }
                 Step::Times(factor, vector) => {
@@ -274,13 +306,19 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
 
     /// The coefficient of order `k` of |ω|, the scalar of this number, from that of ω·ω.
     #[inline(always)]
-    fn set_speed(&mut self, k: usize, number: usize, square: Pack<L, R>) -> &[Pack<L, R>; COUNT] {
+    fn set_speed(
+        &mut self,
+        k: usize,
+        number: usize,
+        square: Pack<L, R>,
+        still: Pack<L, R>,
+    ) -> &[Pack<L, R>; COUNT] {
         let speeds = &mut self.scalars[number].0;
         speeds[k] = Pack::new(0.0);
         if k == 0 {
             for row in 0..R {
                 let speed = square.real(row).root();
-                let moves = speed.rounded() > L::Real::STILL * self.fastest.get(row);
+                let moves = speed.rounded() > still.get(row);
                 speeds[0].set(row, 0.0);
                 self.half_over_speed.set(row, 0.0);
                 if moves {

@@ -34,6 +34,9 @@ pub(super) trait Precision: Exact {
     /// The part of the fastest ω below which quadratic damping is left out: with it the error of ω, relative to the fastest, is
     /// its cube, that of derivatives its square.
     const STILL: f64;
+    /// The same, as a part of the rate that torques make which do not vanish with ω: the powers of its reciprocal in a series are
+    /// numbers. Quadratic damping is then as small beside them as its square.
+    const STILL_BESIDE_TORQUES: f64;
     /// The principal frame of what is simulated.
     fn principal(task: &Task<'_>, variables: Self::Variables) -> Principal<Self>;
 
@@ -56,6 +59,7 @@ pub(super) trait Precision: Exact {
 impl Precision for f64 {
     const CARRIES_ORBITS: bool = false;
     const STILL: f64 = 2e-6;
+    const STILL_BESIDE_TORQUES: f64 = 1e-10;
 
     fn principal(task: &Task<'_>, _: Fixed) -> Principal<Self> {
         let axes = *task.euler.axes();
@@ -73,6 +77,7 @@ impl Precision for f64 {
 impl Precision for DoubleDouble {
     const CARRIES_ORBITS: bool = true;
     const STILL: f64 = 2e-6;
+    const STILL_BESIDE_TORQUES: f64 = 1e-7;
 
     fn principal(task: &Task<'_>, _: Fixed) -> Principal<Self> {
         let refined = match &task.casing {
@@ -95,6 +100,7 @@ impl Precision for DoubleDouble {
 impl Precision for Varied {
     const CARRIES_ORBITS: bool = false;
     const STILL: f64 = 1e-8;
+    const STILL_BESIDE_TORQUES: f64 = 1e-10;
 
     fn principal(task: &Task<'_>, block: Block) -> Principal<Self> {
         let plain = <f64 as Precision>::principal(task, Fixed);

@@ -179,14 +179,8 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
 
     /// The attitude in N of one as seen from that frame.
     #[inline(always)]
-    pub(super) fn in_space(&self, [x, y, z, w]: [Pack<L, R>; 4]) -> [Pack<L, R>; 4] {
-        let [a, b, c, d] = self.frame;
-        [
-            d.mul_add(x, a * w) + b.mul_add(z, (-c) * y),
-            d.mul_add(y, b * w) + c.mul_add(x, (-a) * z),
-            d.mul_add(z, c * w) + a.mul_add(y, (-b) * x),
-            d.mul_add(w, (-a) * x) - b.mul_add(y, c * z),
-        ]
+    pub(super) fn in_space(&self, attitude: [Pack<L, R>; 4]) -> [Pack<L, R>; 4] {
+        dispatch(InSpace(self.frame, attitude)).0
     }
 
     /// Finds the coefficient of order `k` of the angular acceleration, which needs that of the attitude: of one that is seen from the
@@ -226,21 +220,48 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
         (self.orbit).set(row, [radial * once, around * once, pull * twice]);
         (self.strength).put(row, self.strength.real(row) * twice);
     }
+}
 
-    /// What the elements off the diagonal of the tensor add to the coefficient of order `k`.
-    #[inline(never)]
-    fn tilt<const B: usize>(
-        &self,
-        k: usize,
-        field: &Field<Pack<L, R>, B>,
-        products: &[Pack<L, R>; 3],
-    ) -> [Pack<L, R>; 3] {
+/// What the elements off the diagonal of the tensor add to a coefficient, from those of m up to it and of the products of m.
+struct Tilt<'a, T, const B: usize> {
+    pointing: &'a [[T; 3]],
+    products: [T; 3],
+    field: &'a Field<T, B>,
+    strength: T,
+}
+
+impl<N: Number, const R: usize, const B: usize> Kernel for Tilt<'_, Pack<N, R>, B> {
+    type Output = Lined<[Pack<N, R>; 3]>;
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> Self::Output {
         let mut squares = [Pack::new(0.0); 3];
-        let pointing = &self.pointing[..=k];
-        for (a, b) in pointing.iter().zip(pointing.iter().rev()) {
-            squares = [0, 1, 2].map(|i| a[i].mul_add(b[i], squares[i]));
+        for (a, b) in self.pointing.iter().zip(self.pointing.iter().rev()) {
+            for i in 0..3 {
+                squares[i] = a[i].mul_add(b[i], squares[i]);
+            }
         }
-        (field.tilt(&field.pull.1, products, &squares)).map(|x| -(self.strength * x))
+        let [x, y, z] = (self.field).tilt(&self.field.pull.1, &self.products, &squares);
+        let pull = -self.strength;
+        Lined([pull * x, pull * y, pull * z])
+    }
+}
+
+/// A frame, and an attitude as seen from it.
+struct InSpace<T>([T; 4], [T; 4]);
+
+impl<N: Number, const R: usize> Kernel for InSpace<Pack<N, R>> {
+    type Output = Lined<[Pack<N, R>; 4]>;
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> Self::Output {
+        let Self([a, b, c, d], [x, y, z, w]) = self;
+        Lined([
+            d.mul_add(x, a * w) + b.mul_add(z, (-c) * y),
+            d.mul_add(y, b * w) + c.mul_add(x, (-a) * z),
+            d.mul_add(z, c * w) + a.mul_add(y, (-b) * x),
+            d.mul_add(w, (-a) * x) - b.mul_add(y, c * z),
+        ])
     }
 }
 
@@ -326,7 +347,13 @@ impl<N: Number, S: Series<Pack<N, R>, B>, const R: usize, const B: usize> Kernel
         let ([a, b, c], [p, q, r]) = (it.on_products, products);
         it.ahead = [a * p, b * q, c * r];
         if it.is_aside {
-            it.ahead = plus(it.ahead, it.tilt(k, field, &products));
+            let Lined(aside) = dispatch(Tilt {
+                pointing: &it.pointing[..=k],
+                products,
+                field,
+                strength: it.strength,
+            });
+            it.ahead = plus(it.ahead, aside);
         }
     }
 }

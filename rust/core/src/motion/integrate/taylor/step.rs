@@ -120,8 +120,8 @@ pub(super) fn longest<L: Number, const R: usize, const B: usize>(
     let (last, last_but_one) = (series.get(order), series.get(order - 1));
     let mut steps = [0.0; R];
     for row in 0..R {
-        let a = limit(&last, row, order, tolerance, scale[row]);
-        let b = limit(&last_but_one, row, order - 1, tolerance, scale[row]);
+        let a = limit_of(&last, row, order, tolerance, scale[row]);
+        let b = limit_of(&last_but_one, row, order - 1, tolerance, scale[row]);
         steps[row] = exp2(if a < b { a } else { b }) + 0.0 * (a + b);
     }
     steps
@@ -129,7 +129,7 @@ pub(super) fn longest<L: Number, const R: usize, const B: usize>(
 
 /// The logarithm of the step for which the term of this order is as large as allowed.
 #[inline(always)]
-fn limit<L: Number, const R: usize, const B: usize>(
+fn limit_of<L: Number, const R: usize, const B: usize>(
     at: &Coefficient<Pack<L, R>, B>,
     row: usize,
     order: usize,
@@ -149,7 +149,13 @@ fn limit<L: Number, const R: usize, const B: usize>(
         sum += q;
     }
     // What is not a number is lost among the largest, but not in the sum.
-    (tolerance - log2(largest)) * (1.0 / order as f64) + 0.0 * sum
+    limit(largest, order, tolerance) + 0.0 * sum
+}
+
+/// The same for a term of this size at one unit of time.
+#[inline(always)]
+pub(super) fn limit(size: f64, order: usize, tolerance: f64) -> f64 {
+    (tolerance - log2(size)) * (1.0 / order as f64)
 }
 
 /// Binary logarithm to a hundredth, ample for the length of a step; the same bits on every machine. That of zero is −1023.
@@ -163,7 +169,7 @@ fn log2(x: f64) -> f64 {
 
 /// Two to the power x to a hundredth, for |x| up to a thousand.
 #[inline(always)]
-fn exp2(x: f64) -> f64 {
+pub(super) fn exp2(x: f64) -> f64 {
     let x = if x > 1000.0 { 1000.0 } else { x };
     let x = if x > -1000.0 { x } else { -1000.0 };
     let whole = x.floor();

@@ -206,8 +206,14 @@ impl<X: Exact> Timed<X> for Sampled {
         }
     }
 
-    fn square_of_rate(&self, _: &Subject, end: f64, over_moment: f64) -> f64 {
-        self.at(end).amax() * over_moment
+    /// From the largest that the torque may be between two samples. The rate of a torque that hardly moves the body is still not
+    /// so low that powers of the time between samples over it overflow in a series.
+    fn square_of_rate(&self, _: &Subject, middle: f64, over_moment: f64) -> f64 {
+        let (index, (_, piece)) = (self.spline.index(middle), self.piece(middle));
+        let length = self.knots()[index + 1] - self.knots()[index];
+        let largest = (piece.iter().rev()).fold(0.0, |sum, c| sum * length + c.amax());
+        let slowest = SLOWEST / length;
+        (largest * over_moment).max(slowest * slowest)
     }
 
     fn torques_along(&self, axis: &Vector3<f64>, middle: f64) -> Vec<(f64, f64)> {
@@ -220,6 +226,10 @@ impl<X: Exact> Timed<X> for Sampled {
         piece.iter().map(both).collect()
     }
 }
+
+/// The lowest unit of rates, in radians from one sample to the next: the powers of its reciprocal, to the highest order of a series,
+/// are numbers.
+const SLOWEST: f64 = 1.0 / 65_536.0;
 
 /// How many samples on either side a piece depends on: from one to the next what a sample does to the slopes halves at least,
 /// whatever the knots, so that what is left out is below 1e-24 of it.

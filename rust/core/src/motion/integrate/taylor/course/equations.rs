@@ -34,9 +34,9 @@ impl<X: Precision> Course<'_, X> {
         let on_space = on_space.map(|(vector, matrix)| {
             vector.map(X::rounded).amax() * matrix.map(X::rounded).amax() * over_moment
         });
-        let end = self.breaks[self.segment];
+        let middle = self.middle();
         let timed = (linear.timed.iter())
-            .map(|(_, timed)| timed.square_of_rate(&self.task.subject, end, over_moment));
+            .map(|(_, timed)| timed.square_of_rate(&self.task.subject, middle, over_moment));
         let (mut momentum, mut torque, mut decay) = (Vector3::zeros(), Vector3::zeros(), 0.0_f64);
         for (state, &value) in linear.own.iter().zip(own) {
             momentum += state.momentum.map(X::rounded) * value.rounded();
@@ -46,12 +46,13 @@ impl<X: Precision> Course<'_, X> {
         let by_own = torque.component_mul(&inverse).amax();
         let squares = squares.into_iter().chain([by_own]);
         let square = (squares.chain(on_space).chain(timed)).fold(0.0, f64::max);
+        self.driven = square.sqrt();
         let rate = Vector3::from(*omega)
             .amax()
             .max(linear.on_omega.map(X::rounded).amax() * over_moment)
             .max(momentum.amax() * over_moment)
             .max(decay)
-            .max(square.sqrt());
+            .max(self.driven);
         self.unit = power_below(rate);
         self.unit
     }
@@ -95,6 +96,11 @@ impl<X: Precision> Course<'_, X> {
             }
         }
         field
+    }
+
+    /// The rate that torques make which do not vanish with ω, in units of rates.
+    pub(in crate::motion::integrate::taylor) fn driven(&self) -> f64 {
+        self.driven / self.unit
     }
 
     /// The formulas of the segment under way, each with its matrix over the moments in units of rates.

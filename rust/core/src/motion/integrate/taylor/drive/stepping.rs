@@ -26,9 +26,7 @@ where
         } = self.settings;
         self.expand();
         let mut h = longest(&self.series, order, last_term, &self.fastest);
-        self.extras
-            .formulas
-            .limit(&self.series, &self.fastest, &mut h);
+        self.extras.formulas.limit(&self.series, &mut h);
         self.series.limit(&mut h);
         if let Some(carried) = &mut self.carried {
             carried.limit(order, last_term, &self.fastest, &mut h);
