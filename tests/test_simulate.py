@@ -268,6 +268,12 @@ class TestOutput:
         assert np.array_equal(auto.omega, named.omega)
         assert np.array_equal(auto.quaternion, named.quaternion)
 
+    @pytest.mark.parametrize(("rtol", "method"), [(2.3e-15, "exact"), (2.2e-15, "taylor"), (1e-28, "taylor")])
+    def test_auto_beyond_doubles_takes_series(self, rtol: float, method: Any) -> None:
+        auto = BRICK.simulate(TIMES, START, rtol=rtol)
+        assert (int(auto.steps) == 0) == (method == "exact")
+        assert np.array_equal(auto.omega, BRICK.simulate(TIMES, START, rtol=rtol, method=method).omega)
+
     def test_a_method_that_cannot_says_which_can(self) -> None:
         call = loads.torque_callback(lambda _t, w, _q: -w)
         refused: tuple[tuple[Any, ...], ...] = (

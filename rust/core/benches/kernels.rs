@@ -235,18 +235,11 @@ fn closed_forms() {
     });
 }
 
-fn runs() {
-    let body = body([1.0, 2.0, 2.5], Vector3::new(0.0, 0.0, 0.3));
-    let mut start = Phase::in_place(&State {
-        attitude: UnitQuaternion::from_euler_angles(0.3, -0.5, 1.1),
-        omega: Vector3::new(0.3, 0.2, 1.1),
-    });
-    start.position = Vector3::new(8.0, 0.0, 0.0);
-    start.velocity = Vector3::new(0.0, 0.35, 0.0);
-    let times: Vec<f64> = (0..=100).map(f64::from).collect();
+/// The loads of the runs, by name.
+fn loads(start: &Phase) -> [(&'static str, Vec<Term>); 7] {
     let matrix = Matrix3::from_diagonal(&Vector3::new(0.02, 0.01, 0.03));
     let torques = [0.1, -0.2, 0.3, 0.1].map(|x| Vector3::new(x, 0.05, -x));
-    let loads: [(&str, Vec<Term>); 7] = [
+    [
         ("free", vec![]),
         (
             "torque",
@@ -303,7 +296,19 @@ fn runs() {
                     .into(),
             ],
         ),
-    ];
+    ]
+}
+
+fn runs() {
+    let body = body([1.0, 2.0, 2.5], Vector3::new(0.0, 0.0, 0.3));
+    let mut start = Phase::in_place(&State {
+        attitude: UnitQuaternion::from_euler_angles(0.3, -0.5, 1.1),
+        omega: Vector3::new(0.3, 0.2, 1.1),
+    });
+    start.position = Vector3::new(8.0, 0.0, 0.0);
+    start.velocity = Vector3::new(0.0, 0.35, 0.0);
+    let times: Vec<f64> = (0..=100).map(f64::from).collect();
+    let loads = loads(&start);
     let task = |method, tolerance| {
         let tolerance = Tolerance::new(tolerance, 0.0).expect("a tolerance");
         Task::free(&body, start.clone(), &times, method, tolerance)

@@ -135,34 +135,25 @@ pub fn dispatch<K: Kernel>(kernel: K) -> K::Output {
         )]
         Level::Avx2 => unsafe { avx2(kernel) },
         #[cfg(all(target_arch = "aarch64", not(any(baseline_alone, test))))]
-        Level::Neon => neon(kernel),
+        Level::Neon => kernel.run::<Double<true>>(),
         _ => baseline(kernel),
     }
 }
 
-// All out of line. The kernel would be compiled again wherever a caller of `dispatch` is. And a kernel that another one calls would
-// become a part of it: in a large function the compiler loses the lanes of sums and puts them together number by number.
+// Out of line: the kernel would be compiled again wherever a caller of `dispatch` is.
 #[inline(never)]
 fn baseline<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<Double<false>>()
 }
 
-#[cfg(all(target_arch = "aarch64", not(any(baseline_alone, test))))]
-#[inline(never)]
-fn neon<K: Kernel>(kernel: K) -> K::Output {
-    kernel.run::<Double<true>>()
-}
-
 #[cfg(all(target_arch = "x86_64", not(any(baseline_alone, test))))]
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt")]
-#[inline(never)]
 fn avx2<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<Double<true>>()
 }
 
 #[cfg(all(target_arch = "x86_64", not(any(baseline_alone, test))))]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw,avx2,fma,bmi1,bmi2,lzcnt")]
-#[inline(never)]
 fn avx512<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<Double<true>>()
 }

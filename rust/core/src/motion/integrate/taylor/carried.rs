@@ -143,11 +143,12 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
         series: &impl Series<Pack<L, R>, B>,
         sum: [Pack<L, R>; 3],
     ) -> [Pack<L, R>; 3] {
-        let Lined(by_states) = dispatch(Next {
-            carried: self,
-            k,
-            series,
-        });
+        let by_states = if R == 1 {
+            self.coefficient(k, series)
+        } else {
+            let carried = self;
+            dispatch(Next { carried, k, series }).0
+        };
         plus(sum, by_states)
     }
 
@@ -318,7 +319,7 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
     }
 }
 
-/// The coefficients of one order: a function of its own, as that of the [sums](super::abreast).
+/// The coefficients of one order of several rows: a function of its own, as that of [formulas](super::formulas).
 struct Next<'a, L, S, const R: usize, const B: usize> {
     carried: &'a mut Carried<Pack<L, R>>,
     k: usize,
@@ -337,12 +338,15 @@ impl<N: Number<Real: Precision>, S: Series<Pack<N, R>, B>, const R: usize, const
 }
 
 impl<L: Number, const R: usize> State<Pack<L, R>> {
+    /// As [`increment`](super::step::increment).
     #[inline(always)]
     fn increment(&self, order: usize, h: Pack<L, R>) -> Pack<L, R> {
-        let mut sum = Pack::new(0.0);
-        for k in (1..=order).rev() {
-            sum = sum.mul_add(h, self.series[k]);
+        let square = h * h;
+        let [mut odd, mut even] = [Pack::new(0.0); 2];
+        for half in (1..=order / 2).rev() {
+            odd = odd.mul_add(square, self.series[2 * half - 1]);
+            even = even.mul_add(square, self.series[2 * half]);
         }
-        sum * h
+        even.mul_add(h, odd) * h
     }
 }

@@ -125,12 +125,17 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
     ) -> [Pack<L, R>; 3] {
         let still = self.still;
         for worked in &mut self.worked {
-            let Lined([x, y, z]) = dispatch(Next {
-                worked,
-                k,
-                series,
-                still,
-            });
+            let [x, y, z] = if R == 1 {
+                worked.coefficient(k, series, still)
+            } else {
+                dispatch(Next {
+                    worked,
+                    k,
+                    series,
+                    still,
+                })
+                .0
+            };
             sum = [sum[0] + x, sum[1] + y, sum[2] + z];
         }
         sum
@@ -188,7 +193,8 @@ fn size<L: Number, const R: usize>(w: &[Pack<L, R>; 3], row: usize) -> f64 {
     (x * x + y * y + z * z).sqrt()
 }
 
-/// The coefficient of order `k`: a function of its own, since loops within that of the steps keep its sums out of registers.
+/// The coefficient of order `k` of several rows: a function of its own, since loops within that of the steps keep its sums out of
+/// registers. One row is slower with it, since what another function may read must stand in memory.
 struct Next<'a, L, S, const R: usize, const B: usize> {
     worked: &'a mut Worked<Pack<L, R>>,
     k: usize,
