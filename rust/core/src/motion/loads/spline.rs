@@ -62,22 +62,26 @@ impl Spline {
         })
     }
 
+    #[inline]
     pub(super) fn knots(&self) -> &[f64] {
         &self.knots
     }
 
     /// The number of the piece around time `t`.
+    #[inline]
     pub(super) fn index(&self, t: f64) -> usize {
         self.knots[1..self.knots.len() - 1].partition_point(|&knot| knot <= t)
     }
 
     /// The cubic around time `t`, `Σ c_k (t − t₀)^k`: its t₀ and coefficients.
+    #[inline]
     pub(super) fn piece(&self, t: f64) -> (f64, &[Vector3<f64>; 4]) {
         let index = self.index(t);
         (self.knots[index], &self.pieces[index])
     }
 
     /// The value at time `t`, and its rate.
+    #[inline]
     pub(super) fn at(&self, t: f64) -> [Vector3<f64>; 2] {
         let (from, [c0, c1, c2, c3]) = self.piece(t);
         let x = t - from;

@@ -244,7 +244,7 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
             );
             let most = exp2(if a < b { a } else { b });
             let h = steps[row];
-            steps[row] = if h > most { most } else { h } + 0.0 * sum;
+            steps[row] = (if h > most { most } else { h }) + 0.0 * sum;
         }
     }
 

@@ -88,12 +88,14 @@ impl Sampled {
     /// assert!((coefficients[3].z - 1.0).abs() < 1e-14);
     /// # Ok::<(), polhode::Error>(())
     /// ```
+    #[inline]
     #[must_use]
     pub fn piece(&self, t: f64) -> (f64, &[Vector3<f64>; 4]) {
         self.spline.piece(t)
     }
 
     /// The torque at time `t`, components in its frame.
+    #[inline]
     #[must_use]
     pub fn at(&self, t: f64) -> Vector3<f64> {
         self.spline.at(t)[0]
@@ -171,6 +173,7 @@ impl Law for Sampled {
         self.check_at(from).and_then(|()| self.check_at(to))
     }
 
+    #[inline]
     fn wrench(&self, _: &Subject, t: f64, phase: &Phase) -> Wrench {
         Wrench::couple(in_body(&self.at(t), self.frame, &phase.attitude))
     }
