@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import inspect
-from dataclasses import fields, is_dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
 from polhode import _core
+from polhode._load_numbers import known_states, numbers, recipes
 from polhode.errors import PolhodeError
 from polhode.results import MotionSensitivity
 from polhode.uncertainty.runs import _exponential, _logarithm, _product, _taken
@@ -19,11 +18,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from polhode._load_numbers import Changed
     from polhode.trajectory import Trajectory
 
     Floats = NDArray[np.float64]
-    Recipe = tuple[str, tuple[Any, ...]]
-    Changed = Callable[[Floats], Recipe]
 
 __all__ = ["by_differences"]
 
@@ -56,15 +54,11 @@ NOISE: Final = 1e-9
 """What may be wrong in a motion, relative to what is large in it."""
 RTOL: Final = 1e-13
 LEAST: Final = 1e-90
+"""The first step that is tried for a number that is zero."""
 FARTHEST: Final = 1e6
+"""How much longer the next step is that is tried, at most."""
 MANY: Final = 1000
-"""The first step that is tried for a number that is zero, and how much longer the next one is, at most;
-and how many times as many steps of integration as the motion itself a neighbour may take."""
-HELD: Final = ("times", "t", "epoch", "target")
-"""Arguments of loads that are not varied."""
-
-AROUND: Final = ("_scheduled", "_anchored")
-"""What is done to a part that was made."""
+"""With a step that is tried, how many times as many steps of integration a motion may take as without."""
 
 
 class _Starts(NamedTuple):
@@ -102,12 +96,12 @@ class _Row:
         self.run, self.place = run, place
         self.body = _taken(run.body, stack, row)
         self.load = _taken(run._acting("sensitivity"), stack, row)
-        self.recipes = _recipes(self.load)
+        self.recipes = recipes(self.load)
         self.omega, self.quaternion = run.omega[place], run.quaternion[place]
         self.states = {name: values[place][0] for name, values in run.states.items()}
         # Those that do not follow from the numbers of the load, and those that can be anything.
         self.given = {name: self.states[name] for name in run.__dict__.get("_given", ())}
-        known = _known(self.load, self.recipes)
+        known = known_states(self.load, self.recipes)
         self.free = {name: values for name, values in self.states.items() if name not in known}
         self.most_steps: int | None = None
         self.tensor = self.body.inertia_about("origin") if run.pivoted else self.body.inertia
@@ -193,7 +187,7 @@ class _Row:
         """By the numbers of each part of the load."""
         for place, recipe in enumerate(self.recipes):
             found: dict[str, Floats] = {}
-            for name, values, changed in _numbers(recipe):
+            for name, values, changed in numbers(recipe):
                 size = float(np.max(np.abs(values)))
                 columns = []
                 for index in np.ndindex(values.shape):
@@ -311,93 +305,3 @@ def _large(ends: Floats) -> Floats:
     large = _together(np.abs(ends).max(axis=(0, 1)))
     large[:3] = 1.0
     return large
-
-
-def _recipes(load: _core.Load | None) -> list[Recipe]:
-    """Give the functions that made the parts of a load with their arguments; of compiled ones nothing."""
-    if load is None:
-        return []
-    try:
-        _, (parts,) = cast("tuple[Any, tuple[list[Recipe]]]", load.__reduce__())
-    except TypeError:
-        return []
-    return list(parts)
-
-
-def _known(load: _core.Load | None, recipes: list[Recipe]) -> set[str]:
-    """Name the states that can be nothing else: the wheels whose speed is given."""
-    names = iter(load.states if load is not None else ())
-    own = [(recipe, next(names, "")) for recipe in recipes if recipe[0] in ("wheel", "slug")]
-    return {name for (kind, given), name in own if kind == "wheel" and given[-1]["speed"] is not None}
-
-
-def _numbers(recipe: Recipe) -> Iterator[tuple[str, Floats, Changed]]:
-    """Give the numbers among the arguments of a part by name, and the recipe with others in their place."""
-    around, recipe = _unwrapped(recipe)
-    if around:
-        for name, values, changed in _numbers(recipe):
-            yield name, values, _wrapped(around, changed)
-        return
-    made_by, arguments = recipe
-    function = getattr(_core, made_by, None)
-    if function is None or made_by in ("callback", "torque_callback", "with_states"):
-        return
-    keywords = dict(arguments[-1]) if arguments and isinstance(arguments[-1], dict) else {}
-    plain = arguments[:-1] if keywords else arguments
-    named = dict(zip(inspect.signature(function).parameters, plain, strict=False)) | keywords
-    for name, value in named.items():
-        if isinstance(value, _core.Load):
-            (inner,) = _recipes(value)
-            for deeper, values, changed in _numbers(inner):
-                yield deeper, values, _with_load(made_by, named, name, changed)
-        elif is_dataclass(value):
-            for deeper, values, placed in _fields_of(value):
-                yield deeper, values, _with(made_by, named, name, placed)
-        elif name not in HELD and isinstance(value, float | np.ndarray):
-            yield name, np.array(value, dtype=float), _with(made_by, named, name, _plain)
-
-
-def _unwrapped(recipe: Recipe) -> tuple[list[Recipe], Recipe]:
-    """Give what was done to a part, the last first and without the part, and the part."""
-    around: list[Recipe] = []
-    while recipe[0] in AROUND:
-        around.append((recipe[0], recipe[1][1:]))
-        recipe = recipe[1][0]
-    return around, recipe
-
-
-def _wrapped(around: list[Recipe], changed: Changed) -> Changed:
-    def placed(values: Floats) -> Recipe:
-        recipe = changed(values)
-        for name, arguments in reversed(around):
-            recipe = name, (recipe, *arguments)
-        return recipe
-
-    return placed
-
-
-def _fields_of(path: Any) -> Iterator[tuple[str, Floats, Callable[[Floats], Any]]]:
-    """Give the numbers of an orbit or of a field along one by name, and how to put others in their place."""
-    for field in fields(path):
-        value = getattr(path, field.name)
-        if is_dataclass(value):
-            for deeper, values, placed in _fields_of(value):
-                yield deeper, values, _within(path, field.name, placed)
-        elif field.name not in HELD and value is not None:
-            yield field.name, np.array(value, dtype=float), _within(path, field.name, _plain)
-
-
-def _plain(values: Floats) -> Any:
-    return values if values.ndim else float(values)
-
-
-def _within(path: Any, name: str, placed: Callable[[Floats], Any]) -> Callable[[Floats], Any]:
-    return lambda values: replace(path, **{name: placed(values)})
-
-
-def _with(made_by: str, named: dict[str, Any], name: str, placed: Callable[[Floats], Any]) -> Changed:
-    return lambda values: (made_by, (named | {name: placed(values)},))
-
-
-def _with_load(made_by: str, named: dict[str, Any], name: str, changed: Changed) -> Changed:
-    return lambda values: (made_by, (named | {name: _core.Load._from_parts([changed(values)])},))

@@ -54,9 +54,8 @@ struct Worked<T> {
 #[repr(align(64))] // see Pack
 pub(super) struct Formulas<T> {
     worked: Vec<Worked<T>>,
-    /// The speed below which a row is still, and the part of it beside torques.
+    /// The speed below which a row is still.
     still: T,
-    beside_torques: T,
 }
 
 impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
@@ -65,19 +64,16 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
         Self {
             worked: Vec::new(),
             still: zero,
-            beside_torques: zero,
         }
     }
 
-    /// Takes those of one row, each with its matrix over the moments, and the rate that other torques make at rest.
+    /// Takes those of one row, each with its matrix over the moments.
     pub(super) fn set<'a>(
         &mut self,
         row: usize,
         formulas: impl Iterator<Item = (&'a Formula<L::Real>, [[L::Real; 3]; 3])>,
-        driven: f64,
     ) {
         self.vacate(row);
-        (self.beside_torques).set(row, L::Real::STILL_BESIDE_TORQUES * driven);
         let mut taken = vec![false; self.worked.len()];
         for (formula, matrix) in formulas {
             let fits = |(i, worked): (usize, &Worked<_>)| {
@@ -109,9 +105,20 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
     #[inline(always)]
     pub(super) fn start(&mut self, fastest: &[f64; R]) {
         for row in 0..R {
-            let (still, least) = (L::Real::STILL * fastest[row], self.beside_torques.get(row));
+            self.still.set(row, L::Real::STILL * fastest[row]);
+        }
+    }
+
+    /// Counts speeds as zero that are too small a part of this acceleration, the one by all else.
+    #[inline(always)]
+    fn beside(&mut self, acceleration: &[Pack<L, R>; 3]) {
+        for row in 0..R {
+            let (still, least) = (
+                self.still.get(row),
+                L::Real::STILL_BESIDE_TORQUES * size(acceleration, row),
+            );
             self.still
-                .set(row, if still > least { still } else { least });
+                .set(row, if least > still { least } else { still });
         }
     }
 
@@ -123,6 +130,9 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
         series: &impl Series<Pack<L, R>, B>,
         mut sum: [Pack<L, R>; 3],
     ) -> [Pack<L, R>; 3] {
+        if k == 0 && !self.worked.is_empty() {
+            self.beside(&sum);
+        }
         let still = self.still;
         for worked in &mut self.worked {
             let [x, y, z] = if R == 1 {

@@ -34,8 +34,8 @@ pub(super) trait Precision: Exact {
     /// The part of the fastest ω below which quadratic damping is left out: with it the error of ω, relative to the fastest, is
     /// its cube, that of derivatives its square.
     const STILL: f64;
-    /// The same, as a part of the rate that torques make which do not vanish with ω: the powers of its reciprocal in a series are
-    /// numbers. Quadratic damping is then as small beside them as its square.
+    /// The same, as a part of ω̇ in units of rates: the powers of its reciprocal in a series are numbers. Quadratic damping is then
+    /// as small beside the other torques as its square.
     const STILL_BESIDE_TORQUES: f64;
     /// The principal frame of what is simulated.
     fn principal(task: &Task<'_>, variables: Self::Variables) -> Principal<Self>;

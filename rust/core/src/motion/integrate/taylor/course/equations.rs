@@ -46,13 +46,12 @@ impl<X: Precision> Course<'_, X> {
         let by_own = torque.component_mul(&inverse).amax();
         let squares = squares.into_iter().chain([by_own]);
         let square = (squares.chain(on_space).chain(timed)).fold(0.0, f64::max);
-        self.driven = square.sqrt();
         let rate = Vector3::from(*omega)
             .amax()
             .max(linear.on_omega.map(X::rounded).amax() * over_moment)
             .max(momentum.amax() * over_moment)
             .max(decay)
-            .max(self.driven);
+            .max(square.sqrt());
         self.unit = power_below(rate);
         self.unit
     }
@@ -96,11 +95,6 @@ impl<X: Precision> Course<'_, X> {
             }
         }
         field
-    }
-
-    /// The rate that torques make which do not vanish with ω, in units of rates.
-    pub(in crate::motion::integrate::taylor) fn driven(&self) -> f64 {
-        self.driven / self.unit
     }
 
     /// The formulas of the segment under way, each with its matrix over the moments in units of rates.

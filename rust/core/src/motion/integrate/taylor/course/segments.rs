@@ -60,8 +60,6 @@ pub(in crate::motion::integrate::taylor) struct Course<'a, X: Precision> {
     switches: Vec<Switch<X>>,
     /// The unit of rates: a power of two near the fastest of the motion.
     pub(super) unit: f64,
-    /// The rate that the torques which do not vanish with ω make.
-    pub(super) driven: f64,
 }
 
 impl<'a, X: Precision> Course<'a, X> {
@@ -105,7 +103,6 @@ impl<'a, X: Precision> Course<'a, X> {
             linear: Linear::default(),
             switches: Vec::new(),
             unit: 1.0,
-            driven: 0.0,
         };
         let state = course.start();
         let mut from = start;

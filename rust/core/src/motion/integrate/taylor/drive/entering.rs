@@ -98,7 +98,7 @@ where
                 self.still[row][n] &= matrix[n] == [L::Real::default(); 3];
             }
         }
-        (self.extras.formulas).set(row, course.formulas(), course.driven());
+        self.extras.formulas.set(row, course.formulas());
         for (packs, direction) in self
             .directions
             .iter_mut()

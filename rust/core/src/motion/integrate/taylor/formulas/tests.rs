@@ -20,7 +20,7 @@ fn products_of_products() {
     let formula = steps.torque(Matrix3::<f64>::identity(), fifth);
     let mut formulas = Formulas::new();
     let matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0]];
-    formulas.set(0, [(&formula, matrix)].into_iter(), 0.0);
+    formulas.set(0, [(&formula, matrix)].into_iter());
     let mut series = Alone::<One, 0>::new();
     series.start(&Coefficient {
         w: [number(1.0), number(0.0), number(2.0)],
@@ -37,7 +37,7 @@ fn products_of_products() {
         series.extend(k, &sums, &[number(rate), number(0.0), number(0.0)]);
     }
     assert!(!formulas.may_reverse(0)); // there is no |ω| in it
-    formulas.set(0, std::iter::empty(), 0.0);
+    formulas.set(0, std::iter::empty());
     let none = formulas.plus_coefficients(0, &series, [number(0.0); 3]);
     assert_eq!(none.map(|x| x.get(0)), [0.0; 3]);
 }
@@ -83,12 +83,8 @@ fn each_row_has_its_own() {
     let (once, twice) = (formula(1.0), formula(2.0));
     let rows = |by: f64| [[by, 0.0, 0.0], [0.0, by, 0.0], [0.0, 0.0, by]];
     let mut formulas = Formulas::<Pack<One, 2>>::new();
-    formulas.set(1, [(&twice, rows(2.0))].into_iter(), 0.0);
-    formulas.set(
-        0,
-        [(&once, rows(1.0)), (&twice, rows(2.0))].into_iter(),
-        0.0,
-    );
+    formulas.set(1, [(&twice, rows(2.0))].into_iter());
+    formulas.set(0, [(&once, rows(1.0)), (&twice, rows(2.0))].into_iter());
     let matrices = |row: usize| -> Vec<f64> {
         let all = formulas.worked.iter();
         all.map(|worked| worked.matrix[2][2].get(row)).collect()
