@@ -99,6 +99,7 @@ def calls() -> dict[str, Callable[[], object]]:
         "difference": lambda: bodies - bodies.scaled(1.0, 0.1),
         "combined": bodies.combined,
         "principal_about": lambda: bodies.principal_about((1.0, 2.0, 3.0)),
+        "pickled": lambda: pickle.dumps(bodies),
         "unpickled": lambda: pickle.loads(pickled),
         "provenance": lambda: bodies.provenance,
         "equimomental": bodies.equimomental_particles,

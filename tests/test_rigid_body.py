@@ -254,6 +254,24 @@ class TestCopies:
             assert np.array_equal(again.principal.axes, body.principal.axes)
             assert np.array_equal(again.principal_moments, body.principal_moments)
 
+    @pytest.mark.parametrize("protocol", (2, pickle.HIGHEST_PROTOCOL))
+    @pytest.mark.parametrize("rows", (30_840, 30_842, 100_000))
+    def test_a_large_stack_is_pickled_in_slabs_with_every_bit(self, rows: int, protocol: int) -> None:
+        """A slab has 2²⁰ numbers, 34 a body: the first stack is the largest that is not taken apart."""
+        rng = np.random.default_rng(rows)
+        moments = np.sort(rng.uniform(1.0, 1.5, (2, rows // 2, 3)), axis=-1)
+        bodies = RigidBody.from_principal(rng.uniform(1.0, 2.0, (2, rows // 2)), moments)
+        numbers = bodies.__reduce__()[1][0]
+        assert isinstance(numbers, np.ndarray) == (rows == 30_840)
+        assert pickle.loads(pickle.dumps(bodies, protocol=protocol)) == bodies
+        if protocol == 2:
+            motions = bodies.gyrostat(rng.normal(size=3)).free_motion(rng.normal(size=(2, rows // 2, 3)))
+            free = bodies.free_motion(motions.omega, motions.quaternion)
+            for motion in (motions, free):
+                again = pickle.loads(pickle.dumps(motion))
+                assert np.array_equal(again.omega, motion.omega)
+                assert np.array_equal(again.quaternion, motion.quaternion)
+
     def test_copy_and_deepcopy(self) -> None:
         body = three_bodies()
         assert copy.copy(body) == body

@@ -37,6 +37,7 @@ __all__ = [
     "Region",
     "RigidBody",
     "Uncertain",
+    "_Slabs",
     "__version__",
     "angular_velocity_from_euler_rates",
     "annulus",
@@ -552,6 +553,9 @@ class RigidBody:
 
 @final
 class Region: ...
+
+@final
+class _Slabs: ...
 
 @final
 class MassAccumulator:

@@ -55,7 +55,7 @@ fn times_that_do_not_run_one_way_are_an_error_of_every_method() {
             let task = task(&body, start(), times, method);
             let run = free(&task);
             assert!(matches!(run.end, End::Failed(_)), "{method:?} {times:?}");
-            assert_eq!(run.samples.len(), times.len());
+            assert_eq!(run.samples.len(), times.len().min(1));
             assert!(run.into_result().is_err());
             let series = solve_one(&task, &[], &mut go_on);
             assert!(matches!(series.end, End::Failed(_)), "{times:?}");

@@ -282,7 +282,8 @@ fn copy<'py>(
 }
 
 /// `from:to`.
-fn slice(py: Python<'_>, from: usize, to: usize) -> PyResult<Bound<'_, PySlice>> {
+/// From one place to before another.
+pub(crate) fn slice(py: Python<'_>, from: usize, to: usize) -> PyResult<Bound<'_, PySlice>> {
     Ok(PySlice::new(
         py,
         isize::try_from(from)?,

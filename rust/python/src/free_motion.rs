@@ -12,7 +12,7 @@ use polhode::motion::free::FreeMotion;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arrays::{read, write_of};
+use crate::arrays::{in_slabs, read, write_of};
 use crate::attitudes::read_attitude;
 use crate::body::PyRigidBody;
 use crate::closed_form::trajectory;
@@ -238,7 +238,8 @@ impl PyFreeMotion {
         let restore = py.get_type::<Self>().getattr("_from_start")?;
         let body = self.body.bind(py).clone().into_any();
         let uncertain = self.uncertain_start(py)?.into_any();
-        let parts = [body, self.omega(py)?, self.quaternion(py)?, uncertain];
+        let [omega, quaternion] = [self.omega(py)?, self.quaternion(py)?].map(in_slabs);
+        let parts = [body, omega?, quaternion?, uncertain];
         Ok((restore, PyTuple::new(py, parts)?))
     }
 

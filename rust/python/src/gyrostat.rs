@@ -10,7 +10,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arrays::{read, write, write_of};
+use crate::arrays::{in_slabs, read, write, write_of};
 use crate::body::PyRigidBody;
 use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
@@ -218,7 +218,7 @@ impl PyGyrostat {
         let restore = py.get_type::<Self>().getattr("_from_parts")?;
         let body = self.body.bind(py).clone().into_any();
         let wheels = self.wheels.bind(py).clone().into_any();
-        let given = write(py, &self.given)?.into_any();
+        let given = in_slabs(write(py, &self.given)?.into_any())?;
         Ok((restore, PyTuple::new(py, [body, given, wheels])?))
     }
 

@@ -82,7 +82,7 @@ mod _core {
     #[pymodule_export]
     use crate::accumulator::PyMassAccumulator;
     #[pymodule_export]
-    use crate::arrays::real_numbers;
+    use crate::arrays::{Slabs, real_numbers};
     #[pymodule_export]
     use crate::body::PyRigidBody;
     #[pymodule_export]

@@ -53,10 +53,7 @@ fn stacked<T: Item>(
     shape: &[usize],
     numbers: &[f64],
 ) -> PyResult<Stack<T>> {
-    let depth = (shape.len().checked_sub(T::TAIL.len()))
-        .filter(|&depth| shape[depth..] == *T::TAIL)
-        .ok_or_else(|| wrong_shape(name, T::TAIL, shape))?;
-    let shape = shape[..depth].to_vec();
+    let shape = leading::<T>(name, shape)?;
     let mut rows = memory::vector(name, &shape, 0)?;
     let mut beat = Beat::new(py);
     for block in numbers.chunks(BLOCK * size::<T>()) {
@@ -64,6 +61,14 @@ fn stacked<T: Item>(
         rows.extend(block.chunks_exact(size::<T>()).map(T::read));
     }
     Ok(Stack { shape, rows })
+}
+
+/// The shape of the stack of items whose array has this one.
+fn leading<T: Item>(name: &str, shape: &[usize]) -> PyResult<Vec<usize>> {
+    let depth = (shape.len().checked_sub(T::TAIL.len()))
+        .filter(|&depth| shape[depth..] == *T::TAIL)
+        .ok_or_else(|| wrong_shape(name, T::TAIL, shape))?;
+    Ok(shape[..depth].to_vec())
 }
 
 /// The numbers of a list or tuple that holds floats and integers alone, as NumPy would read them and much sooner.
@@ -238,6 +243,27 @@ pub(crate) fn read_indices<const N: usize>(
         rows.push(indices);
     }
     Ok(Ok(rows))
+}
+
+/// `f` of each item of an array, as [`read`] would give it but without a copy of all; names the row that fails.
+pub(crate) fn try_items<T: Item, R>(
+    object: &Bound<'_, PyAny>,
+    name: &str,
+    f: impl Fn(&T) -> Result<R, polhode::Error>,
+) -> PyResult<Stack<R>> {
+    let py = object.py();
+    let array = floats(object, name)?;
+    let shape = leading::<T>(name, array.shape())?;
+    let mut rows = memory::vector("result", &shape, 0)?;
+    let mut beat = Beat::new(py);
+    for (row, numbers) in array.as_slice()?.chunks_exact(size::<T>()).enumerate() {
+        if row % BLOCK == 0 {
+            beat.mark()?;
+        }
+        let made = f(&T::read(numbers));
+        rows.push(made.map_err(|error| at_row(&shape, row, &to_py(py, &error), py))?);
+    }
+    Ok(Stack { shape, rows })
 }
 
 /// `f` of each row, naming the row that fails.

@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use super::PyGyrostat;
-use crate::arrays::{read, write_numbers_of, write_of, write_words_of};
+use crate::arrays::{in_slabs, read, write_numbers_of, write_of, write_words_of};
 use crate::attitudes::read_attitude;
 use crate::body::PyRigidBody;
 use crate::closed_form::trajectory;
@@ -275,7 +275,8 @@ impl PyGyrostatMotion {
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let restore = py.get_type::<Self>().getattr("_from_start")?;
         let gyrostat = self.gyrostat.bind(py).clone().into_any();
-        let parts = [gyrostat, self.omega(py)?, self.quaternion(py)?];
+        let [omega, quaternion] = [self.omega(py)?, self.quaternion(py)?].map(in_slabs);
+        let parts = [gyrostat, omega?, quaternion?];
         Ok((restore, PyTuple::new(py, parts)?))
     }
 

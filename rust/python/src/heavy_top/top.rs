@@ -8,7 +8,7 @@ use polhode::principal::TOP_RTOL;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arrays::{read, write, write_of};
+use crate::arrays::{in_slabs, read, write, write_of};
 use crate::attitudes::read_attitude_exactly;
 use crate::body::PyRigidBody;
 use crate::closed_form::trajectory;
@@ -296,9 +296,9 @@ impl PyHeavyTop {
         let rtol = self.rtol.into_pyobject(py)?.into_any();
         let parts = [
             body,
-            self.omega(py)?,
-            self.quaternion(py)?,
-            self.gravity(py)?,
+            in_slabs(self.omega(py)?)?,
+            in_slabs(self.quaternion(py)?)?,
+            in_slabs(self.gravity(py)?)?,
             rtol,
             self.uncertain_start(py)?.into_any(),
         ];

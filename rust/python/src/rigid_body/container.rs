@@ -9,7 +9,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyIterator, PyList, PyTuple};
 
-use crate::arrays::{read, write_of};
+use crate::arrays::{all_in_slabs, floats, in_slabs, try_items, write_of};
 use crate::body::PyRigidBody;
 use crate::hints::no_attribute;
 use crate::indexing::{picked_by, to_index};
@@ -107,8 +107,9 @@ impl PyRigidBody {
         py: Python<'py>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let restore = py.get_type::<Self>().getattr("_from_numbers")?;
-        let numbers = write_of(py, &self.bodies, RigidBody::to_array)?.into_any();
+        let numbers = in_slabs(write_of(py, &self.bodies, RigidBody::to_array)?.into_any())?;
         let doubts = self.stored_doubts(py)?;
+        doubts.as_ref().map_or(Ok(()), all_in_slabs)?;
         let state = match self.stored_figures(py)? {
             None => match doubts {
                 None => (numbers,).into_pyobject(py)?,
@@ -124,18 +125,18 @@ impl PyRigidBody {
     #[staticmethod]
     #[pyo3(signature = (numbers, doubts=None, figures=None))]
     fn _from_numbers(
-        py: Python<'_>,
         numbers: &Bound<'_, PyAny>,
         doubts: Option<&Bound<'_, PyDict>>,
         figures: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let all = read::<[f64; 34]>(numbers, "numbers").or_else(|fault| {
-            let before = read::<[f64; 33]>(numbers, "numbers").map_err(|_| fault)?;
-            before.map(py, |row| {
-                std::array::from_fn(|k| row.get(k).copied().unwrap_or(0.0))
-            })
-        })?;
-        let bodies = Self::from_numbers(&all, py)?;
+        let array = floats(numbers, "numbers")?;
+        let bodies = Self::from(if array.shape().last() == Some(&33) {
+            try_items(&array, "numbers", |row: &[f64; 33]| {
+                RigidBody::from_array(&std::array::from_fn(|k| row.get(k).copied().unwrap_or(0.0)))
+            })?
+        } else {
+            try_items(&array, "numbers", RigidBody::from_array)?
+        });
         let bodies = doubts.map_or(Ok(bodies.clone()), |doubts| bodies.with_doubts(doubts))?;
         match figures {
             None => Ok(bodies),

@@ -276,7 +276,7 @@ fn put_states(
     fields.set_item(intern!(py, "states"), states(py, slots, shape, &rows)?)
 }
 
-/// The states of the load by name, each of shape (..., T, k); not numbers for a row that was not begun.
+/// The states of the load by name, each of shape (..., T, k); not numbers where a row did not come to.
 fn states<'py>(
     py: Python<'py>,
     slots: &[Slot],
@@ -288,22 +288,20 @@ fn states<'py>(
     for slot in slots {
         let shape = [shape, &[slot.count]].concat();
         let mut numbers = Numbers::of::<f64>(py, "result", &shape)?;
-        for row in rows {
-            match row {
-                Some(states) => numbers.put(*states, |phase, out| {
-                    out.extend_from_slice(slot.of(&phase.own));
-                })?,
-                None => numbers.put(0..times, |_, out| {
-                    out.extend(std::iter::repeat_n(f64::NAN, slot.count));
-                })?,
-            }
+        for states in rows.iter().copied().map(Option::unwrap_or_default) {
+            numbers.put(states, |phase, out| {
+                out.extend_from_slice(slot.of(&phase.own));
+            })?;
+            numbers.put(states.len()..times, |_, out| {
+                out.extend(std::iter::repeat_n(f64::NAN, slot.count));
+            })?;
         }
         named.set_item(&slot.name, numbers.finish::<f64>(&shape)?)?;
     }
     Ok(named)
 }
 
-/// One item for each state of each row; not numbers for a row that was not begun.
+/// One item for each state of each row; not numbers where it did not come to.
 fn array<'a, 'py, T: Item>(
     py: Python<'py>,
     shape: &[usize],
@@ -313,11 +311,9 @@ fn array<'a, 'py, T: Item>(
     let times = shape.last().copied().unwrap_or(0);
     let unknown = Phase::nan();
     let mut numbers = Numbers::of::<T>(py, "result", shape)?;
-    for row in rows {
-        match row {
-            Some(states) => numbers.put(states, |phase, out| of(phase).write(out))?,
-            None => numbers.put(0..times, |_, out| of(&unknown).write(out))?,
-        }
+    for states in rows.map(Option::unwrap_or_default) {
+        numbers.put(states, |phase, out| of(phase).write(out))?;
+        numbers.put(states.len()..times, |_, out| of(&unknown).write(out))?;
     }
     Ok(numbers.finish::<T>(shape)?.into_any())
 }

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use numpy::PyArrayDyn;
 use polhode::uncertainty::{Rotated, Scaled, Translated};
-use polhode::{Error, RigidBody};
+use polhode::RigidBody;
 use pyo3::basic::CompareOp;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -364,13 +364,5 @@ impl PyRigidBody {
         other: &Stack<T>,
     ) -> PyResult<Broadcast<'a, 2>> {
         Broadcast::of(["body", name], [&self.bodies.shape, &other.shape])
-    }
-
-    /// Bodies from their numbers.
-    pub(super) fn from_numbers(numbers: &Stack<[f64; 34]>, py: Python<'_>) -> PyResult<Self> {
-        crate::arrays::try_rows(py, numbers, |row: &[f64; 34]| -> Result<RigidBody, Error> {
-            RigidBody::from_array(row)
-        })
-        .map(Self::from)
     }
 }

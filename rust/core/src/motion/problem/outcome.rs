@@ -30,7 +30,7 @@ pub enum End<E> {
 /// What a run gave.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run<E> {
-    /// The states at the times; not numbers after the end.
+    /// The states at the times that it came to, in their order: as many as there are times where it is complete.
     pub samples: Vec<Phase>,
     /// The passages through zero, in the order of the run.
     pub crossings: Vec<Crossing>,
@@ -47,10 +47,9 @@ pub struct Run<E> {
 impl<E> Run<E> {
     /// One that has come no further than the first time.
     pub(crate) fn at_start(task: &Task<'_>, end: End<E>) -> Self {
-        let mut samples = vec![task.initial.unknown(); task.times.len()];
-        if let Some(first) = samples.first_mut() {
-            *first = task.initial.clone();
-        }
+        // Room for all of them, but none is written before it is known: to fill many pages takes longer than Ctrl-C may.
+        let mut samples = Vec::with_capacity(task.times.len());
+        samples.extend(task.times.first().map(|_| task.initial.clone()));
         Self {
             samples,
             crossings: Vec::new(),

@@ -39,18 +39,15 @@ pub(super) fn solve<E: From<Error>>(
         let times = &elapsed[from..count.min(from + PATIENCE)];
         let (attitudes, omegas) = (&mut attitudes[..times.len()], &mut omegas[..times.len()]);
         closed.sample(times, attitudes, omegas);
-        let samples = run.samples[from..].iter_mut();
-        for (((sample, &t), &[x, y, z, w]), &omega) in
-            samples.zip(times).zip(&*attitudes).zip(&*omegas)
-        {
-            *sample = closed.placed(
-                t,
-                State {
+        let states = times.iter().zip(&*attitudes).zip(&*omegas);
+        run.samples
+            .extend(states.map(|((&t, &[x, y, z, w]), &omega)| {
+                let state = State {
                     attitude: UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)),
                     omega: Vector3::from(omega),
-                },
-            );
-        }
+                };
+                closed.placed(t, state)
+            }));
         let last = from + times.len() - 1;
         (run.time, run.phase) = (task.times[last], run.samples[last].clone());
         if watch(last as f64 / count as f64).is_break() {

@@ -34,7 +34,6 @@ impl<E> Run<E> {
         let (start, end) = (task.times[0], bounds[bounds.len() - 1]);
         let over_limit = |state| load.over_limit(state, start, &task.initial);
         let mut lookout = Lookout::new(events, start, &task.initial, end > start, &over_limit)?;
-        let mut next = 1;
         let mut carry = Carry::default();
         for pair in bounds.windows(2) {
             let [mut from, to] = [pair[0], pair[1]];
@@ -59,7 +58,6 @@ impl<E> Run<E> {
                     &span,
                     &mut *stepper,
                     flip.is_none(),
-                    &mut next,
                     &mut lookout,
                     &mut watch,
                 );
@@ -145,14 +143,12 @@ impl<E> Run<E> {
     }
 
     /// Steps to the end of a span, or to where the law of the load changes if that `may_flip`, or where the run ends.
-    #[expect(clippy::too_many_arguments, reason = "what a run is on its way with")]
     fn span(
         &mut self,
         task: &Task<'_>,
         span: &Span,
         stepper: &mut dyn Stepper<Error = E>,
         may_flip: bool,
-        next: &mut usize,
         lookout: &mut Lookout<'_, E>,
         watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Reached<E>, E>
@@ -196,17 +192,16 @@ impl<E> Run<E> {
                     None if end == reached => (end, stepper.phase()),
                     None => (end, stepper.within(end)?),
                 };
-                while let Some(elapsed) = task.times.get(*next).map(|t| t - from)
-                    && elapsed.abs() <= last.abs()
+                while let Some(&time) = task.times.get(self.samples.len())
+                    && (time - from).abs() <= last.abs()
                 {
-                    let sample = if elapsed == last {
+                    let sample = if time - from == last {
                         phase.clone()
                     } else {
-                        stepper.within(elapsed)?
+                        stepper.within(time - from)?
                     };
-                    self.reach(task.times[*next], sample.clone())?;
-                    self.samples[*next] = sample;
-                    *next += 1;
+                    self.reach(time, sample.clone())?;
+                    self.samples.push(sample);
                 }
                 self.reach(from + last, phase)?;
                 if has_ended {

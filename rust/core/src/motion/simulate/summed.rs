@@ -66,13 +66,14 @@ pub(super) fn solve<E: From<Error>>(
     run.crossings = lookout.crossings;
     if let Some((elapsed, phase, end)) = halt {
         // The last step went further.
-        for (sample, t) in run.samples.iter_mut().zip(task.times) {
-            let since = t - start;
-            if since == elapsed && elapsed != 0.0 {
-                *sample = phase.clone();
-            } else if since.abs() > elapsed.abs() {
-                *sample = phase.unknown();
-            }
+        let is_beyond = |t: &f64| (t - start).abs() > elapsed.abs();
+        run.samples
+            .truncate(task.times.partition_point(|t| !is_beyond(t)));
+        if let Some(last) = run.samples.len().checked_sub(1)
+            && last > 0
+            && task.times[last] - start == elapsed
+        {
+            run.samples[last] = phase.clone();
         }
         (run.time, run.phase, run.end) = (start + elapsed, phase, end);
     }

@@ -29,7 +29,7 @@ pub(super) fn job<'a, X: Precision<Variables = Fixed>>(
         run.end = End::Failed(error);
         return None;
     }
-    if run.samples.len() == 1 {
+    if task.times.len() == 1 {
         run.end = End::Complete;
         return None;
     }

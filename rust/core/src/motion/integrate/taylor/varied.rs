@@ -31,7 +31,7 @@ pub(in crate::motion::integrate) fn run_varied(
     let start = course.start();
     let own = course.own_reported(&start, &course.own_at_start());
     tell(0, &course.in_body(&start), &own);
-    if run.samples.len() == 1 {
+    if task.times.len() == 1 {
         return Ok(());
     }
     let mut next = 1;

@@ -48,6 +48,10 @@ impl<X: Precision> Course<'_, X> {
         self.task.times[output]
     }
 
+    pub(in crate::motion::integrate::taylor) fn is_last(&self, output: usize) -> bool {
+        output + 1 == self.task.times.len()
+    }
+
     pub(in crate::motion::integrate::taylor) fn last_time(&self) -> f64 {
         self.task.times[self.task.times.len() - 1]
     }

@@ -45,7 +45,6 @@ where
         self.fastest[row] = 0.0;
         self.leads[row] = Some(Lead {
             job,
-            next: 1,
             stop: Stop::Output,
             steps: 0,
             flips_at_once: 0,
@@ -108,7 +107,8 @@ where
                 packs[i].put(row, direction[i]);
             }
         }
-        (self.stop[row], lead.stop) = next_stop(course, lead.next);
+        let next = lead.job.run.samples.len();
+        (self.stop[row], lead.stop) = next_stop(course, next);
         self.hold();
     }
 

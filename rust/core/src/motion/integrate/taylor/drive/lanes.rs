@@ -53,8 +53,6 @@ pub(super) enum Landing {
 /// A motion under way.
 pub(super) struct Lead<'a, X: Precision> {
     pub(super) job: Job<'a, X>,
-    /// The next output.
-    pub(super) next: usize,
     pub(super) stop: Stop,
     pub(super) steps: u64,
     /// Changes of the law without a step between them.

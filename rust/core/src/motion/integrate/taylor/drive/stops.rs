@@ -63,30 +63,30 @@ where
         let run = &mut *lead.job.run;
         if !phase.is_finite() {
             // It came to the last state that is one.
-            let before = lead.next - 1;
+            let before = run.samples.len() - 1;
             run.effort = effort(lead.steps);
             run.time = lead.job.course.time_of(before);
             run.phase = run.samples[before].clone();
-            let time = lead.job.course.time_of(lead.next);
+            let time = lead.job.course.time_of(before + 1);
             run.end = End::Failed(Error::Motion(MotionFault::NotFiniteMotion { time }));
             self.leads[row] = None;
             return;
         }
-        run.samples[lead.next] = phase.clone();
+        let number = run.samples.len();
+        run.samples.push(phase.clone());
         if let Some(tell) = &mut lead.job.tell {
             let course = &lead.job.course;
             let own = course.own_reported(state, &besides.own);
-            tell(lead.next, &course.in_body(state), &own);
+            tell(number, &course.in_body(state), &own);
         }
-        lead.next += 1;
-        if lead.next == run.samples.len() {
+        if lead.job.course.is_last(number) {
             run.effort = effort(lead.steps + 1);
             run.time = lead.job.course.last_time();
             run.phase = phase;
             run.end = End::Complete;
             self.leads[row] = None;
         } else {
-            (self.stop[row], lead.stop) = next_stop(&lead.job.course, lead.next);
+            (self.stop[row], lead.stop) = next_stop(&lead.job.course, number + 1);
         }
     }
 
