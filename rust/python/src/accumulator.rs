@@ -12,7 +12,8 @@ use crate::arrays::write;
 use crate::body::PyRigidBody;
 use crate::elsewhere::{handed_over, is_any};
 use crate::errors::to_py;
-use crate::particles::{ParticleArrays, watched};
+use crate::interrupt::watched;
+use crate::particles::ParticleArrays;
 use crate::stack::Stack;
 
 /// Sum of particles in chunks: for files larger than memory, for streams, and for many machines.

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread::{self, ThreadId};
 use std::time::{Duration, Instant};
 
+use polhode::parallel::Watch;
 use pyo3::prelude::*;
 
 /// How often Python is asked for signals, in milliseconds: fast enough to feel immediate, rare enough to cost nothing.
@@ -176,4 +177,15 @@ impl Interrupt {
         }
         Ok(())
     }
+}
+
+/// Work that Ctrl-C may end, without the interpreter lock.
+pub(crate) fn watched<R: Send>(
+    py: Python<'_>,
+    work: impl FnOnce(&mut Watch<'_>) -> R + Send,
+) -> PyResult<R> {
+    let interrupt = Interrupt::new(None);
+    let result = py.detach(|| work(&mut |_| interrupt.poll(None)));
+    interrupt.finish(py, false)?;
+    Ok(result)
 }

@@ -9,7 +9,7 @@ use polhode::motion::loads::{Oblate, Path};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-use crate::arrays::{list_floats, read, samples, series, try_rows, write, write_of};
+use crate::arrays::{list_floats, read, samples, try_rows, try_series, write, write_of};
 use crate::errors::to_py;
 use crate::interrupt::Beat;
 use crate::memory;
@@ -44,7 +44,9 @@ impl Orbits {
         if orbit.hasattr("times")? {
             let (times, values) =
                 samples([&part("times")?, &part("position")?], ["t", "position"])?;
-            let paths = try_rows(py, &series(&values), |row| Path::sampled(&times, row))?;
+            let paths = try_series(py, &values, |row, watch| {
+                Path::sampled_watched(&times, row, watch)
+            })?;
             return Ok(Self { mu, paths });
         }
         let epoch: Option<f64> = part("epoch")?.extract()?;
@@ -197,7 +199,9 @@ pub(crate) fn sampled_states<'py>(
     t: &Bound<'py, PyAny>,
 ) -> PyResult<(Floats<'py>, Floats<'py>)> {
     let (times, values) = samples([times, position], ["t", "position"])?;
-    let paths = try_rows(py, &series(&values), |row| Path::sampled(&times, row))?;
+    let paths = try_series(py, &values, |row, watch| {
+        Path::sampled_watched(&times, row, watch)
+    })?;
     let asked = list_floats(t, "t", "n", &[])?;
     let asked = asked.as_slice()?;
     // All paths have the same times.

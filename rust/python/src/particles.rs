@@ -1,12 +1,11 @@
 //! Particles in arrays: shapes and layout, without copying what is C-ordered float64.
 
 use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
-use polhode::mass::particles::{Particles, Watch};
+use polhode::mass::particles::Particles;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::arrays::{as_array, contiguous, list_floats};
-use crate::interrupt::Interrupt;
 
 /// Arrays of masses (..., n) and positions (..., n, 3).
 pub(crate) struct ParticleArrays<'py> {
@@ -101,15 +100,4 @@ pub(crate) fn read_labels<'py>(
         )));
     }
     contiguous(&array, "labels", "int64")?.extract()
-}
-
-/// Work that Ctrl-C may end, without the interpreter lock.
-pub(crate) fn watched<R: Send>(
-    py: Python<'_>,
-    work: impl FnOnce(&mut Watch<'_>) -> R + Send,
-) -> PyResult<R> {
-    let interrupt = Interrupt::new(None);
-    let result = py.detach(|| work(&mut |_| interrupt.poll(None)));
-    interrupt.finish(py, false)?;
-    Ok(result)
 }

@@ -8,8 +8,8 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Argument, Item, read, read_or};
 use crate::errors::to_py;
+use crate::interrupt::watched;
 use crate::meshes::{read_mesh, with_mesh};
-use crate::particles::watched;
 use crate::shape::tuple;
 use crate::stack::Stack;
 

@@ -11,7 +11,7 @@ pub(crate) use reading::{
     Argument, floats, list_floats, read, read_indices, read_list, read_or, real_numbers, try_items,
     try_rows,
 };
-pub(crate) use series::{samples, series};
+pub(crate) use series::{samples, try_series};
 pub(crate) use slabs::{Slabs, all_in_slabs, in_slabs};
 pub(crate) use writing::{
     Numbers, write, write_any_of, write_numbers, write_numbers_of, write_of, write_words_of, zeros,

@@ -1,10 +1,16 @@
 //! Vectors known at some times.
 
+use std::ops::ControlFlow;
+
 use nalgebra::Vector3;
+use polhode::Error;
+use polhode::parallel::Watch;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::reading::{list_floats, read_list};
+use crate::errors::{at_row, to_py};
+use crate::interrupt::watched;
 use crate::stack::Stack;
 
 /// Times, and the vectors of shape (..., n, 3) that belong to them; their names are those of the arguments.
@@ -24,14 +30,26 @@ pub(crate) fn samples(
     Ok((times, values))
 }
 
-/// Vectors of shape (..., n, 3) as a stack of series.
-pub(crate) fn series(values: &Stack<Vector3<f64>>) -> Stack<&[Vector3<f64>]> {
-    let (count, leading) = match values.shape.split_last() {
+/// `f` of each series of vectors of shape (..., n, 3), while other threads of Python go on; names the series that fails.
+pub(crate) fn try_series<R: Send>(
+    py: Python<'_>,
+    values: &Stack<Vector3<f64>>,
+    f: impl Fn(&[Vector3<f64>], &mut Watch<'_>) -> Result<R, Error> + Sync,
+) -> PyResult<Stack<R>> {
+    let (count, shape) = match values.shape.split_last() {
         Some((&count, leading)) => (count, leading.to_vec()),
         None => (0, Vec::new()),
     };
-    Stack {
-        shape: leading,
-        rows: values.rows.chunks(count.max(1)).collect(),
+    let rows: Result<_, (usize, Error)> = watched(py, |watch| {
+        let all = values.rows.chunks(count.max(1)).enumerate();
+        all.map(|(row, series)| match watch(0.0) {
+            ControlFlow::Continue(()) => f(series, watch).map_err(|error| (row, error)),
+            ControlFlow::Break(()) => Err((row, Error::Stopped)),
+        })
+        .collect()
+    })?;
+    match rows {
+        Ok(rows) => Ok(Stack { shape, rows }),
+        Err((row, error)) => Err(at_row(&shape, row, &to_py(py, &error), py)),
     }
 }

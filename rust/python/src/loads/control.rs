@@ -14,6 +14,7 @@ use super::terms::matrices;
 use crate::arrays::{list_floats, read, write};
 use crate::attitudes::read_attitude;
 use crate::errors::to_py;
+use crate::interrupt::watched;
 use crate::orbits::Orbits;
 use crate::stack::{Broadcast, Stack};
 
@@ -131,7 +132,9 @@ fn aims(
                 crate::shape::tuple(&[&samples.shape[..], &[4]].concat()),
             )));
         }
-        let aim = Aim::sampled(times, &samples.rows);
+        let aim = watched(py, |watch| {
+            Aim::sampled_watched(times, &samples.rows, watch)
+        })?;
         kept.set_item("times", times.to_vec())?;
         kept.set_item("target", as_given(target)?)?;
         return aim.map(Stack::one).map_err(|error| to_py(py, &error));

@@ -10,7 +10,7 @@ use super::load::PyLoad;
 use super::made::made;
 use super::part::Acts;
 use super::recipe::recipe;
-use crate::arrays::{read, samples, series, try_rows, write};
+use crate::arrays::{read, samples, try_rows, try_series, write};
 use crate::orbits::Orbits;
 use crate::stack::{Broadcast, Stack};
 
@@ -200,7 +200,7 @@ fn fields(
         return try_rows(py, &fields, MagneticField::uniform);
     };
     let (times, values) = samples([times, field], ["times", "field"])?;
-    try_rows(py, &series(&values), |series| {
-        MagneticField::sampled(&times, series)
+    try_series(py, &values, |series, watch| {
+        MagneticField::sampled_watched(&times, series, watch)
     })
 }

@@ -9,7 +9,7 @@ use super::load::{PyLoad, schedule_load};
 use super::made::made;
 use super::part::Acts;
 use super::recipe::recipe;
-use crate::arrays::{as_array, read, samples, series, try_rows, write};
+use crate::arrays::{as_array, read, samples, try_rows, try_series, write};
 use crate::errors::to_py;
 use crate::kinematics::parse_frame;
 use crate::stack::{Broadcast, Stack};
@@ -214,9 +214,8 @@ pub(crate) fn sampled(
 ) -> PyResult<PyLoad> {
     let axes = parse_frame(frame)?;
     let (times, values) = samples([t, torque], ["t", "torque"])?;
-    let series = series(&values);
-    let terms = try_rows(py, &series, |series| {
-        Sampled::new(&times, series, axes).map(Term::Sampled)
+    let terms = try_series(py, &values, |series, watch| {
+        Sampled::new_watched(&times, series, axes, watch).map(Term::Sampled)
     })?;
     let arguments = (
         numpy::PyArray1::from_vec(py, times),

@@ -1,5 +1,7 @@
 //! Bodies of particles and of voxels.
 
+use std::ops::ControlFlow;
+
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use polhode::Error;
 use polhode::error::BodyFault;
@@ -14,7 +16,8 @@ use crate::body::PyRigidBody;
 use crate::elsewhere::{handed_over, is_any};
 use crate::errors::{at_row, to_py};
 use crate::figure::{Outline, alone};
-use crate::particles::{ParticleArrays, read_labels, watched};
+use crate::interrupt::watched;
+use crate::particles::{ParticleArrays, read_labels};
 use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
 use crate::uncertain::{Quantity, carried, holds_uncertain, is_uncertain, quantity_list};
@@ -289,7 +292,14 @@ fn of_voxels<T: Voxel>(
             origin,
         });
         (grids.enumerate())
-            .map(|(row, grid)| voxels(&grid, watch).map_err(|error| (row, error)))
+            .map(|(row, grid)| {
+                // A small grid is done before it asks.
+                let made = match watch(0.0) {
+                    ControlFlow::Continue(()) => voxels(&grid, watch),
+                    ControlFlow::Break(()) => Err(Error::Stopped),
+                };
+                made.map_err(|error| (row, error))
+            })
             .collect()
     })?;
     stack(py, leading.to_vec(), bodies)

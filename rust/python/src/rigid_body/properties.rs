@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 use numpy::PyArrayDyn;
-use polhode::uncertainty::{Rotated, Scaled, Translated};
 use polhode::RigidBody;
+use polhode::uncertainty::{Rotated, Scaled, Translated};
 use pyo3::basic::CompareOp;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;

@@ -1,11 +1,14 @@
 //! What a feedback turns the body toward.
 
+use std::ops::ControlFlow;
+
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::path::Path;
 use super::spline::Spline;
 use crate::error::{Error, all_finite, finite};
 use crate::motion::attitude::components;
+use crate::numerics::threads::{Watch, each_watched};
 
 /// From one sample of a target to the next it turns by less than a quarter of a turn: `cos(π/4)`.
 const QUARTER: f64 = std::f64::consts::FRAC_1_SQRT_2;
@@ -15,6 +18,7 @@ const QUARTER: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// # Examples
 ///
 /// ```
+/// use std::ops::ControlFlow;
 /// use std::sync::Arc;
 /// use polhode::motion::loads::{Aim, Feedback, Path, Switch, kepler::Orbit};
 /// use polhode::motion::simulate::{Phase, State};
@@ -32,6 +36,9 @@ const QUARTER: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// // one through samples, which is known between them alone,
 /// let sampled = Aim::sampled(&[0.0, 1.0, 2.0], &[about_z(0.0), about_z(0.5), about_z(1.0)])?;
 /// assert!(matches!(sampled, Aim::Sampled(_)));
+/// let (times, same) = ([0.0, 1.0], [about_z(0.5); 2]);
+/// let watched = Aim::sampled_watched(&times, &same, &mut |_| ControlFlow::Continue(()))?;
+/// assert_eq!(watched, Aim::sampled(&times, &same)?);
 /// assert_eq!(sampled.breaks(), [0.0, 1.0, 2.0]);
 /// assert!(sampled.check(0.0, 0.0, 2.0).is_ok() && sampled.check(0.0, 0.0, 3.0).is_err());
 /// // and down along an orbit.
@@ -113,10 +120,26 @@ impl Aim {
     /// # Panics
     /// When `times` and `attitudes` differ in length.
     pub fn sampled(times: &[f64], attitudes: &[UnitQuaternion<f64>]) -> Result<Self, Error> {
-        let mut signed: Vec<[f64; 4]> = Vec::with_capacity(attitudes.len());
-        for attitude in attitudes {
+        Self::sampled_watched(times, attitudes, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// As [`Self::sampled`] of very many samples: now and then `watch` gets a fraction done, and may end it.
+    ///
+    /// # Errors
+    /// As [`Self::sampled`], and [`Error::Stopped`].
+    ///
+    /// # Panics
+    /// As [`Self::sampled`].
+    pub fn sampled_watched(
+        times: &[f64],
+        attitudes: &[UnitQuaternion<f64>],
+        watch: &mut Watch<'_>,
+    ) -> Result<Self, Error> {
+        let (mut vectors, mut scalars) = (Vec::new(), Vec::new());
+        let mut last: Option<[f64; 4]> = None;
+        each_watched(attitudes.iter(), watch, |attitude| {
             let mut next = components(attitude);
-            if let Some(last) = signed.last() {
+            if let Some(last) = last {
                 let dot: f64 = last.iter().zip(&next).map(|(a, b)| a * b).sum();
                 if dot < 0.0 {
                     next = next.map(|x| -x);
@@ -129,25 +152,21 @@ impl Aim {
                     });
                 }
             }
-            signed.push(next);
-        }
+            let [x, y, z, w] = next;
+            vectors.push(Vector3::new(x, y, z));
+            scalars.push(Vector3::new(w, 0.0, 0.0));
+            last = Some(next);
+            Ok(())
+        })?;
         let names = [
             "times",
             "the span of times",
             "target",
             "the spline of target",
         ];
-        let vectors: Vec<_> = signed
-            .iter()
-            .map(|&[x, y, z, _]| Vector3::new(x, y, z))
-            .collect();
-        let scalars: Vec<_> = signed
-            .iter()
-            .map(|q| Vector3::new(q[3], 0.0, 0.0))
-            .collect();
         Ok(Self::Sampled(Sampling {
-            vector: Spline::through(names, times, &vectors)?,
-            scalar: Spline::through(names, times, &scalars)?,
+            vector: Spline::through(names, times, &vectors, watch)?,
+            scalar: Spline::through(names, times, &scalars, watch)?,
         }))
     }
 

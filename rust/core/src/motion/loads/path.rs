@@ -1,5 +1,6 @@
 //! Where the body is, from an attractor: an orbit that its attitude does not change.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
@@ -9,12 +10,14 @@ use super::oblate::Oblate;
 use super::spline::Spline;
 use crate::error::{Error, finite};
 use crate::motion::attitude::from_axes;
+use crate::numerics::threads::Watch;
 
 /// Position and velocity of C from an attractor, in N, at any time of a motion.
 ///
 /// # Examples
 ///
 /// ```
+/// use std::ops::ControlFlow;
 /// use polhode::motion::loads::{Oblate, Path, kepler::Orbit};
 /// use polhode::nalgebra::Vector3;
 ///
@@ -28,6 +31,10 @@ use crate::motion::attitude::from_axes;
 /// // Through positions that are known at some times, and at no others.
 /// let sampled = Path::sampled(&[0.0, 1.0, 2.0], &[Vector3::x(), Vector3::y(), -Vector3::x()])?;
 /// assert_eq!(sampled.breaks(), [0.0, 1.0, 2.0]);
+/// // Where there are very many, somebody may want to end it.
+/// let (times, still) = ([0.0, 1.0], [Vector3::x(); 2]);
+/// let watched = Path::sampled_watched(&times, &still, &mut |_| ControlFlow::Continue(()))?;
+/// assert_eq!(watched, Path::sampled(&times, &still)?);
 /// assert!(sampled.check(0.0, 0.0, 2.0).is_ok() && sampled.check(0.0, 0.0, 2.5).is_err());
 /// # Ok::<(), polhode::Error>(())
 /// ```
@@ -71,13 +78,28 @@ impl Path {
     /// # Panics
     /// When `times` and `positions` differ in length.
     pub fn sampled(times: &[f64], positions: &[Vector3<f64>]) -> Result<Self, Error> {
+        Self::sampled_watched(times, positions, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// As [`Self::sampled`] of very many samples: now and then `watch` gets a fraction done, and may end it.
+    ///
+    /// # Errors
+    /// As [`Self::sampled`], and [`Error::Stopped`].
+    ///
+    /// # Panics
+    /// As [`Self::sampled`].
+    pub fn sampled_watched(
+        times: &[f64],
+        positions: &[Vector3<f64>],
+        watch: &mut Watch<'_>,
+    ) -> Result<Self, Error> {
         let names = [
             "t",
             "the span of t",
             "position",
             "the spline through position",
         ];
-        let spline = Spline::through(names, times, positions)?;
+        let spline = Spline::through(names, times, positions, watch)?;
         Ok(Self(Way::Sampled(Arc::new(spline))))
     }
 

@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::held::ascending;
 use crate::error::{Error, MotionFault, all_finite, finite};
 use crate::numerics::number::Real;
+use crate::numerics::threads::{Watch, each_watched};
 
 /// Cubics between samples, smooth to the second derivative.
 ///
@@ -20,7 +21,7 @@ impl Spline {
     /// Through `values` at the ascending `times`; `names`: of the times, their span, the values and the spline.
     ///
     /// # Errors
-    /// Fewer than two times, times that do not ascend, numbers that are not finite.
+    /// Fewer than two times, times that do not ascend, numbers that are not finite; [`Error::Stopped`] where `watch` says so.
     ///
     /// # Panics
     /// When `times` and `values` differ in length.
@@ -28,6 +29,7 @@ impl Spline {
         names: [&'static str; 4],
         times: &[f64],
         values: &[Vector3<f64>],
+        watch: &mut Watch<'_>,
     ) -> Result<Self, Error> {
         assert_eq!(times.len(), values.len(), "a value for each time");
         if times.len() < 2 {
@@ -41,7 +43,7 @@ impl Spline {
         ascending(when, times)?;
         all_finite(what, values.iter().flatten())?;
         finite(span, times[times.len() - 1] - times[0])?;
-        let pieces = pieces(times, values);
+        let pieces = pieces(times, values, watch)?;
         all_finite(through, pieces.iter().flatten().flatten())?;
         Ok(Self {
             knots: times.to_vec(),
@@ -116,72 +118,127 @@ impl Spline {
 }
 
 /// The cubics between the samples, from the slopes at them.
-pub(super) fn pieces<X: Real>(t: &[f64], y: &[Vector3<X>]) -> Vec<[Vector3<X>; 4]> {
-    let steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let chords: Vec<_> = (y.windows(2).zip(&steps))
-        .map(|(pair, step)| (pair[1] - pair[0]) / X::from(*step))
-        .collect();
-    let slopes = match chords[..] {
-        [chord] => vec![chord; 2],
-        [first, second] => {
-            let bend = (second - first) / X::from(steps[0] + steps[1]);
-            let middle = first + bend * X::from(steps[0]);
-            let last = second + bend * X::from(steps[1]);
-            vec![first - bend * X::from(steps[0]), middle, last]
+pub(super) fn pieces<X: Real>(
+    t: &[f64],
+    y: &[Vector3<X>],
+    watch: &mut Watch<'_>,
+) -> Result<Vec<[Vector3<X>; 4]>, Error> {
+    let step = |k: usize| t[k + 1] - t[k];
+    let chord = |k: usize| (y[k + 1] - y[k]) / X::from(step(k));
+    let count = t.len() - 1;
+    let slopes = match count {
+        1 => vec![chord(0); 2],
+        2 => {
+            let (first, second) = (chord(0), chord(1));
+            let bend = (second - first) / X::from(step(0) + step(1));
+            let middle = first + bend * X::from(step(0));
+            let last = second + bend * X::from(step(1));
+            vec![first - bend * X::from(step(0)), middle, last]
         }
-        _ => slopes(&steps, &chords),
+        _ => slopes(count, &step, &chord, watch)?,
     };
-    let cubic = |k: usize| {
-        let (h, chord, s0, s1) = (X::from(steps[k]), chords[k], slopes[k], slopes[k + 1]);
+    let mut pieces = Vec::with_capacity(count);
+    each_watched(0..count, watch, |k| {
+        let (h, chord, s0, s1) = (X::from(step(k)), chord(k), slopes[k], slopes[k + 1]);
         let bend = (s0 + s1 - chord * X::from(2.0)) / h;
-        [y[k], s0, (chord - s0) / h - bend, bend / h]
-    };
-    (0..steps.len()).map(cubic).collect()
+        pieces.push([y[k], s0, (chord - s0) / h - bend, bend / h]);
+        Ok::<_, Error>(())
+    })?;
+    Ok(pieces)
 }
 
 /// The slopes that make the second derivative continuous, and the third at the second and the last but one sample:
 /// a tridiagonal system, whose pivots are positive.
-fn slopes<X: Real>(h: &[f64], chords: &[Vector3<X>]) -> Vec<Vector3<X>> {
-    let n = h.len();
-    let (first, last) = (h[0] + h[1], h[n - 2] + h[n - 1]);
+fn slopes<X: Real>(
+    n: usize,
+    h: &impl Fn(usize) -> f64,
+    chord: &impl Fn(usize) -> Vector3<X>,
+    watch: &mut Watch<'_>,
+) -> Result<Vec<Vector3<X>>, Error> {
+    let (first, last) = (h(0) + h(1), h(n - 2) + h(n - 1));
     let sum = |a: usize, by_a: f64, b: usize, by_b: f64| {
-        chords[a] * X::from(by_a) + chords[b] * X::from(by_b)
+        chord(a) * X::from(by_a) + chord(b) * X::from(by_b)
     };
-    // Rows as (below, diagonal, above, right-hand side).
-    let mut rows = vec![(
-        0.0,
-        h[1],
-        first,
-        sum(0, (h[0] + 2.0 * first) * h[1], 1, h[0] * h[0]) / X::from(first),
-    )];
-    rows.extend((1..n).map(|k| {
-        let side = sum(k - 1, h[k], k, h[k - 1]);
-        (h[k], 2.0 * (h[k - 1] + h[k]), h[k - 1], side * X::from(3.0))
-    }));
-    rows.push((
-        last,
-        h[n - 2],
-        0.0,
-        sum(
-            n - 2,
-            h[n - 1] * h[n - 1],
-            n - 1,
-            (2.0 * last + h[n - 1]) * h[n - 2],
-        ) / X::from(last),
-    ));
-    for k in 1..=n {
-        let (_, pivot, above, side) = rows[k - 1];
-        let ratio = rows[k].0 / pivot;
-        rows[k].1 -= ratio * above;
-        rows[k].3 -= side * X::from(ratio);
+    // Rows as below, diagonal, right-hand side; above the diagonal stands `above`.
+    let above = |k: usize| if k == 0 { first } else { h(k - 1) };
+    let row = |k: usize| {
+        if k == 0 {
+            let side = sum(0, (h(0) + 2.0 * first) * h(1), 1, h(0) * h(0));
+            (0.0, h(1), side / X::from(first))
+        } else if k < n {
+            let side = sum(k - 1, h(k), k, h(k - 1));
+            (h(k), 2.0 * (h(k - 1) + h(k)), side * X::from(3.0))
+        } else {
+            let (a, b) = (h(n - 1) * h(n - 1), (2.0 * last + h(n - 1)) * h(n - 2));
+            let side = sum(n - 2, a, n - 1, b);
+            (last, h(n - 2), side / X::from(last))
+        }
+    };
+    let (_, pivot, side) = row(0);
+    let (mut pivots, mut slopes) = (Vec::with_capacity(n + 1), Vec::with_capacity(n + 1));
+    pivots.push(pivot);
+    slopes.push(side);
+    each_watched(0..n, watch, |k| {
+        let (below, pivot, side) = row(k + 1);
+        let ratio = below / pivots[k];
+        pivots.push(pivot - ratio * above(k));
+        slopes.push(side - slopes[k] * X::from(ratio));
+        Ok::<_, Error>(())
+    })?;
+    slopes[n] /= X::from(pivots[n]);
+    each_watched((0..n).rev(), watch, |k| {
+        slopes[k] = (slopes[k] - slopes[k + 1] * X::from(above(k))) / X::from(pivots[k]);
+        Ok::<_, Error>(())
+    })?;
+    Ok(slopes)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use nalgebra::UnitQuaternion;
+
+    use super::*;
+    use crate::motion::loads::{Aim, Frame, MagneticField, Path, Sampled};
+
+    /// Makes something of samples; tells what is wrong with it.
+    type Make<'a> = dyn Fn(&mut Watch<'_>) -> Option<Error> + 'a;
+
+    #[test]
+    fn samples_are_watched_where_there_are_many() {
+        // A look is taken after 4,096 of them: of the samples, and of the rows between them.
+        for (count, is_asked) in [(4095, false), (4096, true), (20_000, true)] {
+            let times: Vec<f64> = (0..count).map(f64::from).collect();
+            let values: Vec<_> = times
+                .iter()
+                .map(|t| Vector3::new(t.sin(), 1.0, *t))
+                .collect();
+            let attitudes = vec![UnitQuaternion::identity(); times.len()];
+            for asked in 1..4 {
+                let made: [&Make<'_>; 4] = [
+                    &|watch| Sampled::new_watched(&times, &values, Frame::Body, watch).err(),
+                    &|watch| MagneticField::sampled_watched(&times, &values, watch).err(),
+                    &|watch| Path::sampled_watched(&times, &values, watch).err(),
+                    &|watch| Aim::sampled_watched(&times, &attitudes, watch).err(),
+                ];
+                for make in made {
+                    let mut looks = 0;
+                    let error = make(&mut |_| {
+                        looks += 1;
+                        if looks < asked {
+                            ControlFlow::Continue(())
+                        } else {
+                            ControlFlow::Break(())
+                        }
+                    });
+                    if is_asked && count > 4096 {
+                        assert_eq!((error, looks), (Some(Error::Stopped), asked));
+                    } else {
+                        assert!(error.is_none() || is_asked, "{count} {error:?}");
+                    }
+                }
+            }
+        }
     }
-    let mut next = Vector3::zeros();
-    let mut slopes: Vec<_> = (rows.iter().rev())
-        .map(|&(_, pivot, above, side)| {
-            next = (side - next * X::from(above)) / X::from(pivot);
-            next
-        })
-        .collect();
-    slopes.reverse();
-    slopes
 }

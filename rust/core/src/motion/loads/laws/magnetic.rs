@@ -1,5 +1,6 @@
 //! The torque of a magnetic field.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
@@ -15,6 +16,7 @@ use crate::motion::loads::subject::Subject;
 use crate::motion::loads::wrench::{Wrench, times};
 use crate::motion::state::Phase;
 use crate::numerics::quaternion::cross_matrix;
+use crate::numerics::threads::Watch;
 
 /// A magnetic field, components in N.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,13 +54,28 @@ impl MagneticField {
     /// # Panics
     /// When `times` and `fields` differ in length.
     pub fn sampled(times: &[f64], fields: &[Vector3<f64>]) -> Result<Self, Error> {
+        Self::sampled_watched(times, fields, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// As [`Self::sampled`] of very many samples: now and then `watch` gets a fraction done, and may end it.
+    ///
+    /// # Errors
+    /// As [`Self::sampled`], and [`Error::Stopped`].
+    ///
+    /// # Panics
+    /// As [`Self::sampled`].
+    pub fn sampled_watched(
+        times: &[f64],
+        fields: &[Vector3<f64>],
+        watch: &mut Watch<'_>,
+    ) -> Result<Self, Error> {
         let names = [
             "times",
             "the span of times",
             "field",
             "the spline through field",
         ];
-        let spline = Spline::through(names, times, fields)?;
+        let spline = Spline::through(names, times, fields, watch)?;
         Ok(Self(Source::Sampled(Arc::new(spline))))
     }
 
@@ -128,6 +145,7 @@ pub fn field_and_rate(
 /// # Examples
 ///
 /// ```
+/// use std::ops::ControlFlow;
 /// use polhode::mass::{Amount, solids};
 /// use polhode::motion::loads::{Magnetic, MagneticField, Path, Subject, Term, kepler::Orbit};
 /// use polhode::motion::simulate::{Phase, State};
@@ -149,6 +167,9 @@ pub fn field_and_rate(
 /// assert!((above_pole.norm() - 2.0 * above_equator.norm()).abs() < 1e-12);
 /// let sampled = MagneticField::sampled(&[0.0, 1.0], &[Vector3::x(), Vector3::y()])?;
 /// assert_eq!(sampled.at(0.0, 0.5)[1], Vector3::new(-1.0, 1.0, 0.0)); // its rate
+/// let (times, still) = ([0.0, 1.0], [Vector3::x(); 2]);
+/// let watched = MagneticField::sampled_watched(&times, &still, &mut |_| ControlFlow::Continue(()))?;
+/// assert_eq!(watched, MagneticField::sampled(&times, &still)?);
 /// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,9 @@
 //! A torque known at some times, and a cubic spline in between.
 
-use nalgebra::Vector3;
+use std::ops::ControlFlow;
 use std::sync::Arc;
+
+use nalgebra::Vector3;
 
 use crate::error::Error;
 use crate::motion::kinematics::Frame;
@@ -15,6 +17,7 @@ use crate::motion::loads::subject::Subject;
 use crate::motion::loads::variables::Variables;
 use crate::motion::loads::wrench::{Wrench, in_body};
 use crate::motion::state::Phase;
+use crate::numerics::threads::Watch;
 
 /// A torque about the reference point, given at times and interpolated by a cubic spline, smooth to the second derivative.
 ///
@@ -24,6 +27,7 @@ use crate::motion::state::Phase;
 /// # Examples
 ///
 /// ```
+/// use std::ops::ControlFlow;
 /// use polhode::nalgebra::Vector3;
 /// use polhode::motion::loads::{Frame, Sampled};
 ///
@@ -33,6 +37,9 @@ use crate::motion::state::Phase;
 /// assert!((torque.at(1.5).z - 1.5).abs() < 1e-15);
 /// assert!(torque.check_at(4.0).is_err());
 /// assert_eq!((torque.frame(), torque.knots()), (Frame::Body, &times[..]));
+/// // The same where there are very many, and somebody may want to end it.
+/// let same = Sampled::new_watched(&times, &values, Frame::Body, &mut |_| ControlFlow::Continue(()))?;
+/// assert_eq!(same, torque);
 /// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -50,11 +57,24 @@ impl Sampled {
     /// # Panics
     /// When `times` and `values` differ in length.
     pub fn new(times: &[f64], values: &[Vector3<f64>], frame: Frame) -> Result<Self, Error> {
-        let spline = Spline::through(
-            ["t", "the span of t", "torque", "the spline through torque"],
-            times,
-            values,
-        )?;
+        Self::new_watched(times, values, frame, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// As [`Self::new`] of very many samples: now and then `watch` gets a fraction done, and may end it.
+    ///
+    /// # Errors
+    /// As [`Self::new`], and [`Error::Stopped`].
+    ///
+    /// # Panics
+    /// As [`Self::new`].
+    pub fn new_watched(
+        times: &[f64],
+        values: &[Vector3<f64>],
+        frame: Frame,
+        watch: &mut Watch<'_>,
+    ) -> Result<Self, Error> {
+        let names = ["t", "the span of t", "torque", "the spline through torque"];
+        let spline = Spline::through(names, times, values, watch)?;
         Ok(Self {
             spline: Arc::new(spline),
             frame,
@@ -121,7 +141,10 @@ impl Sampled {
         if (axes.variables).varies(axes.first + 3 * near.start..axes.first + 3 * near.end) {
             let zero = Vector3::zeros();
             let samples: Vec<_> = near.clone().map(|k| axes.vector(&zero, 3 * k)).collect();
-            let own = pieces(&knots[near.clone()], &samples)[index - near.start];
+            let own = pieces(&knots[near.clone()], &samples, &mut |_| {
+                ControlFlow::Continue(())
+            });
+            let own = own.iter().flat_map(|pieces| pieces[index - near.start]);
             for (c, more) in piece.iter_mut().zip(own) {
                 *c += more;
             }
