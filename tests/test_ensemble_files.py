@@ -67,6 +67,24 @@ class TestFiles:
             if file.is_file():
                 assert (part / file.relative_to(whole)).read_bytes() == file.read_bytes()
 
+    @pytest.mark.parametrize(
+        ("kind", "folder", "half", "other"),
+        [
+            ("npz", "", ".polhode-0123456789abcdef.npz", ".polhode-notes.npz"),
+            ("zarr", "status", "1.2683356893ce94c06a0224cb438e3391.partial", "my.partial"),
+        ],
+    )
+    def test_what_a_killed_process_had_half_written_is_removed(
+        self, kind: str, folder: str, half: str, other: str, tmp_path: Path
+    ) -> None:
+        many, path = twisted(20, chunk=10), tmp_path / "out"
+        getattr(many, f"to_{kind}")(path)
+        for name in (half, other):
+            (path / folder / name).write_bytes(b"half")
+        many.resume(path)
+        assert not (path / folder / half).exists()
+        assert (path / folder / other).read_bytes() == b"half"
+
     def test_nothing_is_left_to_resume(self, tmp_path: Path) -> None:
         many = twisted(20)
         many.to_npz(tmp_path / "out")

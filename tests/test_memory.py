@@ -65,6 +65,7 @@ CLASSES = (
     "Load",
     "MassAccumulator",
     "Region",
+    "Slabs",
 )
 
 LIMITED = """

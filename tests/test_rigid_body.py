@@ -254,8 +254,8 @@ class TestCopies:
             assert np.array_equal(again.principal.axes, body.principal.axes)
             assert np.array_equal(again.principal_moments, body.principal_moments)
 
-    @pytest.mark.parametrize("protocol", (2, pickle.HIGHEST_PROTOCOL))
-    @pytest.mark.parametrize("rows", (30_840, 30_842, 100_000))
+    @pytest.mark.parametrize("protocol", [2, pickle.HIGHEST_PROTOCOL])
+    @pytest.mark.parametrize("rows", [30_840, 30_842, 100_000])
     def test_a_large_stack_is_pickled_in_slabs_with_every_bit(self, rows: int, protocol: int) -> None:
         """A slab has 2²⁰ numbers, 34 a body: the first stack is the largest that is not taken apart."""
         rng = np.random.default_rng(rows)

@@ -36,8 +36,8 @@ __all__ = [
     "MassAccumulator",
     "Region",
     "RigidBody",
+    "Slabs",
     "Uncertain",
-    "_Slabs",
     "__version__",
     "angular_velocity_from_euler_rates",
     "annulus",
@@ -555,7 +555,7 @@ class RigidBody:
 class Region: ...
 
 @final
-class _Slabs: ...
+class Slabs: ...
 
 @final
 class MassAccumulator:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import json
+import re
 import zipfile
 import zlib
 from pathlib import Path
@@ -18,6 +19,8 @@ from polhode.errors import FileFormatError
 from polhode.files.writing import write_bytes, writing
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from polhode.ensembles.plan import Plan
 
     Arrays = dict[str, np.ndarray[Any, Any]]
@@ -70,6 +73,7 @@ class NpzStore:
             write_bytes(path / _HEADER, json.dumps(header(plan), indent=1).encode())
         else:
             check_same(path, _header_in(path), header(plan))
+            _remove(path.glob(".polhode-*"), r"\.polhode-[0-9a-f]{16}\.npz")
 
     def pending(self) -> list[int]:
         """Give the chunks that are not there."""
@@ -118,6 +122,7 @@ class ZarrStore:
         if not is_new:
             self.group = zarr.open_group(path, mode="r+")
             check_same(path, dict(self.group.attrs), header(plan))
+            _remove(path.rglob("*.partial"), r"[^/]+\.[0-9a-f]{32}\.partial")
             return
         _check_new(path)
         # The second format has fixed-width words, and every reader of today knows it.
@@ -162,6 +167,13 @@ class ZarrStore:
         first, count = self.plan.bounds(index)
         for name in layout(self.plan):
             self.group[name][first : first + count] = arrays[name]
+
+
+def _remove(files: Iterable[Path], name: str) -> None:
+    """Remove what a process that was killed had half written: the files whose name is this pattern."""
+    for file in files:
+        if re.fullmatch(name, file.name):
+            file.unlink()
 
 
 def opened(path: Path, plan: Plan) -> Store:

@@ -32,7 +32,7 @@ pub(crate) fn all_in_slabs(arrays: &Bound<'_, PyDict>) -> PyResult<()> {
 }
 
 /// A large array on its way into a pickle, or one of its slabs.
-#[pyclass(frozen, name = "_Slabs", module = "polhode._core")]
+#[pyclass(frozen, name = "Slabs", module = "polhode._core")]
 pub(crate) struct Slabs(Py<PyArrayDyn<f64>>);
 
 #[pymethods]
