@@ -30,6 +30,15 @@ pub(crate) fn numpy(py: Python<'_>) -> PyResult<&Bound<'_, PyModule>> {
         .bind(py))
 }
 
+/// Whether an object is a number as it comes out of an array of NumPy.
+pub(crate) fn is_scalar(object: &Bound<'_, PyAny>) -> bool {
+    static KIND: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    let py = object.py();
+    KIND.get_or_try_init(py, || numpy(py)?.getattr("generic").map(Bound::unbind))
+        .and_then(|kind| object.is_instance(kind.bind(py)))
+        .unwrap_or(false)
+}
+
 /// The array that NumPy makes of an object, unless that had masked elements or units, which it would drop.
 pub(crate) fn as_array<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
     let py = object.py();

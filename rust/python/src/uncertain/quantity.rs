@@ -13,6 +13,7 @@ use pyo3::types::{PyFloat, PyInt, PyList, PyTuple};
 use super::class::PyUncertain;
 use crate::arrays::{Argument, Item, read, read_list};
 use crate::attitudes::read_rotation;
+use crate::foreign::is_scalar;
 use crate::items::size;
 use crate::stack::Stack;
 
@@ -129,6 +130,7 @@ fn is_plain(object: &Bound<'_, PyAny>, depth: usize) -> bool {
         object.is_exact_instance_of::<PyFloat>()
             || object.is_exact_instance_of::<PyInt>()
             || (object.cast::<PyUntypedArray>()).is_ok_and(|array| array.dtype().kind() != b'O')
+            || is_scalar(object)
     }
 }
 
