@@ -67,9 +67,10 @@ const TURNED: [[f64; 4]; 3] = [
     [1.0, -1.0, 1.0, -1.0],
 ];
 
-/// The signs of every [`Mix`].
+/// The signs of every [`Mix`], and [`TURNED`].
 #[derive(Clone, Copy, Debug)]
 struct Signs<L, const B: usize> {
+    turned: [Components<L, 4>; 3],
     left: Components<L, 8>,
     right: Components<L, 8>,
     roots: [Components<L, 8>; B],
@@ -79,6 +80,7 @@ impl<L: Lane, const B: usize> Signs<L, B> {
     #[inline(always)]
     fn new() -> Self {
         let mut signs = Self {
+            turned: [Components::new(); 3],
             left: Components::new(),
             right: Components::new(),
             roots: [Components::new(); B],
@@ -90,6 +92,11 @@ impl<L: Lane, const B: usize> Signs<L, B> {
                 signs.roots[b].0[i] = L::new(ROOTS[axis::<B>(b)].signs[i]);
             }
         }
+        for n in 0..3 {
+            for i in 0..4 {
+                signs.turned[n].0[i] = L::new(TURNED[n][i]);
+            }
+        }
         // Not known to the compiler, which would make a register of eight numbers of one kind into pieces of several, and
         // store the pieces: whoever loads the whole after that has to wait.
         black_box(signs)
@@ -97,11 +104,12 @@ impl<L: Lane, const B: usize> Signs<L, B> {
 }
 
 /// One order of [`Alone`]: two rows of factors, so that products of two orders are a row of one by the other of the other,
-/// each in the place where q∘ω has it; then those of ω₂ω₃, ω₃ω₁ and ω₁ω₂ and a square that is not used.
+/// each in the place where q∘ω has it; then a square that is not used, and those of ω₂ω₃, ω₃ω₁ and ω₁ω₂. The last two are loaded
+/// together: what lies across two places that were stored apart would have to wait until both are in the cache.
 #[derive(Clone, Copy, Debug)]
 struct Order<L, const B: usize> {
     q: Components<L, 4>,
-    w: Components<L, 4>,
+    w: [L; 3],
     left: Components<L, 16>,
     right: Components<L, 16>,
     roots: [Components<L, 8>; B],
@@ -113,7 +121,7 @@ impl<L: Lane, const B: usize> Order<L, B> {
     fn none() -> Self {
         Self {
             q: Components::new(),
-            w: Components::new(),
+            w: [L::new(0.0); 3],
             left: Components::new(),
             right: Components::new(),
             roots: [Components::new(); B],
@@ -122,17 +130,18 @@ impl<L: Lane, const B: usize> Order<L, B> {
     }
 
     #[inline(always)]
-    fn new([w0, w1, w2]: [L; 3], q: Components<L, 4>, signs: &Signs<L, B>) -> Self {
-        let w = Components([w0, w1, w2, w2]);
+    fn new(w: [L; 3], q: Components<L, 4>, signs: &Signs<L, B>) -> Self {
+        let [w0, w1, w2] = w;
         let [l0, l1, l2, l3, l4, l5, l6, l7] = q.mixed(&LEFT, &signs.left).0;
-        let [r0, r1, r2, r3, r4, r5, r6, r7] = w.mixed(&RIGHT, &signs.right).0;
+        let [r0, r1, r2, r3, r4, r5, r6, r7] =
+            Components([w0, w1, w2, w2]).mixed(&RIGHT, &signs.right).0;
         let [x, y, z, s] = q.0;
         let mut order = Self {
             q,
             w,
-            left: Components([l0, l1, l2, l3, l4, l5, l6, l7, y, x, s, z, w1, w2, w1, w0]),
+            left: Components([l0, l1, l2, l3, l4, l5, l6, l7, y, x, s, z, w2, w1, w2, w1]),
             right: Components([
-                r0, r1, r2, r3, r4, r5, r6, r7, w2, w2, w2, w2, w2, w0, w0, w0,
+                r0, r1, r2, r3, r4, r5, r6, r7, w2, w2, w2, w2, w2, w2, w0, w0,
             ]),
             ..Self::none()
         };
@@ -229,7 +238,7 @@ impl<L: Lane, const B: usize> Series<Pack<L, 1>, B> for Alone<L, B> {
             at.q[i] = Pack([q.0[i]]);
         }
         for i in 0..3 {
-            at.w[i] = Pack([w.0[i]]);
+            at.w[i] = Pack([w[i]]);
         }
         for b in 0..B {
             for i in 0..3 {
@@ -277,7 +286,7 @@ impl<L: Lane, const B: usize> Series<Pack<L, 1>, B> for Alone<L, B> {
 
     #[inline(always)]
     fn spins(sums: &Self::Sums) -> [Pack<L, 1>; 3] {
-        let [.., w0, w1, w2, _] = sums.products.0;
+        let [.., w0, w1, w2] = sums.products.0;
         [Pack([w0]), Pack([w1]), Pack([w2])]
     }
 
@@ -285,11 +294,17 @@ impl<L: Lane, const B: usize> Series<Pack<L, 1>, B> for Alone<L, B> {
     fn extend(&mut self, k: usize, sums: &Self::Sums, acceleration: &[Pack<L, 1>; 3]) {
         let reciprocal = L::new(RECIPROCALS[k + 1]);
         let half = L::new(0.5 * RECIPROCALS[k + 1]);
+        let products = &sums.products.0;
+        let [first, second, third] = &self.signs.turned;
         let mut q = Components::new();
-        for (n, signs) in TURNED.iter().enumerate() {
-            for i in 0..4 {
-                q.0[i] = L::new(signs[i]).mul_add(sums.products.0[4 * n + i], q.0[i]);
-            }
+        for i in 0..4 {
+            q.0[i] = first.0[i] * products[i];
+        }
+        for i in 0..4 {
+            q.0[i] = second.0[i].mul_add(products[4 + i], q.0[i]);
+        }
+        for i in 0..4 {
+            q.0[i] = third.0[i].mul_add(products[8 + i], q.0[i]);
         }
         for i in 0..4 {
             q.0[i] = q.0[i] * half;
