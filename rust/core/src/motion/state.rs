@@ -42,8 +42,8 @@ impl State {
 /// let phase = Phase::in_place(&state);
 /// assert!(phase.is_finite() && phase.position == Vector3::zeros());
 /// assert_eq!(phase.state(), state);
-/// // What stands where nothing was computed, as after the end of a run.
-/// assert!(!Phase::nan().is_finite() && !phase.unknown().is_finite() && State::nan().omega.x.is_nan());
+/// // What stands where nothing was computed.
+/// assert!(!Phase::nan().is_finite() && State::nan().omega.x.is_nan());
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Phase {
@@ -92,16 +92,6 @@ impl Phase {
             position: unknown,
             velocity: unknown,
             ..Self::in_place(&State::nan())
-        }
-    }
-
-    /// What stands where nothing was computed of a motion like this.
-    #[must_use]
-    #[inline]
-    pub fn unknown(&self) -> Self {
-        Self {
-            own: vec![f64::NAN; self.own.len()].into(),
-            ..Self::nan()
         }
     }
 

@@ -141,12 +141,11 @@ impl Sampled {
         if (axes.variables).varies(axes.first + 3 * near.start..axes.first + 3 * near.end) {
             let zero = Vector3::zeros();
             let samples: Vec<_> = near.clone().map(|k| axes.vector(&zero, 3 * k)).collect();
-            let own = pieces(&knots[near.clone()], &samples, &mut |_| {
-                ControlFlow::Continue(())
-            });
-            let own = own.iter().flat_map(|pieces| pieces[index - near.start]);
-            for (c, more) in piece.iter_mut().zip(own) {
-                *c += more;
+            let go_on = &mut |_| ControlFlow::Continue(());
+            if let Ok(own) = pieces(&knots[near.clone()], &samples, go_on) {
+                for (c, more) in piece.iter_mut().zip(own[index - near.start]) {
+                    *c += more;
+                }
             }
         }
         (from, piece)
