@@ -22,6 +22,7 @@ from polhode import (
     equimomental,
     laminae,
     loads,
+    orbits,
     principal_axes,
     principal_moments,
     regions,
@@ -79,6 +80,8 @@ def calls() -> dict[str, Callable[[], object]]:
     teeth = np.column_stack([np.tile([0.0, 1.0], 20_000), np.arange(40_000.0)])
     comb = np.vstack([teeth, [(2.0, 39_999.0), (2.0, -1.0), (0.0, -1.0)]])
     rows, columns = numbers.tolist(), vectors.tolist()
+    near = np.column_stack([1e-3 * vectors, np.ones(ROWS)])
+    near /= np.linalg.norm(near, axis=1, keepdims=True)
     heavy_ones, long = np.tile(numbers, 5), np.tile(vectors, (5, 1))
     turned = np.asfortranarray(long)
 
@@ -135,6 +138,11 @@ def calls() -> dict[str, Callable[[], object]]:
         "torque": lambda: pushes.torque(0.0, vectors, quaternions),
         "schedule": lambda: loads.schedule(loads.schedule(push, windows), windows + 0.5),
         "sampled": lambda: loads.sampled(np.arange(float(ROWS)), vectors),
+        "sampled field": lambda: loads.magnetic((0.0, 0.0, 1.0), vectors, times=np.arange(float(ROWS))),
+        "sampled orbit": lambda: loads.gravity_gradient(
+            orbits.sampled(1.0, np.arange(float(ROWS)), vectors + 9.0)
+        ),
+        "sampled target": lambda: loads.feedback(1.0, 1.0, near, times=np.arange(float(ROWS))),
         "kinetic energy": lambda: states.kinetic_energy().total,
         "euler angles": lambda: states.euler_angles(singular="nan", unwrap=True),
         "invariants": states.invariants,
