@@ -36,7 +36,8 @@ def client_at(address: str | None) -> Iterator[Any]:
         return
     distributed = require("distributed", extra="cluster", purpose="--client")
     try:
-        client = distributed.Client(address)
+        # Not as dask's default: one that finds no scheduler would stay it, and whatever dask computes would wait.
+        client = distributed.Client(address, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:
         raise PolhodeError(
             f"--client: no scheduler of dask answers at {address!r} ({type(error).__name__}); give the "
