@@ -36,7 +36,7 @@ def client_at(address: str | None) -> Iterator[Any]:
         return
     distributed = require("distributed", extra="cluster", purpose="--client")
     try:
-        # Not as dask's default: one that finds no scheduler would stay it, and all that dask computes would wait.
+        # Not as dask's default, which one that finds no scheduler would stay: dask would wait for it.
         client = distributed.Client(address, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:
         raise PolhodeError(
