@@ -255,8 +255,7 @@ class Provenance:
     rounding: Any
 
     def __repr__(self) -> str:
-        shape = np.shape(self.source)
-        if shape:
+        if shape := np.shape(self.source):
             return f"<Provenance stack of shape {shape}>"
         told = {name: value for name, value in vars(self).items() if name != "rounding" or value}
         return one_line(self, told)
@@ -312,10 +311,7 @@ class State(NamedTuple):
     states: dict[str, Floats] | None = None
 
     def __repr__(self) -> str:
-        fields = self._asdict()
-        if self.states is None:
-            del fields["states"]
-        return one_line(self, fields)
+        return one_line(self, {name: value for name, value in self._asdict().items() if value is not None})
 
 
 class Invariants(NamedTuple):
