@@ -352,16 +352,6 @@ def test_what_it_refuses(
     assert not list(tmp_path.iterdir())
 
 
-def test_a_scheduler_that_is_not_there_leaves_dask_as_it_was() -> None:
-    dask = pytest.importorskip("dask")
-    distributed = pytest.importorskip("distributed")
-    before = dask.config.get("scheduler", None)
-    assert run("ensemble", *FREE, "--client", "nowhere")[0] == 2
-    assert dask.config.get("scheduler", None) == before
-    with pytest.raises(ValueError, match="No clients found"):
-        distributed.default_client()
-
-
 def test_a_body_with_sigmas_is_refused_with_the_way_out(tmp_path: Path) -> None:
     path = write_obj(tmp_path / "cube.obj", *cube())
     code, _, err = run("ensemble", path, "--mass", "1.0 ± 0.1", "--omega", "0, 0, 1 to 2", "--until", "1")

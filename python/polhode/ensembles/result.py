@@ -256,6 +256,9 @@ class Ensemble:
     def resume(self, path: str | os.PathLike[str]) -> None:
         """Run the missing chunks of a :meth:`to_zarr` or :meth:`to_npz` that was interrupted.
 
+        Files that the interrupted process had half written are removed. No other process may write there at
+        the same time.
+
         Parameters
         ----------
         path : str or os.PathLike

@@ -291,7 +291,6 @@ fn copy<'py>(
 }
 
 /// `from:to`.
-/// From one place to before another.
 pub(crate) fn slice(py: Python<'_>, from: usize, to: usize) -> PyResult<Bound<'_, PySlice>> {
     Ok(PySlice::new(
         py,

@@ -2,7 +2,7 @@
 //!
 //! Every pass over many rows looks for Ctrl-C on the way, and asks for memory by [`memory`](crate::memory) before it begins.
 
-use std::ops::Index;
+use std::ops::{ControlFlow, Index};
 
 use polhode::Error;
 use polhode::parallel::{Halt, Watch, fill_blocks};
@@ -10,7 +10,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::errors::{at_row, to_py};
-use crate::interrupt::{Beat, Interrupt};
+use crate::interrupt::{Beat, Interrupt, watched};
 use crate::memory::{self, Names};
 use crate::shape::tuple;
 
@@ -73,6 +73,31 @@ pub(crate) fn extend<T, R>(
         out.extend(block.iter().map(&mut f));
     }
     Ok(())
+}
+
+/// `f` of each of the `items` of a stack, one after the other and without the interpreter lock; names the row that fails.
+///
+/// Ctrl-C is looked for between the items too: small ones are done before they ask.
+pub(crate) fn try_watched<T, R: Send>(
+    py: Python<'_>,
+    shape: Vec<usize>,
+    items: impl Iterator<Item = T> + Send,
+    f: impl Fn(T, &mut Watch<'_>) -> Result<R, Error> + Sync,
+) -> PyResult<Stack<R>> {
+    let rows: Result<_, (usize, Error)> = watched(py, |watch| {
+        let made = items.enumerate().map(|(row, item)| {
+            let made = match watch(0.0) {
+                ControlFlow::Continue(()) => f(item, watch),
+                ControlFlow::Break(()) => Err(Error::Stopped),
+            };
+            made.map_err(|error| (row, error))
+        });
+        made.collect()
+    })?;
+    match rows {
+        Ok(rows) => Ok(Stack { shape, rows }),
+        Err((row, error)) => Err(at_row(&shape, row, &to_py(py, &error), py)),
+    }
 }
 
 impl<T> Index<usize> for Stack<T> {

@@ -1,7 +1,5 @@
 //! Vectors known at some times.
 
-use std::ops::ControlFlow;
-
 use nalgebra::Vector3;
 use polhode::Error;
 use polhode::parallel::Watch;
@@ -9,9 +7,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::reading::{list_floats, read_list};
-use crate::errors::{at_row, to_py};
-use crate::interrupt::watched;
-use crate::stack::Stack;
+use crate::stack::{Stack, try_watched};
 
 /// Times, and the vectors of shape (..., n, 3) that belong to them; their names are those of the arguments.
 pub(crate) fn samples(
@@ -40,16 +36,5 @@ pub(crate) fn try_series<R: Send>(
         Some((&count, leading)) => (count, leading.to_vec()),
         None => (0, Vec::new()),
     };
-    let rows: Result<_, (usize, Error)> = watched(py, |watch| {
-        let all = values.rows.chunks(count.max(1)).enumerate();
-        all.map(|(row, series)| match watch(0.0) {
-            ControlFlow::Continue(()) => f(series, watch).map_err(|error| (row, error)),
-            ControlFlow::Break(()) => Err((row, Error::Stopped)),
-        })
-        .collect()
-    })?;
-    match rows {
-        Ok(rows) => Ok(Stack { shape, rows }),
-        Err((row, error)) => Err(at_row(&shape, row, &to_py(py, &error), py)),
-    }
+    try_watched(py, shape, values.rows.chunks(count.max(1)), f)
 }

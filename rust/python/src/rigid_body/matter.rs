@@ -1,7 +1,5 @@
 //! Bodies of particles and of voxels.
 
-use std::ops::ControlFlow;
-
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use polhode::Error;
 use polhode::error::BodyFault;
@@ -19,7 +17,7 @@ use crate::figure::{Outline, alone};
 use crate::interrupt::watched;
 use crate::particles::{ParticleArrays, read_labels};
 use crate::shape::tuple;
-use crate::stack::{Broadcast, Stack};
+use crate::stack::{Broadcast, Stack, try_watched};
 use crate::uncertain::{Quantity, carried, holds_uncertain, is_uncertain, quantity_list};
 
 #[pymethods]
@@ -284,25 +282,16 @@ fn of_voxels<T: Voxel>(
         return Err(PyValueError::new_err(message));
     };
     let size: usize = cells.iter().product();
-    let bodies = watched(py, |watch| {
-        let grids = (0..leading.iter().product()).map(|row| Grid {
-            density: &density[row * size..(row + 1) * size],
-            shape: cells,
-            spacing,
-            origin,
-        });
-        (grids.enumerate())
-            .map(|(row, grid)| {
-                // A small grid is done before it asks.
-                let made = match watch(0.0) {
-                    ControlFlow::Continue(()) => voxels(&grid, watch),
-                    ControlFlow::Break(()) => Err(Error::Stopped),
-                };
-                made.map_err(|error| (row, error))
-            })
-            .collect()
+    let grids = (0..leading.iter().product()).map(|row| Grid {
+        density: &density[row * size..(row + 1) * size],
+        shape: cells,
+        spacing,
+        origin,
+    });
+    let bodies = try_watched(py, leading.to_vec(), grids, |grid, watch| {
+        voxels(&grid, watch)
     })?;
-    stack(py, leading.to_vec(), bodies)
+    Ok(bodies.into())
 }
 
 /// The bodies under their shape, or the error with its row.
