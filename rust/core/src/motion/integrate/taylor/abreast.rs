@@ -3,6 +3,7 @@
 use super::directions::{add_squares, axis, from_squares, halved, roots};
 use super::pack::{Lined, Pack};
 use super::series::{COUNT, Coefficient, RECIPROCALS, Series};
+use super::step::increment;
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
 
@@ -128,6 +129,11 @@ impl<L: Lane, const B: usize, const R: usize> Series<Pack<L, R>, B> for Abreast<
             q,
             g: self.directions[k],
         }
+    }
+
+    #[inline(always)]
+    fn increment(&self, order: usize, h: Pack<L, R>) -> [Pack<L, R>; 7] {
+        increment(self, order, h)
     }
 
     type Sums = AbreastSums<Pack<L, R>>;

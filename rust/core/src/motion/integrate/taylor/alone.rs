@@ -27,10 +27,19 @@ impl<L: Lane, const W: usize> Components<L, W> {
         self
     }
 
+    /// `self · factor + other`, each number by itself.
     #[inline(always)]
-    fn halved(mut self) -> Self {
+    fn times_plus(mut self, factor: L, other: &Self) -> Self {
         for i in 0..W {
-            self.0[i] = self.0[i] * L::new(0.5);
+            self.0[i] = self.0[i].mul_add(factor, other.0[i]);
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn times(mut self, factor: L) -> Self {
+        for i in 0..W {
+            self.0[i] = self.0[i] * factor;
         }
         self
     }
@@ -108,8 +117,8 @@ impl<L: Lane, const B: usize> Signs<L, B> {
 /// together: what lies across two places that were stored apart would have to wait until both are in the cache.
 #[derive(Clone, Copy, Debug)]
 struct Order<L, const B: usize> {
-    q: Components<L, 4>,
-    w: [L; 3],
+    /// (x, y, z, w) of the attitude, ω, and zero.
+    state: Components<L, 8>,
     left: Components<L, 16>,
     right: Components<L, 16>,
     roots: [Components<L, 8>; B],
@@ -120,8 +129,7 @@ impl<L: Lane, const B: usize> Order<L, B> {
     #[inline(always)]
     fn none() -> Self {
         Self {
-            q: Components::new(),
-            w: [L::new(0.0); 3],
+            state: Components::new(),
             left: Components::new(),
             right: Components::new(),
             roots: [Components::new(); B],
@@ -137,8 +145,7 @@ impl<L: Lane, const B: usize> Order<L, B> {
             Components([w0, w1, w2, w2]).mixed(&RIGHT, &signs.right).0;
         let [x, y, z, s] = q.0;
         let mut order = Self {
-            q,
-            w,
+            state: Components([x, y, z, s, w0, w1, w2, L::new(0.0)]),
             left: Components([l0, l1, l2, l3, l4, l5, l6, l7, y, x, s, z, w2, w1, w2, w1]),
             right: Components([
                 r0, r1, r2, r3, r4, r5, r6, r7, w2, w2, w2, w2, w2, w2, w0, w0,
@@ -196,7 +203,7 @@ impl<L: Lane, const B: usize> LaneSums<L, B> {
         self.add(middle, middle);
         for b in 0..B {
             let root = &middle.roots[b];
-            self.squares[b] = self.squares[b].plus_products(&root.halved(), root);
+            self.squares[b] = self.squares[b].plus_products(&root.times(L::new(0.5)), root);
         }
     }
 }
@@ -228,17 +235,17 @@ impl<L: Lane, const B: usize> Series<Pack<L, 1>, B> for Alone<L, B> {
 
     #[inline(always)]
     fn get(&self, k: usize) -> Coefficient<Pack<L, 1>, B> {
-        let Order { q, w, g, .. } = &self.orders[k];
+        let Order { state, g, .. } = &self.orders[k];
         let mut at = Coefficient {
             w: [Pack::new(0.0); 3],
             q: [Pack::new(0.0); 4],
             g: [[Pack::new(0.0); 3]; B],
         };
         for i in 0..4 {
-            at.q[i] = Pack([q.0[i]]);
+            at.q[i] = Pack([state.0[i]]);
         }
         for i in 0..3 {
-            at.w[i] = Pack([w[i]]);
+            at.w[i] = Pack([state.0[4 + i]]);
         }
         for b in 0..B {
             for i in 0..3 {
@@ -246,6 +253,27 @@ impl<L: Lane, const B: usize> Series<Pack<L, 1>, B> for Alone<L, B> {
             }
         }
         at
+    }
+
+    #[inline(always)]
+    fn increment(&self, order: usize, h: Pack<L, 1>) -> [Pack<L, 1>; 7] {
+        let [h] = h.0;
+        let square = h * h;
+        let (mut odd, mut even) = (Components::new(), Components::new());
+        for pair in self.orders[1..=order].chunks_exact(2).rev() {
+            odd = odd.times_plus(square, &pair[0].state);
+            even = even.times_plus(square, &pair[1].state);
+        }
+        let [x, y, z, w, w0, w1, w2, _] = even.times_plus(h, &odd).times(h).0;
+        [
+            Pack([w0]),
+            Pack([w1]),
+            Pack([w2]),
+            Pack([x]),
+            Pack([y]),
+            Pack([z]),
+            Pack([w]),
+        ]
     }
 
     type Sums = LaneSums<L, B>;

@@ -7,6 +7,7 @@ use super::pace::Pace;
 use super::pack::Pack;
 use super::row::Row;
 use super::series::{Coefficient, Series};
+use super::step::increment;
 use crate::motion::loads::variables::{Varied, WIDTH};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
@@ -77,6 +78,10 @@ impl<const B: usize> Series<One, B> for Derived<B> {
             q: [at(x), at(y), at(z), at(s)],
             g,
         }
+    }
+
+    fn increment(&self, order: usize, h: One) -> [One; 7] {
+        increment(self, order, h)
     }
 
     type Sums = Products<B>;

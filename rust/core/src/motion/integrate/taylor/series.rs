@@ -67,6 +67,9 @@ pub(super) trait Series<T, const B: usize> {
     fn rescale(&mut self, _ratio: f64) {}
     /// The coefficient of order `k`; the directions are there once the sums of that order are.
     fn get(&self, k: usize) -> Coefficient<T, B>;
+    /// What the polynomials of a step, of even order, add to the state within the time `h`: Horner's rule in h², for the even and
+    /// the odd powers side by side, since each product waits for the one before.
+    fn increment(&self, order: usize, h: T) -> [T; 7];
     /// The sums of products of order `k`.
     type Sums;
     /// Those of order `k`, when the coefficients up to k are set; asked for in order.

@@ -1,23 +1,78 @@
 //! One step: how long it may be, and the state at its end or anywhere within it.
 
+use std::ops::{Index, IndexMut};
+
 use super::pack::Pack;
 use super::series::{Coefficient, Series};
 use crate::numerics::double_double::two_sum;
 use crate::numerics::number::Number;
 
-/// ω in principal axes and (x, y, z, w) of the attitude, each with what rounding has left out of it so far.
+/// ω in principal axes and (x, y, z, w) of the attitude. The attitude begins at a place of its own: a register that held numbers
+/// of both would be loaded across two places that were stored apart, and would have to wait until both are in the cache.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct State<T> {
+    omega: [T; 3],
+    attitude: Apart<[T; 4]>,
+}
+
+/// At a place where a register of four numbers is loaded at once.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+struct Apart<T>(T);
+
+impl<T: Copy> State<T> {
+    #[inline(always)]
+    fn of(number: T) -> Self {
+        Self {
+            omega: [number; 3],
+            attitude: Apart([number; 4]),
+        }
+    }
+
+    /// All seven.
+    #[inline(always)]
+    pub(super) fn all(&self) -> [T; 7] {
+        let ([w0, w1, w2], [x, y, z, w]) = (self.omega, self.attitude.0);
+        [w0, w1, w2, x, y, z, w]
+    }
+}
+
+impl<T> Index<usize> for State<T> {
+    type Output = T;
+
+    #[inline(always)]
+    fn index(&self, i: usize) -> &T {
+        match i {
+            0..3 => &self.omega[i],
+            _ => &self.attitude.0[i - 3],
+        }
+    }
+}
+
+impl<T> IndexMut<usize> for State<T> {
+    #[inline(always)]
+    fn index_mut(&mut self, i: usize) -> &mut T {
+        match i {
+            0..3 => &mut self.omega[i],
+            _ => &mut self.attitude.0[i - 3],
+        }
+    }
+}
+
+/// The state, with what rounding has left out of each number so far.
 #[derive(Clone, Debug)]
 pub(super) struct Compensated<T> {
-    pub(super) value: [T; 7],
-    pub(super) rest: [T; 7],
+    pub(super) value: State<T>,
+    pub(super) rest: State<T>,
 }
 
 impl<L: Number, const R: usize> Compensated<Pack<L, R>> {
     #[inline(always)]
     pub(super) fn new() -> Self {
+        let zero = State::of(Pack::new(0.0));
         Self {
-            value: [Pack::new(0.0); 7],
-            rest: [Pack::new(0.0); 7],
+            value: zero,
+            rest: zero,
         }
     }
 
@@ -25,26 +80,27 @@ impl<L: Number, const R: usize> Compensated<Pack<L, R>> {
     /// half a turn what is left of the length would grow, by `1 − cos(ω h/2)`.
     #[inline(always)]
     pub(super) fn add(&mut self, increment: &[Pack<L, R>; 7]) {
+        let (value, rest) = (&mut self.value, &mut self.rest);
         // Written out, since a loop would be vectorised across the numbers instead of the rows.
-        let [v0, v1, v2, v3, v4, v5, v6] = &mut self.value;
-        let [r0, r1, r2, r3, r4, r5, r6] = &mut self.rest;
+        let ([v0, v1, v2], [r0, r1, r2]) = (&mut value.omega, &mut rest.omega);
         compensate(v0, r0, increment[0]);
         compensate(v1, r1, increment[1]);
         compensate(v2, r2, increment[2]);
-        compensate(v3, r3, increment[3]);
-        compensate(v4, r4, increment[4]);
-        compensate(v5, r5, increment[5]);
-        compensate(v6, r6, increment[6]);
+        let (q, left_out) = (&mut value.attitude.0, &mut rest.attitude.0);
+        let ([q0, q1, q2, q3], [r0, r1, r2, r3]) = (&mut *q, &mut *left_out);
+        compensate(q0, r0, increment[3]);
+        compensate(q1, r1, increment[4]);
+        compensate(q2, r2, increment[5]);
+        compensate(q3, r3, increment[6]);
         // ½ (1 − |q|²), with the rest: the first-order correction.
         let mut lack = Pack::new(1.0);
-        for i in 3..7 {
-            let (q, rest) = (self.value[i], self.rest[i]);
-            lack = (-q).mul_add(q + rest + rest, lack);
+        for i in 0..4 {
+            lack = (-q[i]).mul_add(q[i] + left_out[i] + left_out[i], lack);
         }
         lack = lack * Pack::new(0.5);
-        for i in 3..7 {
-            let change = self.value[i] * lack;
-            compensate(&mut self.value[i], &mut self.rest[i], change);
+        for i in 0..4 {
+            let change = q[i] * lack;
+            compensate(&mut q[i], &mut left_out[i], change);
         }
     }
 
@@ -76,8 +132,7 @@ pub(super) fn compensate<L: Number, const R: usize>(
     (*value, *rest) = two_sum(*value, increment + *rest);
 }
 
-/// What the polynomials of a step, of even order, add to the state within the time `h`: Horner's rule in h², for the even and
-/// the odd powers side by side, since each product waits for the one before.
+/// [`Series::increment`] from the coefficients.
 #[inline(always)]
 pub(super) fn increment<L: Number, const R: usize, const B: usize>(
     series: &impl Series<Pack<L, R>, B>,

@@ -2,6 +2,7 @@
 
 use super::pack::Pack;
 use super::series::{Coefficient, Series};
+use super::step::increment;
 use crate::numerics::double_double::two_sum;
 use crate::numerics::lane::Lane;
 use crate::numerics::twofold::Twofold;
@@ -139,6 +140,11 @@ impl<L: Lane, const B: usize, const W: usize> Series<Double<L>, B> for Twin<L, B
     #[inline(always)]
     fn get(&self, k: usize) -> Coefficient<Double<L>, B> {
         self.plain[k]
+    }
+
+    #[inline(always)]
+    fn increment(&self, order: usize, h: Double<L>) -> [Double<L>; 7] {
+        increment(self, order, h)
     }
 
     type Sums = TwinSums<L, W>;

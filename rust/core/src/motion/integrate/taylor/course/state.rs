@@ -60,11 +60,12 @@ impl<X: Precision> Course<'_, X> {
             omega: (self.axes * Vector3::new(x, y, z)).map(X::rounded) * self.unit,
             position,
             velocity,
-            own: self
-                .own_in_body(&besides.own)
-                .into_iter()
-                .map(X::rounded)
-                .collect(),
+            own: if besides.own.is_empty() {
+                Box::default()
+            } else {
+                let own = self.own_in_body(&besides.own).into_iter();
+                own.map(X::rounded).collect()
+            },
         }
     }
 

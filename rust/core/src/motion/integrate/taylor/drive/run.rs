@@ -70,10 +70,10 @@ fn run<'a, L: Number<Real: Precision>, S: Series<Pack<L, R>, B>, const B: usize,
             None
         };
         idle = lanes.step();
-        let seen = before.map(|before| lanes.seen(before));
         idle |= lanes.refuse_endless();
-        if let (Some(see), Some(step)) = (&mut see, seen)
-            && see(step, idle).is_break()
+        // A motion that was refused has no last step to be seen: whoever asks looks how the run ended.
+        if let (Some(see), Some(before)) = (&mut see, before)
+            && see(lanes.seen(before), idle).is_break()
         {
             lanes.end(0, End::Stopped);
             return ControlFlow::Break(());

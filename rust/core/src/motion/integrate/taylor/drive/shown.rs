@@ -160,8 +160,8 @@ where
         );
         let begin = (now.0 + now.1) / unit;
         let initial = course.initial();
-        let state_in_body = course.in_body(&state.value.map(|number| number.real(0)));
-        let rest_in_body = course.in_body(&state.rest.map(|number| number.real(0)));
+        let state_in_body = course.in_body(&state.value.all().map(|number| number.real(0)));
+        let rest_in_body = course.in_body(&state.rest.all().map(|number| number.real(0)));
         let rounded = state_in_body.map(L::Real::rounded);
         let change = |i: usize| (state_in_body[i] - rounded[i].into() + rest_in_body[i]).rounded();
         Step {

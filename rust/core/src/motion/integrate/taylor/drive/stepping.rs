@@ -1,5 +1,7 @@
 //! One step of every motion.
 
+use std::hint::black_box;
+
 use super::lanes::{Landing, Lanes, OUTGROWN};
 use super::settings::Settings;
 use super::stops::Meeting;
@@ -8,7 +10,7 @@ use crate::motion::integrate::taylor::directions::seen;
 use crate::motion::integrate::taylor::frame::Precision;
 use crate::motion::integrate::taylor::pack::{Pack, plus};
 use crate::motion::integrate::taylor::series::{Coefficient, Series};
-use crate::motion::integrate::taylor::step::{increment, longest};
+use crate::motion::integrate::taylor::step::longest;
 use crate::motion::problem::limits::HELD;
 use crate::numerics::double_double::{fast_two_sum, two_sum};
 use crate::numerics::number::{Number, Real};
@@ -57,7 +59,7 @@ where
                 signed.put(row, self.time_to_stop(row));
             }
         }
-        let change = increment(&self.series, order, signed);
+        let change = self.series.increment(order, signed);
         self.state.add(&self.extras.change_in_space(change));
         if let Some(push) = &mut self.push {
             let change = push.increment(order, signed);
@@ -113,7 +115,7 @@ where
             }
             self.extras.expand(order);
         }
-        let [w0, w1, w2, x, y, z, w] = self.state.value;
+        let [w0, w1, w2, x, y, z, w] = self.state.value.all();
         let q = [x, y, z, w];
         let mut g = self.directions;
         for g in &mut g {
@@ -134,7 +136,9 @@ where
             self.extend(k);
         }
         for k in first..order {
-            self.extend(k);
+            // The compiler is to find every place from k: from one order to the next it would go on in a dozen places at once,
+            // more than there are registers.
+            self.extend(black_box(k));
         }
         if let Some(push) = &mut self.push {
             push.expand(order, &self.series, &self.field);
@@ -224,7 +228,7 @@ where
         let mut within = Pack::new(0.0);
         within.put(row, time);
         let order = self.settings.order;
-        let change = increment(&self.series, order, within);
+        let change = self.series.increment(order, within);
         let change = self.extras.change_in_space(change);
         let state = self.state.moved(&change, row);
         // No `map`: its closure would be compiled without the instructions of the level.

@@ -73,16 +73,19 @@ where
             return;
         }
         let number = run.samples.len();
-        run.samples.push(phase.clone());
+        let is_last = lead.job.course.is_last(number);
+        if is_last {
+            run.phase.clone_from(&phase);
+        }
+        run.samples.push(phase);
         if let Some(tell) = &mut lead.job.tell {
             let course = &lead.job.course;
             let own = course.own_reported(state, &besides.own);
             tell(number, &course.in_body(state), &own);
         }
-        if lead.job.course.is_last(number) {
+        if is_last {
             run.effort = effort(lead.steps + 1);
             run.time = lead.job.course.last_time();
-            run.phase = phase;
             run.end = End::Complete;
             self.leads[row] = None;
         } else {
