@@ -150,6 +150,23 @@ class TestEvents:
             BODY.simulate([0, 10], (1.0, 0.4, -0.8), load=loads.damping(0.05), events=fail)
         assert caught.value is error
 
+    @pytest.mark.parametrize("method", ["taylor", "dop853", "radau"])
+    @pytest.mark.parametrize("share", [0.01, 0.3, 0.99])
+    def test_a_run_that_is_refused_has_those_of_its_steps(self, method: Any, share: float) -> None:
+        options: Any = {"events": [lambda _t, omega, *_: omega[0]], "method": method, "rtol": 1e-6}
+        times, start = np.linspace(0.0, 60.0, 21), (0.3, 0.2, 1.1)
+        whole = BODY.simulate(times, start, **options)
+        most = max(1, int(share * int(whole.steps)))
+        part = BODY.simulate(times, start, **options, max_steps=most, on_failure="keep")
+        assert (str(whole.status), str(part.status)) == ("complete", "failed")
+        samples, events = np.isfinite(part.omega[:, 0]).sum(), len(part.events.t)
+        assert samples < len(times)
+        assert np.array_equal(part.omega[:samples], whole.omega[:samples])
+        assert np.array_equal(part.events.t, whole.events.t[:events])
+        # None is missing before the last sample, none lies much beyond it.
+        assert (whole.events.t < times[samples - 1]).sum() <= events
+        assert not events or part.events.t[-1] < times[samples - 1] + 6.0
+
     def test_ctrl_c_along_taylor_series(self) -> None:
         def interrupt(fraction: float) -> None:
             if fraction > 0.001:
