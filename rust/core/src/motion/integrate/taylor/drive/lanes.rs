@@ -136,8 +136,8 @@ where
         ((stop - now) + (stop_rest - now_rest)) * self.direction[row]
     }
 
-    /// The time from now to the next stop. Called only where it is needed: inlined, it would be found in every step, from numbers
-    /// that have just been stored one by one.
+    /// The time from now to the next stop. Not inlined: the compiler would compute it in every step, though only a break or an
+    /// output needs it.
     #[inline(never)]
     pub(super) fn time_to_stop(&self, row: usize) -> L::Real {
         let ((now, now_rest), (stop, stop_rest)) = (self.now[row], self.stop[row]);

@@ -71,7 +71,8 @@ fn run<'a, L: Number<Real: Precision>, S: Series<Pack<L, R>, B>, const B: usize,
         };
         idle = lanes.step();
         idle |= lanes.refuse_endless();
-        // A motion that was refused has no last step to be seen: whoever asks looks how the run ended.
+        // The last step of a motion that was refused ends at a wrong time. It is not used: `solve_seen` shows the last step of a
+        // complete run only.
         if let (Some(see), Some(before)) = (&mut see, before)
             && see(lanes.seen(before), idle).is_break()
         {

@@ -136,8 +136,8 @@ where
             self.extend(k);
         }
         for k in first..order {
-            // The compiler is to find every place from k: from one order to the next it would go on in a dozen places at once,
-            // more than there are registers.
+            // Hidden from the compiler, which would keep an address for each array and add to all of them in every round: there
+            // are more addresses than registers.
             self.extend(black_box(k));
         }
         if let Some(push) = &mut self.push {
