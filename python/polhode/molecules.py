@@ -159,7 +159,7 @@ def rotational_constants_sigma(
         raise ValueError(f"sigma: expected shape (..., 3), got {deviations.shape}")
     if not (deviations >= 0.0).all():
         raise PolhodeError("sigma: expected standard deviations of 0 or more")
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         found: Floats = constants * np.hypot(deviations / inertia, _SIGMA_OF_U)
     return np.where(np.isfinite(constants), found, np.nan)
 

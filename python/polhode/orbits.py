@@ -375,3 +375,12 @@ def from_elements(
     if since_periapsis is not None:
         place, speed = _core.kepler_states(mass, place, speed, number(since_periapsis, "since_periapsis"))
     return kepler(mass, place, speed, epoch, j2=j2, radius=radius, pole=pole)
+
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name):
+        """Refuse a name of others with the one here."""
+        from polhode._hints import no_name
+
+        raise no_name(__name__, name, __all__)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from polhode._hints import check_kind
 from polhode.errors import FileFormatError
 from polhode.files.content import content_format
 from polhode.files.xml_source import Edit, Element, edited, parse_xml
@@ -217,6 +218,7 @@ def check(
     >>> verdict.verdict
     'impossible'
     """
+    check_kind(robot, "robot", "Robot")
     declared = [Path(package) for package in (*packages, *robot.roots)]
     addresses = Addresses(robot.folder, declared, allow_outside=allow_outside)
     if density is not None and mass is not None:
@@ -253,6 +255,7 @@ def fixed(robot: Robot, verdicts: Sequence[Verdict], words: Collection[str] = FA
     >>> print(robots.fixed(robot, robots.check(robot)).decode().splitlines()[1])
     <inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial>
     """
+    check_kind(robot, "robot", "Robot")
     edits: list[Edit] = []
     for link, verdict in zip(robot.links, verdicts, strict=True):
         if verdict.verdict in words and verdict.better is not None and link.rewrite is not None:
@@ -268,3 +271,12 @@ def _walk(element: Element) -> list[str]:
         tags.append(item.tag)
         waiting += item.children
     return tags
+
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name):
+        """Refuse a name of others with the one here."""
+        from polhode._hints import no_name
+
+        raise no_name(__name__, name, __all__)

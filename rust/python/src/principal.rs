@@ -13,7 +13,9 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
 
-use crate::arrays::{Item, floats, numpy, read, write, write_numbers_of, write_of, write_words_of};
+use crate::arrays::{
+    Item, floats, numpy, read, read_scalar, write, write_numbers_of, write_of, write_words_of,
+};
 use crate::errors::{at_row, to_py, wrong_shape};
 use crate::interrupt::Interrupt;
 use crate::memory;
@@ -225,7 +227,7 @@ pub(crate) fn canonical_axes<'py>(
     py: Python<'py>,
     moments: &Bound<'py, PyAny>,
     axes: &Bound<'py, PyAny>,
-    rtol: f64,
+    #[pyo3(from_py_with = read_scalar)] rtol: f64,
 ) -> Array<'py> {
     check_rtol(rtol)?;
     let (moments, axes) = (read::<[f64; 3]>(moments, "moments")?, read(axes, "axes")?);
@@ -254,7 +256,7 @@ pub(crate) fn principal_derivative<'py>(
     moments: &Bound<'py, PyAny>,
     axes: &Bound<'py, PyAny>,
     tangent: &Bound<'py, PyAny>,
-    rtol: f64,
+    #[pyo3(from_py_with = read_scalar)] rtol: f64,
 ) -> PyResult<Derivative<'py>> {
     check_rtol(rtol)?;
     let (moments, axes) = (read::<[f64; 3]>(moments, "moments")?, read(axes, "axes")?);

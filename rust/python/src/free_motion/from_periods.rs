@@ -7,7 +7,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::PyFreeMotion;
-use crate::arrays::{Argument, read, read_or};
+use crate::arrays::{Argument, read, read_or, read_scalar};
 use crate::body::PyRigidBody;
 use crate::stack::{Broadcast, Stack};
 use crate::uncertain::UncertainStart;
@@ -74,8 +74,8 @@ impl PyRigidBody {
         py: Python<'_>,
         rotation_period: &Bound<'_, PyAny>,
         precession_period: &Bound<'_, PyAny>,
-        mode: &str,
-        sense: f64,
+        #[pyo3(from_py_with = read_scalar)] mode: &str,
+        #[pyo3(from_py_with = read_scalar)] sense: f64,
         phase: Argument<'_>,
         angular_momentum_direction: Argument<'_>,
     ) -> PyResult<PyFreeMotion> {

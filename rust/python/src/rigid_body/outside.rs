@@ -3,6 +3,7 @@
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::arrays::read_scalar;
 use crate::body::PyRigidBody;
 
 #[pymethods]
@@ -42,8 +43,8 @@ impl PyRigidBody {
     #[pyo3(signature = (mesh, *, density=None, mass=None, **options))]
     fn from_mesh_object<'py>(
         mesh: &Bound<'py, PyAny>,
-        density: Option<f64>,
-        mass: Option<f64>,
+        #[pyo3(from_py_with = read_scalar)] density: Option<f64>,
+        #[pyo3(from_py_with = read_scalar)] mass: Option<f64>,
         options: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let py = mesh.py();
@@ -88,8 +89,8 @@ impl PyRigidBody {
     #[pyo3(signature = (atoms, *, conformer=None, masses="most_common"))]
     fn from_atoms<'py>(
         atoms: &Bound<'py, PyAny>,
-        conformer: Option<i64>,
-        masses: &str,
+        #[pyo3(from_py_with = read_scalar)] conformer: Option<i64>,
+        #[pyo3(from_py_with = read_scalar)] masses: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
         atoms
             .py()

@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 
 use super::ensemble::{Ensemble, Start};
 use crate::about::is_pivot;
-use crate::arrays::read;
+use crate::arrays::{read, read_scalar};
 use crate::attitudes::read_attitude_exactly;
 use crate::body::PyRigidBody;
 use crate::depth::Deeper;
@@ -145,15 +145,15 @@ impl PyRigidBody {
         load: Given<'_, 'py>,
         position: Given<'_, 'py>,
         velocity: Given<'_, 'py>,
-        about: &str,
-        method: &str,
-        rtol: f64,
-        atol: Option<f64>,
+        #[pyo3(from_py_with = read_scalar)] about: &str,
+        #[pyo3(from_py_with = read_scalar)] method: &str,
+        #[pyo3(from_py_with = read_scalar)] rtol: f64,
+        #[pyo3(from_py_with = read_scalar)] atol: Option<f64>,
         events: Given<'_, 'py>,
-        on_failure: &str,
+        #[pyo3(from_py_with = read_scalar)] on_failure: &str,
         progress: Option<Py<PyAny>>,
         states: Given<'_, 'py>,
-        max_steps: Option<i128>,
+        #[pyo3(from_py_with = read_scalar)] max_steps: Option<i128>,
         unknown: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         hints::refuse_unknown("RigidBody.simulate", &KEYWORDS, unknown)?;
