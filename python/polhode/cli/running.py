@@ -115,7 +115,7 @@ def unknown_option(arguments: list[str]) -> str | None:
             ),
             next(iter(get_close_matches(name, sorted(known), 1, 0.7)), None),
         )
-        way_out = f"did you mean {meant}?" if meant else f"call polhode {command} --help, which lists them"
+        way_out = f"did you mean {meant}?" if meant else f"choose one that it has (see polhode {command} --help)"
         return f"{name}: {command} has no such option; {way_out}"
     return None
 
