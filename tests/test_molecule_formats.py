@@ -185,7 +185,7 @@ class TestExtendedXyz:
         assert any("the lattice of the file is not used" in note for note in json.loads(out)["notes"])
 
     def test_the_usual_order_has_no_note(self, tmp_path: Path) -> None:
-        text = "1\nProperties=species:S:1:pos:R:3:mass:R:1 energy=-1.0\nNe 0 0 1.5 20.1\n"
+        text = "1\nProperties=species:S:1:pos:R:3:charge:R:1 energy=-1.0\nNe 0 0 1.5 20.1\n"
         molecule = load(written(tmp_path / "a.xyz", text)).molecule
         assert (molecule.labels, molecule.notes) == (("Ne",), ())
         assert molecule.positions.tolist() == [[0, 0, 1.5]]
