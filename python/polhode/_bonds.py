@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["CellBond", "CellCrossings", "bonds", "cell_crossings", "crossing_notes", "uncertain_positions"]
+__all__ = ["CellBond", "CellCrossings", "bonds", "cell_crossings", "crossings_of", "uncertain_positions"]
 
 _MARGIN: Final = 0.45
 """Angstrom by which bonded atoms may be farther apart than the sum of their radii."""
@@ -216,18 +216,19 @@ def cell_crossings(labels: Sequence[str | Isotope], positions: ArrayLike, cell: 
     )
 
 
-def crossing_notes(labels: Sequence[str | Isotope], positions: ArrayLike, cell: ArrayLike) -> list[str]:
-    """Say where bonds or fragments cross a cell; nothing where none does."""
+def crossings_of(
+    labels: Sequence[str | Isotope], positions: ArrayLike, cell: ArrayLike
+) -> tuple[CellCrossings | None, list[str]]:
+    """Find what crosses a cell, None where that cannot be found, with words for whoever reads the moments."""
     try:
         found = cell_crossings(labels, positions, cell)
     except PolhodeError as error:
-        return [f"what crosses the sides of the cell was not looked for: {error}"]
+        return None, [f"what crosses the sides of the cell was not looked for: {error}"]
     notes = []
     if found.bonds:
         names = names_of(labels)
-        said = ", ".join(f"{names[i]}({i + 1})-{names[j]}({j + 1})" for i, j, _ in found.bonds[:_NAMED]) + (
-            f" and {len(found.bonds) - _NAMED} more" if len(found.bonds) > _NAMED else ""
-        )
+        said = ", ".join(f"{names[i]}({i + 1})-{names[j]}({j + 1})" for i, j, _ in found.bonds[:_NAMED])
+        said += f" and {len(found.bonds) - _NAMED} more" if len(found.bonds) > _NAMED else ""
         count = f"{len(found.bonds)} bonds cross" if len(found.bonds) > 1 else "1 bond crosses"
         if found.is_endless:
             effect = "the structure goes on without end, as a crystal, and has no moments as a whole"
@@ -240,16 +241,16 @@ def crossing_notes(labels: Sequence[str | Isotope], positions: ArrayLike, cell: 
     elif any(found.crossed):
         along = ", ".join(
             f"{least:.3g} instead of {extent:.3g} of vector {number}"
-            for number, (extent, least, crossed) in enumerate(
+            for number, (extent, least, is_crossed) in enumerate(
                 zip(found.extents, found.least_extents, found.crossed, strict=True), start=1
             )
-            if crossed
+            if is_crossed
         )
         notes.append(
             f"the atoms stand together only through a side of the cell, over {along}: centre and moments are "
             "those of the pieces as they stand; move atoms by whole vectors of the cell first"
         )
-    return notes
+    return found, notes
 
 
 def _in_cell(places: Floats, cell: ArrayLike) -> tuple[Floats, Floats]:

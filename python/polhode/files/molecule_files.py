@@ -120,11 +120,14 @@ def _pdb_atom(line: str) -> _PdbAtom:
         raise _FaultError("the line holds a tab, but PDB counts columns; write spaces")
     coordinates = _coordinates(line[30:38], line[38:46], line[46:54])
     alternate, occupancy = line[16:17].strip(), 1.0
-    if alternate and line[54:60].strip():
+    if text := line[54:60].strip():
         try:
-            occupancy = float(number_of(line[54:60].strip()))
+            occupancy = float(number_of(text))
         except ValueError:
-            raise _FaultError(f"expected an occupancy in columns 55 to 60, got {line[54:60]!r}") from None
+            if alternate:  # else it decides nothing
+                raise _FaultError(
+                    f"expected an occupancy in columns 55 to 60, got {line[54:60]!r}; correct it"
+                ) from None
     site = (line[21:22], line[22:27], line[72:76].strip())
     residue = line[17:20].strip()
     return _PdbAtom(site, residue, line[12:16].strip(), alternate, occupancy, _element(line), coordinates)

@@ -65,6 +65,14 @@ class Molecule(NamedTuple):
     notes: tuple[str, ...] = ()
     cell: NDArray[np.float64] | None = None
 
+    def scaled(self, factor: float) -> Molecule:
+        """Return the molecule with all lengths in another unit."""
+        return self._replace(
+            positions=self.positions * factor,
+            rounding=self.rounding * factor,
+            cell=None if self.cell is None else self.cell * factor,
+        )
+
 
 def read_xyz(path: str | os.PathLike[str]) -> Molecule:
     """Read a molecule from an XYZ file: a count, a comment, then one ``symbol x y z`` per atom.
