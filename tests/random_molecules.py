@@ -1,7 +1,7 @@
 """Random files of molecules that use every option of their formats, each with what it holds.
 
-Nothing in a file is a real molecule: elements, isotopes and places are drawn, so that whatever a reader mistakes
-shows in the mass or in a coordinate.
+Nothing in a file is a real molecule: elements, isotopes and places are drawn, so that whatever a reader
+mistakes shows in the mass or in a coordinate.
 """
 
 from __future__ import annotations
@@ -14,13 +14,42 @@ import numpy as np
 __all__ = ["Atom", "Case", "extended_xyz", "mol", "pdb", "v3000", "xyz"]
 
 #: Of one letter and of two, among these all that a name of another element could be taken for.
-ELEMENTS = "H B C N O F P S K V I W U Y He Co Ca Cd Ce Cl Cu Ne Na Ni Hg Ho Hf Fe Se Zn Br Os Pt Sc Sn Np Li Mg".split()
 NUMBERS = {
-    "H": 1, "He": 2, "Li": 3, "B": 5, "C": 6, "N": 7, "O": 8, "F": 9, "Ne": 10, "Na": 11, "Mg": 12, "P": 15, "S": 16,
-    "Cl": 17, "K": 19, "Ca": 20, "Sc": 21, "V": 23, "Fe": 26, "Co": 27, "Ni": 28, "Cu": 29, "Zn": 30, "Se": 34,
-    "Br": 35, "Y": 39, "Cd": 48, "Sn": 50, "I": 53, "Ce": 58, "Ho": 67, "Hf": 72, "W": 74, "Os": 76, "Pt": 78,
-    "Hg": 80, "U": 92, "Np": 93,
-}  # fmt: skip
+    "H": 1,
+    "He": 2,
+    "Li": 3,
+    "B": 5,
+    "C": 6,
+    "N": 7,
+    "O": 8,
+    "F": 9,
+    "Ne": 10,
+    "Na": 11,
+    "Mg": 12,
+    "P": 15,
+    "S": 16,
+    "Cl": 17,
+    "K": 19,
+    "Ca": 20,
+}
+NUMBERS |= {
+    "Sc": 21,
+    "V": 23,
+    "Fe": 26,
+    "Co": 27,
+    "Ni": 28,
+    "Cu": 29,
+    "Zn": 30,
+    "Se": 34,
+    "Br": 35,
+    "Y": 39,
+    "Cd": 48,
+    "Sn": 50,
+    "I": 53,
+    "Ce": 58,
+}
+NUMBERS |= {"Ho": 67, "Hf": 72, "W": 74, "Os": 76, "Pt": 78, "Hg": 80, "U": 92, "Np": 93}
+ELEMENTS = list(NUMBERS)
 #: Isotopes of the most abundance, and others that occur, by mass number.
 COMMON = {"H": 1, "B": 11, "C": 12, "N": 14, "O": 16, "F": 19, "P": 31, "S": 32, "Cl": 35, "K": 39}
 OTHERS = {"H": 2, "B": 10, "C": 13, "N": 15, "O": 18, "F": 18, "P": 32, "S": 34, "Cl": 37, "K": 41}
@@ -32,7 +61,7 @@ class Atom:
 
     number: int
     mass_number: int
-    place: tuple[float, float, float]
+    place: tuple[float, ...]
 
 
 @dataclass
@@ -88,7 +117,7 @@ def line_ends(rng: np.random.Generator, case: Case, with_mark: bool = True) -> N
 
 
 def pdb_name(element: str, rng: np.random.Generator, number: int, case: Case, has_columns: bool) -> str:
-    """A name in columns 13 to 16 as the format has it: one letter in the second column, two from the first on."""
+    """A name in columns 13 to 16: a single letter stands in the second column, two from the first on."""
     if len(element) == 1:
         return f" {element}{rng.choice(['', str(number % 10), f'{number % 100:02d}'])}".ljust(4)
     tail = str(rng.choice(["", str(number % 10)]))
@@ -141,93 +170,116 @@ def pdb(rng: np.random.Generator) -> Case:
     return case
 
 
+@dataclass
+class Residue:
+    """What stands in each line of a residue's atoms."""
+
+    record: str
+    name: str
+    chain: str
+    number: int
+    code: str
+    segment: str
+    has_columns: bool
+
+    def line(
+        self,
+        rng: np.random.Generator,
+        serial: int,
+        name: str,
+        element: str,
+        place: tuple[float, ...],
+        alternate: str = " ",
+        occupancy: float = 1.0,
+        residue: str = "",
+    ) -> str:
+        shown = f"{serial:5d}" if rng.random() < 0.9 else f"A{serial:04d}"  # hybrid-36 from 100,000 on
+        columns, charge = "  ", "  "
+        if self.has_columns:
+            columns = f"{element.upper():>2s}"
+            charge = str(rng.choice(["  ", "  ", "2+", "1-"]))
+            if len(element) == 1 and rng.random() < 0.1:
+                columns = f"{element} "
+        numbers = "".join(f"{x:8.3f}" for x in place)
+        return (
+            f"{self.record:6s}{shown} {name}{alternate}{residue or self.name} {self.chain}{self.number:4d}"
+            f"{self.code}   {numbers}{occupancy:6.2f}{10.0:6.2f}      {self.segment}{columns}{charge}"
+        )
+
+
 def pdb_residues(rng: np.random.Generator, case: Case, has_columns: bool) -> list[str]:
     lines: list[str] = []
-    serial = 1
     number = int(rng.integers(-3, 200))
     for _ in range(int(rng.integers(1, 5))):
-        chain = str(rng.choice(list("AB1 ")))
-        code = str(rng.choice([" ", " ", " ", "A", "P"]))
         number += 1
-        residue = str(rng.choice(["ALA", "LIG", " DG", "UNL", "HOH", "  U"]))
-        record = str(rng.choice(["ATOM", "HETATM"]))
-        segment = str(rng.choice(["    ", "    ", "SEGA"]))
-        count = int(rng.integers(1, 6))
-        kind = rng.choice(["plain", "plain", "places", "residues"])
-        at = iter(places(rng, 4 * count))
-        if code != " ":
+        residue = Residue(
+            record=str(rng.choice(["ATOM", "HETATM"])),
+            name=str(rng.choice(["ALA", "LIG", " DG", "UNL", "HOH", "  U"])),
+            chain=str(rng.choice(list("AB1 "))),
+            number=number,
+            code=str(rng.choice([" ", " ", " ", "A", "P"])),
+            segment=str(rng.choice(["    ", "    ", "SEGA"])),
+            has_columns=has_columns,
+        )
+        if residue.code != " ":
             case.options.append("insertion code")
-
-        def line(
-            name: str,
-            element: str,
-            place: tuple[float, ...],
-            alternate: str = " ",
-            occupancy: float = 1.0,
-            residue: str = residue,
-        ) -> str:
-            nonlocal serial
-            shown = f"{serial:5d}" if rng.random() < 0.9 else f"A{serial:04d}"  # hybrid-36 from 100,000 on
-            serial += 1
-            columns = f"{element.upper():>2s}" if has_columns else "  "
-            if has_columns and len(element) == 1 and rng.random() < 0.1:
-                columns = f"{element} "
-            charge = str(rng.choice(["  ", "  ", "2+", "1-"])) if has_columns else "  "
-            numbers = "".join(f"{x:8.3f}" for x in place)
-            return (
-                f"{record:6s}{shown} {name}{alternate}{residue} {chain}{number:4d}{code}   {numbers}"
-                f"{occupancy:6.2f}{10.0:6.2f}      {segment}{columns}{charge}"
-            )
-
-        def element_of(residue: str = residue) -> str:
-            found = str(rng.choice(ELEMENTS))
-            # In the building blocks of life a name that begins with H in column 13 is read either way.
-            return "C" if not has_columns and found[0] == "H" and len(found) == 2 else found
-
-        for index in range(count):
-            element = element_of()
-            if rng.random() < 0.12:
-                element = "H"
-                name = f"H{index}{int(rng.integers(10))}{rng.choice(['A', 'B', chr(39)])}"  # all four columns
-            elif rng.random() < 0.08:
-                element, name = "D", f" D{index} "
-            else:
-                name = pdb_name(element, rng, index, case, has_columns)
-            symbol, mass = ("H", 2) if element == "D" else (element, 0)
-            if kind == "places":
-                case.options.append("alternate places")
-                weights = [round(float(w), 2) for w in rng.dirichlet([1.0] * int(rng.integers(2, 4)))]
-                if rng.random() < 0.3:
-                    weights[:2] = [0.5, 0.5]
-                letters = rng.permutation(list("BCDA12"))
-                found = [(w, next(at), str(letter)) for w, letter in zip(weights, letters, strict=False)]
-                if rng.random() < 0.2:
-                    found[0] = (*found[0][:2], " ")  # as old files have it
-                best = max(weights)
-                place = next(p for w, p, _ in found if w == best)
-                # The index keeps names of one residue apart: equal ones are alternatives here.
-                name = f"{name[:2]}{index}{name[3:]}"[: 4 if name[0] == "H" else 3].ljust(4)
-                lines += [line(name, element, p, letter, w) for w, p, letter in found]
-            elif kind == "residues" and index == 0:
-                case.options.append("alternate residues")
-                other = "SER" if residue != "SER" else "THR"
-                weights = [0.35, 0.65] if rng.random() < 0.5 else [0.5, 0.5]
-                pair = [(element, name, next(at), residue), (element_of(), f" X{index} ", next(at), other)]
-                pair[1] = (pair[1][0], pdb_name(pair[1][0], rng, 7, case, has_columns), *pair[1][2:])
-                lines += [
-                    line(n, e, p, letter, w, r)
-                    for (e, n, p, r), w, letter in zip(pair, weights, "AB", strict=True)
-                ]
-                element, _, place, _ = pair[1] if weights[1] > weights[0] else pair[0]
-                symbol, mass = ("H", 2) if element == "D" else (element, 0)
-            else:
-                place = next(at)
-                lines.append(line(name, element, place))
-                if rng.random() < 0.1:
-                    lines.append("ANISOU" + lines[-1][6:27])
-            case.atoms.append(Atom(NUMBERS[symbol], mass, place))  # type: ignore[arg-type]
+        lines += pdb_atoms(rng, case, residue, len(lines) + 1)
         if rng.random() < 0.2:
-            lines.append(f"TER   {serial:5d}")
+            lines.append(f"TER   {len(lines):5d}")
+    return lines
+
+
+def pdb_element(rng: np.random.Generator, has_columns: bool) -> str:
+    found = str(rng.choice(ELEMENTS))
+    # Without columns 77 and 78 a name that begins with H in column 13 is read either way in a biopolymer.
+    return "C" if not has_columns and found[0] == "H" and len(found) == 2 else found
+
+
+def pdb_atoms(rng: np.random.Generator, case: Case, residue: Residue, serial: int) -> list[str]:
+    lines: list[str] = []
+    count = int(rng.integers(1, 6))
+    kind = rng.choice(["plain", "plain", "places", "residues"])
+    at = iter(places(rng, 4 * count))
+    for index in range(count):
+        element = pdb_element(rng, residue.has_columns)
+        if rng.random() < 0.12:
+            element = "H"
+            name = f"H{index}{int(rng.integers(10))}{rng.choice(['A', 'B', chr(39)])}"  # all four columns
+        elif rng.random() < 0.08:
+            element, name = "D", f" D{index} "
+        else:
+            name = pdb_name(element, rng, index, case, residue.has_columns)
+        if kind != "plain":  # equal names of a residue are alternatives there
+            name = f"{name[:2]}{index}{name[3:]}"[: 4 if name[0] == "H" else 3].ljust(4)
+        if kind == "places":
+            case.options.append("alternate places")
+            weights = [round(float(w), 2) for w in rng.dirichlet([1.0] * int(rng.integers(2, 4)))]
+            if rng.random() < 0.3:
+                weights[:2] = [0.5, 0.5]
+            letters = [str(letter) for letter in rng.permutation(list("BCDA12"))]
+            if rng.random() < 0.2:
+                letters[0] = " "  # as old files have it
+            found = [(w, next(at), letter) for w, letter in zip(weights, letters, strict=False)]
+            place = next(p for w, p, _ in found if w == max(weights))
+            for w, p, letter in found:
+                lines.append(residue.line(rng, serial + len(lines), name, element, p, letter, w))
+        elif kind == "residues" and index == 0:
+            case.options.append("alternate residues")
+            weights = [0.35, 0.65] if rng.random() < 0.5 else [0.5, 0.5]
+            other = pdb_element(rng, residue.has_columns)
+            pair = [
+                (element, name, next(at), residue.name),
+                (other, pdb_name(other, rng, 7, case, residue.has_columns), next(at), "SER"),
+            ]
+            for (e, n, p, r), w, letter in zip(pair, weights, "AB", strict=True):
+                lines.append(residue.line(rng, serial + len(lines), n, e, p, letter, w, r))
+            element, _, place, _ = pair[1] if weights[1] > weights[0] else pair[0]
+        else:
+            place = next(at)
+            lines.append(residue.line(rng, serial + len(lines), name, element, place))
+            if rng.random() < 0.1:
+                lines.append("ANISOU" + lines[-1][6:27])
+        case.atoms.append(Atom(1, 2, place) if element == "D" else Atom(NUMBERS[element], 0, place))
     return lines
 
 
@@ -284,7 +336,7 @@ def mol(rng: np.random.Generator) -> Case:
         written = [symbol.upper() for symbol in written]
         case.options.append("capitals")
     if rng.random() < 0.3:
-        properties += ["M  CHG  1   1   1", "M  RAD  1   1   2"]
+        properties = ["M  CHG  1   1   1", *properties, "M  RAD  1   1   2"]
         case.options.append("CHG, RAD")
     if rng.random() < 0.1:
         properties += ["A    1", "M  ISO  1   1  99"]
@@ -292,10 +344,6 @@ def mol(rng: np.random.Generator) -> Case:
     if rng.random() < 0.1:
         properties += ["S  SKP  1", "M  ISO  1   1  99"]
         case.options.append("SKP")
-    rng.shuffle(properties) if not case.options[-1] in (
-        "alias",
-        "SKP",
-    ) and "alias" not in case.options else None
     lists = 0
     if rng.random() < 0.15:
         case.refused = "always"
@@ -332,13 +380,12 @@ def mol(rng: np.random.Generator) -> Case:
             case.options.append("two records")
             case.refused = "always"
     if rng.random() < 0.05:
-        lines = [line.replace("    ", "\t") for line in lines]
+        lines[4] = "\t" + lines[4].lstrip()
         case.options.append("tabs")
         case.refused = "always"
     case.text = "\n".join(lines) + "\n"
     case.atoms = [
-        Atom(NUMBERS[symbol], mass, place)  # type: ignore[arg-type]
-        for symbol, mass, place in zip(symbols, masses, at, strict=True)
+        Atom(NUMBERS[symbol], mass, place) for symbol, mass, place in zip(symbols, masses, at, strict=True)
     ]
     line_ends(rng, case)
     return case
@@ -380,7 +427,7 @@ def v3000(rng: np.random.Generator) -> Case:
             case.options.append("continued line")
         else:
             lines.append(f"M  V30 {line}")
-        case.atoms.append(Atom(NUMBERS[symbol], mass, place))  # type: ignore[arg-type]
+        case.atoms.append(Atom(NUMBERS[symbol], mass, place))
     lines += ["M  V30 END ATOM", "M  V30 BEGIN BOND"]
     lines += [f"M  V30 {index} 1 {index} {index + 1}" for index in range(1, count)]
     lines += ["M  V30 END BOND", "M  V30 END CTAB", "M  END"]
@@ -419,7 +466,7 @@ def xyz(rng: np.random.Generator) -> Case:
     for place in places(rng, count, decimals=5):
         label, number, mass = xyz_label(rng, case, plain)
         rows.append(gap.join([label, *(form(x) for x in place), *(["0.5", "a"] if more else [])]))
-        case.atoms.append(Atom(number, mass, place))  # type: ignore[arg-type]
+        case.atoms.append(Atom(number, mass, place))
     comment = str(
         rng.choice(["", "name", "energy = -3 'lattice", "Lattice=fcc", "a\x0cb", "a\u2028b", "1 2 3"])
     )
@@ -452,7 +499,7 @@ def extended_xyz(rng: np.random.Generator) -> Case:
             else:
                 words += [{"R": "9.5", "I": "7", "L": "T", "S": "Fe"}[kind]] * size
         rows.append(" ".join(words))
-        case.atoms.append(Atom(number, mass, place))  # type: ignore[arg-type]
+        case.atoms.append(Atom(number, mass, place))
     entries = ["Properties=" + ":".join(f"{n}:{k}:{s}" for n, k, s in columns)]
     if rng.random() < 0.3:
         entries[0] = 'properties="' + entries[0].partition("=")[2] + '"'

@@ -95,9 +95,9 @@ def _check_rdkit(molecule: Any, conformer: Any) -> None:
             "rdkit.Chem.AddHs and rdkit.Chem.AllChem.EmbedMolecule. If it is one: conformer.Set3D(True)"
         )
     if not hasattr(molecule, "NeedsUpdatePropertyCache") or molecule.NeedsUpdatePropertyCache():
-        return  # no valences are known yet, as of a molecule from XYZ
+        return  # no valences are known yet
     if molecule.GetNumBonds() == 0 and molecule.GetNumAtoms() > 1:
-        return  # as of a molecule from XYZ: atoms alone, whose valences are filled by bonds that nobody stated
+        return  # as of a molecule from XYZ, whose bonds nobody stated
     if implicit := sum(atom.GetTotalNumHs() for atom in molecule.GetAtoms()):
         warnings.warn(
             f"atoms: {implicit} hydrogens have no positions, so mass and moments are without them; "
