@@ -458,9 +458,9 @@ def xyz_label(rng: np.random.Generator, case: Case, plain: bool) -> tuple[str, i
 def xyz(rng: np.random.Generator) -> Case:
     case = Case(".xyz")
     count = int(rng.integers(1, 9))
-    form: Callable[[float], str] = rng.choice([repr, "{:.5f}".format, "{:.5f}".format, "{:12.6e}".format])  # type: ignore[arg-type,list-item]
+    form: Callable[[float], str] = rng.choice([repr, *["{:.5f}".format] * 4, "{:12.6e}".format])  # type: ignore[arg-type]
     gap = str(rng.choice([" ", "   ", "\t"]))
-    plain = rng.random() < 0.6
+    plain = rng.random() < 0.75
     rows = []
     more = rng.random() < 0.15  # RDKit reads neither more columns nor blank lines at the end
     for place in places(rng, count, decimals=5):

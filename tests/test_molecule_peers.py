@@ -48,6 +48,7 @@ def read(path: Path) -> tuple[list[Atom], Any]:
 def by_rdkit(case: Case) -> list[Atom] | None:
     """As RDKit reads it; None where it does not, or finds an atom that stands for others."""
     text = case.text
+    molecule: Any
     try:
         if case.suffix == ".pdb":
             molecule = Chem.MolFromPDBBlock(text, sanitize=False, removeHs=False, proximityBonding=False)

@@ -188,17 +188,15 @@ def cell_crossings(labels: Sequence[str | Isotope], positions: ArrayLike, cell: 
     home, shift_of = np.concatenate(homes), np.concatenate(shifts)
     moved = places[home] + (shift_of - turns[home]) @ vectors
     first, second = _near_pairs(radii[home], moved, of_first=len(places))
-    # The image of `second` by the whole vectors `shift` is bonded to `first` as it stands.
-    shift = (shift_of - turns[home])[second] - (shift_of - turns[home])[first]
+    # The image of `second` by the whole vectors `by` is bonded to `first` as it stands. Each bond is written
+    # from the smaller index, and that of an atom with its own image with a positive vector first.
+    by = (shift_of - turns[home])[second] - (shift_of - turns[home])[first]
     first, second = home[first], home[second]
-    swapped = first > second
-    first, second = np.where(swapped, second, first), np.where(swapped, first, second)
-    shift = np.where(swapped[:, None], -shift, shift)
-    leading = np.take_along_axis(shift, np.argmax(shift != 0, axis=-1)[:, None], axis=-1)[:, 0]
-    shift = np.where(((first == second) & (leading < 0))[:, None], -shift, shift)
-    found = sorted(
-        {(i, j, tuple(s)) for i, j, s in zip(first.tolist(), second.tolist(), shift.tolist(), strict=True)}
-    )
+    leading: NDArray[np.int64] = np.take_along_axis(by, np.argmax(by != 0, axis=-1)[:, None], axis=-1)[:, 0]
+    swapped = (first > second) | ((first == second) & (leading < 0))
+    by = np.where(swapped[:, None], -by, by)
+    lower, upper = np.minimum(first, second).tolist(), np.maximum(first, second).tolist()
+    found = sorted({(i, j, tuple(row)) for i, j, row in zip(lower, upper, by.tolist(), strict=True)})
     across = tuple(CellBond(i, j, by) for i, j, by in found if any(by))
     inner = [CellBond(i, j, by) for i, j, by in found if not any(by)]
     joined, is_endless = _fragments(len(places), [*inner, *across])

@@ -186,7 +186,7 @@ class _Columns(NamedTuple):
 
     label: int = 0
     position: int = 1
-    count: int = 4
+    words: int = 4
     mass: str = ""
 
 
@@ -255,9 +255,9 @@ def _atom(file: Path, number: int, row: str, columns: _Columns) -> tuple[str, li
         coordinates = []
     if len(coordinates) != 3:
         raise FileFormatError(f"{file}: line {number}: expected 'symbol x y z', got {row.strip()[:60]!r}")
-    if len(words) < columns.count:
+    if len(words) < columns.words:
         raise FileFormatError(
-            f"{file}: line {number}: expected {columns.count} words, as Properties of line 2 declares, got "
+            f"{file}: line {number}: expected {columns.words} words, as Properties of line 2 declares, got "
             f"{len(words)}; correct one of the two"
         )
     return words[columns.label], coordinates
