@@ -257,18 +257,19 @@ def _in_cell(places: Floats, cell: ArrayLike) -> tuple[Floats, Floats]:
     if vectors.ndim != 2 or vectors.shape[-1] != 3 or not 1 <= len(vectors) <= 3:
         message = f"cell: expected one to three vectors, shape (k, 3), got {vectors.shape}"
         raise ValueError(message)
-    lengths = np.linalg.norm(vectors, axis=-1)
-    if not np.isfinite(lengths).all() or np.linalg.matrix_rank(
-        vectors / np.maximum(lengths, 1e-300)[:, None]
-    ) < len(vectors):
-        raise PolhodeError(
-            "cell: its vectors do not span a cell; correct them, or leave out those that are none"
-        )
-    if (heights := _heights(vectors)).min() < _LEAST_HEIGHT:
-        raise PolhodeError(
-            f"cell: opposite sides are {heights.min():.3g} angstrom apart, less than an atom; check the unit"
-        )
-    fractions = places @ np.linalg.pinv(vectors)
+    with np.errstate(all="ignore"):  # what overflows is no cell, or too far away
+        lengths = np.linalg.norm(vectors, axis=-1)
+        scaled = vectors / np.maximum(lengths, 1e-300)[:, None]
+        if not np.isfinite(lengths).all() or np.linalg.matrix_rank(scaled) < len(vectors):
+            raise PolhodeError(
+                "cell: its vectors do not span a cell; correct them, or leave out those that are none"
+            )
+        least = _heights(vectors).min()
+        if not least >= _LEAST_HEIGHT:
+            raise PolhodeError(
+                f"cell: opposite sides are {least:.3g} angstrom apart, less than an atom; check the unit"
+            )
+        fractions = places @ np.linalg.pinv(vectors)
     if not (np.abs(fractions) < 1e9).all():
         raise PolhodeError("positions: an atom is more than 1e9 cells away; check the unit")
     return vectors, fractions

@@ -150,7 +150,8 @@ def shifted_mass_number(symbol: str, difference: int) -> int:
     common, average = round(own.mass), round(table.symbol(symbol).mass)
     if common != average:
         raise PolhodeError(
-            f"the mass difference {difference} of {symbol} may count from {common} or from {average}"
+            f"the mass difference {difference} of {symbol} may count from {common} or from {average}; "
+            "write the isotope as 'M  ISO'"
         )
     return common + difference
 

@@ -10,7 +10,7 @@ import numpy as np
 from polhode._nuclides import SYMBOLS, shifted_mass_number
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.files.reading import with_way_out
-from polhode.files.xyz import Molecule, lines_of, molecule_from, number_of
+from polhode.files.xyz import Molecule, lines_of, molecule_from, number_of, numbers_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -95,7 +95,8 @@ def read_pdb(stream: BinaryIO, file: Path) -> Molecule:
                 else:
                     atoms.append(_pdb_atom(line))
         except _FaultError as error:
-            raise FileFormatError(f"{file}: line {number}: {error}") from None
+            fault = with_way_out(error, "correct the line")
+            raise FileFormatError(f"{file}: line {number}: {fault}") from None
     if not atoms:
         raise FileFormatError(f"{file}: holds no ATOM and no HETATM; check the file")
     chosen = _one_place_each(atoms)
@@ -121,13 +122,10 @@ def _pdb_atom(line: str) -> _PdbAtom:
     coordinates = _coordinates(line[30:38], line[38:46], line[46:54])
     alternate, occupancy = line[16:17].strip(), 1.0
     if text := line[54:60].strip():
-        try:
-            occupancy = float(number_of(text))
-        except ValueError:
-            if alternate:  # else it decides nothing
-                raise _FaultError(
-                    f"expected an occupancy in columns 55 to 60, got {line[54:60]!r}; correct it"
-                ) from None
+        if (number := number_of(text)) is not None:
+            occupancy = float(number)
+        elif alternate:  # else it decides nothing
+            raise _FaultError(f"expected an occupancy in columns 55 to 60, got {line[54:60]!r}; correct it")
     site = (line[21:22], line[22:27], line[72:76].strip())
     residue = line[17:20].strip()
     return _PdbAtom(site, residue, line[12:16].strip(), alternate, occupancy, _element(line), coordinates)
@@ -196,13 +194,12 @@ def _element(line: str) -> str:
 
 def _crystal_cell(line: str) -> NDArray[np.float64] | None:
     """Read the cell's three vectors: a along x, b in the x-y plane. None where the cell stands for none."""
-    words = [line[start:end].strip() for start, end in _CRYST1]
-    try:
-        a, b, c, *angles = (float(number_of(word)) for word in words)
-    except ValueError:
+    numbers = numbers_of(line[start:end].strip() for start, end in _CRYST1)
+    if numbers is None:
         raise _FaultError(
             f"expected three lengths and three angles of a cell, got {line[6:54]!r}; correct them"
-        ) from None
+        )
+    a, b, c, *angles = map(float, numbers)
     # Right angles exactly: the cosine of 90 degrees is not zero in floating point.
     cosines = [0.0 if angle == 90.0 else float(np.cos(np.deg2rad(angle))) for angle in angles]
     alpha, beta, gamma = cosines
@@ -356,7 +353,7 @@ def _mass_number(number: int, symbol: str, difference: int, stated: int | None, 
     try:
         return shifted_mass_number(symbol, difference)
     except PolhodeError as error:
-        raise _FaultError(f"line {4 + number}: {error}; write the isotope as 'M  ISO'") from None
+        raise _FaultError(f"line {4 + number}: {error}") from None
 
 
 _ATOM: Final = re.compile(r'(?:"(?:[^"]|"")*"|\([^)]*\)|\[[^\]]*\]|[^\s"(\[])+')
@@ -422,14 +419,15 @@ def _stated_mass(value: str) -> int:
 
 
 _LIST: Final = (
-    "an atom stands for a list of elements, a group or any atom, which has no mass; replace it by atoms"
+    "an atom stands for a list of elements, a group or any atom, which has no mass; write its atoms there"
 )
 
 
 def _symbol(text: str) -> str:
     if text.upper() not in _ELEMENTS:
         raise _FaultError(
-            f"{text[:20]!r} is no element: it may stand for a list, a group or any atom; replace it by atoms"
+            f"{text[:20]!r} is no element: it may stand for a list, a group or any atom; "
+            "write its atoms there"
         )
     return text.capitalize()
 
@@ -453,7 +451,7 @@ def _whole_number(text: str) -> int | None:
 
 
 def _coordinates(*texts: str) -> list[Decimal]:
-    try:
-        return [number_of(text.strip()) for text in texts]
-    except ValueError:
-        raise _FaultError(f"expected three coordinates, got {' '.join(texts)[:60]!r}") from None
+    numbers = numbers_of(text.strip() for text in texts)
+    if numbers is None:
+        raise _FaultError(f"expected three coordinates, got {' '.join(texts)[:60]!r}")
+    return numbers

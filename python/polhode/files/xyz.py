@@ -16,11 +16,11 @@ from polhode.files.reading import text_of
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
-__all__ = ["Molecule", "lines_of", "molecule_from", "molecule_of", "number_of", "read_xyz"]
+__all__ = ["Molecule", "lines_of", "molecule_from", "molecule_of", "number_of", "numbers_of", "read_xyz"]
 
 _MOST_DIGITS: Final = 4000
 _NUMBER: Final = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
@@ -111,23 +111,22 @@ def lines_of(stream: BinaryIO, file: Path, kind: str) -> list[str]:
     return lines[:-1] if lines[-1] == "" else lines
 
 
-def number_of(text: str) -> Decimal:
-    """Read a number, digit by digit.
-
-    Raises
-    ------
-    ValueError
-        If it is none, or not within the range of floating-point numbers.
-    """
+def number_of(text: str) -> Decimal | None:
+    """Read a number digit by digit; None if it is none, or beyond the range of floating-point numbers."""
     if _NUMBER.fullmatch(text) is None:  # Decimal would read 1_0 too
-        raise ValueError(f"{text!r} is not a number")
+        return None
     try:
         number = Decimal(text)
-    except InvalidOperation as error:  # an exponent beyond all bounds
-        raise ValueError(f"{text!r} is not a number") from error
-    if not math.isfinite(float(number)):
-        raise ValueError(f"{text!r} is too large")
-    return number
+    except InvalidOperation:  # an exponent beyond all bounds
+        return None
+    return number if math.isfinite(float(number)) else None
+
+
+def numbers_of(texts: Iterable[str]) -> list[Decimal] | None:
+    """Read numbers; None if one of the texts is none."""
+    numbers = [number_of(text) for text in texts]
+    found = [number for number in numbers if number is not None]
+    return found if len(found) == len(numbers) else None
 
 
 def molecule_of(stream: BinaryIO, file: Path) -> Molecule:
@@ -229,14 +228,11 @@ def _cell(entries: dict[str, str], file: Path) -> NDArray[np.float64] | None:
     A lattice of plain XYZ, whose second line is free text, may be any word.
     """
     text = entries.get("lattice", "")
-    try:
-        numbers = [float(number_of(word)) for word in re.split(r"[\s,\[\]{}]+", text) if word]
-    except ValueError:
-        numbers = []
+    numbers = numbers_of(word for word in re.split(r"[\s,\[\]{}]+", text) if word) or []
     words = re.split(r"[\s,\[\]{}]+", entries.get("pbc", "T T T").strip("[]{} "))
     flags = [_LOGICAL.get(word.lower()) for word in words]
     if len(numbers) == 9 and len(flags) == 3 and None not in flags:
-        cell = np.array(numbers).reshape(3, 3)[[bool(flag) for flag in flags]]
+        cell = np.array(numbers, dtype=np.float64).reshape(3, 3)[[bool(flag) for flag in flags]]
         return cell if len(cell) else None
     if "properties" not in entries or "lattice" not in entries:
         return None
@@ -249,11 +245,8 @@ def _cell(entries: dict[str, str], file: Path) -> NDArray[np.float64] | None:
 def _atom(file: Path, number: int, row: str, columns: _Columns) -> tuple[str, list[Decimal]]:
     """Split a row into the atom's label and its coordinates, digit by digit."""
     words = row.split()
-    try:
-        coordinates = [number_of(word) for word in words[columns.position : columns.position + 3]]
-    except ValueError:
-        coordinates = []
-    if len(coordinates) != 3:
+    coordinates = numbers_of(words[columns.position : columns.position + 3])
+    if coordinates is None or len(coordinates) != 3:
         raise FileFormatError(f"{file}: line {number}: expected 'symbol x y z', got {row.strip()[:60]!r}")
     if len(words) < columns.words:
         raise FileFormatError(
