@@ -89,7 +89,7 @@ def read_pdb(stream: BinaryIO, file: Path) -> Molecule:
                 is_over = is_over or models > 1
             elif record in ("ENDMDL", "END"):
                 is_over = is_over or bool(atoms)
-            elif record in ("ATOM", "HETATM"):
+            elif record.startswith(("ATOM", "HETATM")):  # a long serial number may begin in column 6
                 if is_over:
                     left += 1
                 else:
