@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 import numpy as np
 
 from polhode import _core
-from polhode._bonds import bonds, uncertain_positions
+from polhode._bonds import CellBond, CellCrossings, bonds, cell_crossings, uncertain_positions
 from polhode._nuclides import Isotope, Masses, isotopes, uncertain_masses
 from polhode.errors import PolhodeError
 
@@ -24,8 +24,11 @@ __all__ = [
     "ATOMIC_MASS_CONSTANT",
     "PLANCK_CONSTANT",
     "SPEED_OF_LIGHT",
+    "CellBond",
+    "CellCrossings",
     "Isotope",
     "bonds",
+    "cell_crossings",
     "inertial_defect",
     "isotopes",
     "planar_moments",

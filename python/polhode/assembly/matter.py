@@ -12,6 +12,7 @@ from polhode._core import RigidBody
 from polhode._printed import from_printout
 from polhode.assembly.keys import COMMON, FILE, KINDS, PRINTED, check_keys, text_of
 from polhode.errors import PolhodeError
+from polhode.files.body import body_of_molecule, check_molecule_options
 from polhode.files.components import MOST_FACES, overlapping
 from polhode.files.content import is_molecule
 from polhode.files.loaded import load
@@ -215,7 +216,10 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
     if is_molecule(path):
         unit = str(table.get("length_unit", "angstrom"))
         options |= {key: table[key] for key in ("mass", "density", "weld") if key in table}
-        return Matter(RigidBody.from_file(path, length_unit=unit, **options), metres_per(unit))
+        none = {"weld": 0.0, "index_base": 1}
+        check_molecule_options(path, **{key: value != none.get(key, False) for key, value in options.items()})
+        body, notes, crossed = body_of_molecule(path, unit)
+        return Matter(body, metres_per(unit), notes=(*crossed, *notes))
     loaded = load(path, index_base=options.pop("index_base", 1))
     metres = metres_per(_unit_of(loaded, table, scope))
     if "weld" in table:

@@ -206,6 +206,12 @@ impl PyRigidBody {
     /// -------
     /// RigidBody
     ///
+    /// Warns
+    /// -----
+    /// UserWarning
+    ///     When solids of a CAD file overlap, or bonds or fragments of a molecule cross a side of the cell in its
+    ///     file; see :func:`polhode.molecules.cell_crossings`.
+    ///
     /// Raises
     /// ------
     /// FileFormatError

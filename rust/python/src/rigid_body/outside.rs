@@ -77,6 +77,12 @@ impl PyRigidBody {
     /// RigidBody
     ///     The body in daltons and ångströms.
     ///
+    /// Warns
+    /// -----
+    /// UserWarning
+    ///     When bonds or fragments cross a side of the cell of ASE's atoms, along the directions of its ``pbc``
+    ///     (see :func:`polhode.molecules.cell_crossings`), or hydrogens of RDKit's molecule have no positions.
+    ///
     /// Raises
     /// ------
     /// TypeError
@@ -84,7 +90,8 @@ impl PyRigidBody {
     /// ValueError
     ///     For a molecule without a conformer.
     /// PolhodeError
-    ///     For an atom that is no element, or an element without natural isotopes.
+    ///     For an atom that is no element, an element without natural isotopes, or a conformer of RDKit that is a
+    ///     drawing in the plane.
     #[staticmethod]
     #[pyo3(signature = (atoms, *, conformer=None, masses="most_common"))]
     fn from_atoms<'py>(
