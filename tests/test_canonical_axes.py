@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from oracles.eigen_cases import symmetric
+from oracles.meshes import box
 from polhode import MassAccumulator, RigidBody, laminae, principal_axes, rods, solids
 from scipy.optimize import minimize_scalar
 from scipy.spatial.transform import Rotation
@@ -136,6 +137,23 @@ def test_axes_do_not_depend_on_how_a_body_was_made(kind: str) -> None:
             np.testing.assert_array_equal(expected, np.eye(3))
         else:
             check_nearest(expected, 2 if kind == "oblate" else 0)
+
+
+def test_rounding_of_moments_is_far_below_what_counts_as_equal() -> None:
+    """Cubes and rings, turned, as tensors, meshes and particles: gaps between equal moments, 4 ε at most."""
+    rng = np.random.default_rng(11)
+    vertices, faces = box((1.0, 1.0, 1.0))
+    gaps = []
+    for turn in Rotation.random(300, rng).as_matrix():
+        places, shift = (vertices - 0.5) @ turn.T, 3.0 * rng.normal(size=3)
+        bodies = [
+            RigidBody(1.0, solids.cube(1.0, mass=1.0).rotated(turn).inertia),
+            RigidBody.from_mesh(places + shift, faces, mass=1.0),
+            RigidBody.from_particles(np.ones(8), places + shift),
+        ]
+        moments = np.array([body.principal_moments for body in bodies])
+        gaps.append((np.diff(moments).max(axis=1) / moments[:, 2]).max())
+    assert max(gaps) <= 4.0 * np.finfo(float).eps
 
 
 SHAPES = {

@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::Matrix3;
 
-use super::canonical::{canonical_to_rounding, has_free_axes};
+use super::canonical::{canonical_to_rounding, may_be_free};
 use crate::numerics::eigen3::{self, Eigen3, eigen3, eigen3_many, eigenvalues3_many};
 use crate::numerics::threads::{Halt, fill_blocks};
 
@@ -116,7 +116,7 @@ pub fn principal_axes_many(
             all_symmetric(tensors, asymmetry).map_err(|row| start + row)?;
             eigen3_many(tensors, moments, axes);
             for (&moments, row) in moments.iter().zip(axes.iter_mut()) {
-                if has_free_axes(&moments) {
+                if may_be_free(&moments) {
                     let axes = Matrix3::from_row_slice(row);
                     let found = canonical_to_rounding(&PrincipalAxes { moments, axes });
                     row.copy_from_slice(found.axes.transpose().as_slice());
