@@ -262,82 +262,47 @@ mod tests {
             is_timed: true,
             ..along(directions)
         };
+        let asked = Parts {
+            on_attitude: true,
+            ..on_omega
+        };
+        let own = |own: usize, parts: Parts| Parts { own, ..parts };
+        let alike = |term: Term, parts: Parts| (term, parts, parts);
+        let damping = |quadratic| Term::from(Damping::new(&zero, quadratic).expect("finite"));
+        let gravity = Term::uniform_gravity(&up).expect("finite");
         // Free, and pivoted.
         for (term, free, pivoted) in [
-            (torque(&up, Frame::Body), none, none),
-            (torque(&up, Frame::Space), along(1), along(1)),
-            (torque(&aside, Frame::Space), along(3), along(3)),
+            alike(torque(&up, Frame::Body), none),
+            alike(torque(&up, Frame::Space), along(1)),
+            alike(torque(&aside, Frame::Space), along(3)),
             (force(Frame::Space), pushed(3), along(3)),
             (force(Frame::Body), pushed(3), none),
-            (
-                Term::uniform_gravity(&up).expect("finite"),
-                pushed(0),
-                along(1),
-            ),
-            (
-                Damping::new(&zero, &zero).expect("finite").into(),
-                on_omega,
-                on_omega,
-            ),
-            (
-                Damping::new(&zero, &one).expect("finite").into(),
-                Parts {
-                    quadratic: true,
-                    ..on_omega
-                },
+            (gravity, pushed(0), along(1)),
+            alike(damping(&zero), on_omega),
+            alike(
+                damping(&one),
                 Parts {
                     quadratic: true,
                     ..on_omega
                 },
             ),
-            (Rotor::new(&up).expect("finite").into(), on_omega, on_omega),
-            (
-                feedback().into(),
-                Parts {
-                    on_attitude: true,
-                    ..on_omega
-                },
-                Parts {
-                    on_attitude: true,
-                    ..on_omega
-                },
-            ),
-            (samples(Frame::Body).into(), is_timed(0), is_timed(0)),
-            (samples(Frame::Space).into(), is_timed(3), is_timed(3)),
-            (
+            alike(Rotor::new(&up).expect("finite").into(), on_omega),
+            alike(feedback().into(), asked),
+            alike(samples(Frame::Body).into(), is_timed(0)),
+            alike(samples(Frame::Space).into(), is_timed(3)),
+            alike(
                 orbit.into(),
                 Parts {
                     gradients: 1,
                     ..none
                 },
-                Parts {
-                    gradients: 1,
-                    ..none
-                },
             ),
-            (
+            alike(
                 Slug::new(0.1, 0.2).expect("positive").into(),
-                Parts { own: 3, ..on_omega },
-                Parts { own: 3, ..on_omega },
+                own(3, on_omega),
             ),
-            (
-                wheel(Drive::Speed(speeds)),
-                Parts { own: 1, ..on_omega },
-                Parts { own: 1, ..on_omega },
-            ),
-            (
-                wheel(Drive::Feedback(feedback())),
-                Parts {
-                    on_attitude: true,
-                    own: 1,
-                    ..on_omega
-                },
-                Parts {
-                    on_attitude: true,
-                    own: 1,
-                    ..on_omega
-                },
-            ),
+            alike(wheel(Drive::Speed(speeds)), own(1, on_omega)),
+            alike(wheel(Drive::Feedback(feedback())), own(1, asked)),
         ] {
             for (middle, side) in [(0.0, 1.0), (1.5, -1.0), (6.0, 1.0), (6.0, -1.0)] {
                 assert_eq!(parts(&term, false, middle, side), free, "{term:?}");
