@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from copy import copy
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -49,7 +50,7 @@ def test_a_chain_is_the_single_run(name: str, passes_load: bool) -> None:
     whole = BODY.simulate(cuts, (0.3, 0.5, -0.2), load=load, **OPTIONS)
     again = {"load": load} if passes_load else {}
     part = BODY.simulate(cuts[:2], (0.3, 0.5, -0.2), load=load, **OPTIONS)
-    for index, pair in enumerate(zip(cuts[1:-1], cuts[2:], strict=True), start=2):
+    for index, pair in enumerate(pairwise(cuts[1:]), start=2):
         before, part = part, part.resume(pair, **again, **OPTIONS)
         assert np.array_equal(total(part, 0), total(before, -1))
         assert np.abs(part.omega[-1] - whole.omega[index]).max() < 1e-9
@@ -160,7 +161,7 @@ class TestSavedRuns:
             return values
 
         with pytest.raises(
-            ValueError, match="where the status 'complete' says otherwise.* save the motion again"
+            ValueError, match=r"where the status 'complete' says otherwise.* save the motion again"
         ):
             Trajectory.from_file(self.spoilt(self.RUN, tmp_path, **{name: spoil}))
 

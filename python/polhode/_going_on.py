@@ -125,10 +125,10 @@ def resume(self: Trajectory, t: ArrayLike, **options: Any) -> Trajectory:
     t : array_like, shape (T,)
         Times as in `simulate`; the first must be the last of this motion.
     **options
-        Further arguments of :meth:`polhode.RigidBody.simulate`, such as `method` and `rtol`. States of another
-        `load` go on from those of the same name and number, so that wheels keep their momentum; the others
-        begin anew. `states` sets some of them. The angular momentum of wheels, rotors and slugs must not
-        jump.
+        Further arguments of :meth:`polhode.RigidBody.simulate`, such as `method` and `rtol`. States of
+        another `load` go on from those of the same name and number, so that wheels keep their momentum; the
+        others begin anew. `states` sets some of them. The angular momentum of wheels, rotors and slugs must
+        not jump.
 
     Returns
     -------
@@ -206,8 +206,8 @@ def _check_momentum(self: Trajectory, start: Floats, given: dict[str, Any]) -> N
     if np.any(jumps):
         into, of = (np.broadcast_to(one, off.shape)[jumps][0].tolist() for one in (now, was))
         raise ValueError(
-            f"load: the total angular momentum would jump at t = {float(start[0])!r}: what the body carries along, "
-            f"wheels, rotors and slugs, has {of} now and {into} under this load. Wheels of the same name keep "
-            "their state: add to the load of the motion, load=motion.load + other, name wheels as before, and give "
-            "new ones no rate; or begin another motion with simulate"
+            f"load: the total angular momentum would jump at t = {float(start[0])!r}: what the body "
+            f"carries along, wheels, rotors and slugs, has {of} now and {into} under this load. Wheels of "
+            "the same name keep their state: add to the load of the motion, load=motion.load + other, name "
+            "wheels as before, and give new ones no rate; or begin another motion with simulate"
         )

@@ -325,10 +325,11 @@ def _check_known(along: dict[str, NDArray[Any]], status: NDArray[Any], t: NDArra
         if is_bad.any():
             *row, index = (int(place[0]) for place in np.nonzero(is_bad))
             body = f" of body {tuple(row)}" if row else ""
+            found, when = flat[(*row, index)].tolist(), float(t.reshape(-1)[index])
             raise FileFormatError(
-                f"{file}: {name}{body} is {flat[(*row, index)].tolist()} at t = {float(t.reshape(-1)[index])!r}, "
-                f"where the status {str(status[tuple(row)])!r} says otherwise: states must be numbers until the "
-                "run ended; the file was altered or cut after it was written, so save the motion again"
+                f"{file}: {name}{body} is {found} at t = {when!r}, where the status "
+                f"{str(status[tuple(row)])!r} says otherwise: states must be numbers until the run ended; "
+                "the file was altered or cut after it was written, so save the motion again"
             )
 
 
