@@ -245,8 +245,8 @@ pub enum MotionFault {
     },
     /// A time so far from the epoch of an orbit that its state is not known any more.
     #[error(
-        "a time {elapsed:?} from the epoch is beyond the reach of this orbit, {reach:.3e}: the phase is known to 2^-90 of the \
-         revolutions made, near a parabola to less; ask for times within, or give the state of the orbit at a later epoch"
+        "a time {elapsed:?} from the epoch is beyond the reach of this orbit, {reach:.3e}: the phase on an ellipse is known to 2^-90 of \
+         the revolutions made, near a parabola to less, and squares of distances must be float64; ask for times within, or give the state of the orbit at a later epoch"
     )]
     OrbitBeyondReach {
         /// The time from the epoch.

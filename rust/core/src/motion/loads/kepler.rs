@@ -16,8 +16,8 @@ use crate::numerics::turns::MOST_TURNS;
 /// How many times its own size `2μ/r` and v² may be larger than β, of whose double-double the phases of
 /// [`MOST_TURNS`] revolutions are then still made: nearer to a parabola the period is known to fewer digits.
 const CANCELLED: f64 = 1024.0;
-/// After so many of its units of time an orbit without end is not followed: its exponentials leave the range of float64.
-const ENDLESS: f64 = 1e280;
+/// So far an orbit without end is followed: the squares of its distances stay within the range of float64.
+const FARTHEST: f64 = 1e150;
 
 /// 2π and what it leaves out.
 const TURN: DoubleDouble = DoubleDouble {
@@ -119,7 +119,7 @@ impl Orbit {
             let cancelled = 2.0 * scaled_mu / distance.high / beta.high;
             MOST_TURNS / frequency.high / (cancelled / CANCELLED).max(1.0)
         } else {
-            ENDLESS
+            FARTHEST / length.max(1.0) / v.norm().max(1.0)
         };
         let orbit = Self {
             mu,
@@ -195,8 +195,8 @@ impl Orbit {
     /// That the state is known a time after the one that it was given with.
     ///
     /// # Errors
-    /// [`MotionFault::OrbitBeyondReach`]: after 2⁸⁸ revolutions nothing is left of the phase, nearer to a parabola after fewer; an
-    /// orbit without end leaves the range of float64.
+    /// [`MotionFault::OrbitBeyondReach`]: after 2⁸⁸ revolutions nothing is left of the phase, nearer to a parabola after fewer; the
+    /// squares of the distances of an orbit without end leave the range of float64.
     pub fn check(&self, elapsed: f64) -> Result<(), Error> {
         if (elapsed / self.time).abs() <= self.reach {
             return Ok(());
