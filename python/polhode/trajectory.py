@@ -150,7 +150,7 @@ class Trajectory(metaclass=Hinting):
         """Give all attributes, for copy and pickle."""
         held = {
             name: self.__dict__[name]
-            for name in ("_within", "_was_loaded", "_given")
+            for name in ("_within", "_was_loaded", "_given", "_began")
             if name in self.__dict__
         }
         return held | {one.name: getattr(self, one.name) for one in fields(self)}
@@ -327,10 +327,9 @@ class Trajectory(metaclass=Hinting):
         """
         from polhode.files.saved_motion import read_motion
 
-        known, was_loaded = read_motion(path)
+        known, besides = read_motion(path)
         motion = Trajectory(**known)
-        if was_loaded:
-            motion.__dict__["_was_loaded"] = True
+        motion.__dict__.update(besides)
         return motion
 
     def _bodies(self) -> _core.RigidBody:

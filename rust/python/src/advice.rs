@@ -74,7 +74,7 @@ fn of_motion(fault: &MotionFault) -> &'static str {
         MotionFault::LostInClosedForm { .. } => {
             ": body.simulate(times, omega, load=polhode.loads.rotor(momentum)), or polhode.loads.wheel for wheels that are free"
         }
-        MotionFault::TooManySteps { .. } => " with resume",
+        MotionFault::TooManySteps { .. } | MotionFault::UnresolvedFunction { .. } => " with resume",
         MotionFault::NoSeries => ": sensitivity(method=\"differences\")",
         _ => "",
     }
