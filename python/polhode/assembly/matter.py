@@ -23,9 +23,11 @@ from polhode.units import metres_per
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    import numpy as np
+    from numpy.typing import NDArray
+
     from polhode.assembly.numbers import Scope
     from polhode.files.loaded import Loaded
-    from polhode.files.mesh_solid import MeshSolid
 
 __all__ = ["SAVED", "Matter", "body_of_part", "kind_of"]
 
@@ -71,12 +73,15 @@ class Matter(NamedTuple):
         Of a solid.
     notes : tuple of str
         What is to be told of its file.
+    mesh : (vertices, faces) or None
+        Its triangles in metres, where they can be compared with other parts.
     """
 
     body: RigidBody
     metres: float
     arguments: dict[str, Any] = {}  # noqa: RUF012
     notes: tuple[str, ...] = ()
+    mesh: tuple[NDArray[np.float64], NDArray[np.int64]] | None = None
 
 
 def body_of_part(kind: str, table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
@@ -227,17 +232,13 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
     if not ({"mass", "density"}.isdisjoint(table) and _has_materials(loaded)):
         options |= _weight(table, scope, path.name)
     solid = solid_of(loaded, scale=metres, **options)
-    return Matter(solid.body, metres, notes=(*loaded.notes, *_overlaps(loaded, solid, metres, options)))
-
-
-def _overlaps(loaded: Loaded, solid: MeshSolid, metres: float, options: Mapping[str, Any]) -> list[str]:
-    """Say which components of a mesh overlap; of solids of CAD the notes of their file do."""
-    if loaded.cad is not None or not options.keys().isdisjoint(("union", "closure", "repair", "weld")):
-        return []
-    if solid.faces > MOST_FACES:
-        return []
-    lines = overlapping(loaded.mesh.vertices * metres, loaded.mesh.faces)
-    return [*lines, "union = true counts what components share once"] if lines else []
+    is_whole = options.keys().isdisjoint(("union", "closure", "repair", "weld"))
+    if loaded.cad is not None or not is_whole or solid.faces > MOST_FACES:
+        return Matter(solid.body, metres, notes=loaded.notes)  # of solids of CAD their file tells what overlaps
+    mesh = loaded.mesh.vertices * metres, loaded.mesh.faces
+    lines = overlapping(*mesh)
+    lines += ["union = true counts what components share once"] if lines else []
+    return Matter(solid.body, metres, notes=(*loaded.notes, *lines), mesh=mesh)
 
 
 def _has_materials(loaded: Loaded) -> bool:

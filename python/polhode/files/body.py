@@ -55,8 +55,8 @@ def body_from_file(
         A mesh, a molecule or solids of CAD; :func:`load` lists the formats.
     density, mass : float or Uncertain, optional
         Exactly one of them for a mesh, neither for a molecule. CAD solids whose materials have densities need
-        neither. A mapping of names to densities gives each component of a mesh its own: by the names of the
-        groups of OBJ, or by numbers from 1, as ``polhode report`` lists them.
+        neither. A mapping of names to densities gives each component of a mesh its own: by the
+        names of its parts in the file, or by numbers from 1, as ``polhode report`` lists them.
     length_unit : str, optional
         Unit of the coordinates (see :mod:`polhode.units`). They are converted to metres, and the masses of a
         molecule to kilograms. Without it, coordinates are converted to metres if the file or its format
