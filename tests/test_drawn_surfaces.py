@@ -244,3 +244,184 @@ def test_a_thousand_random_motions(browser: Browser, kind: str) -> None:
         pages.append(shown(one))
         check_data(one, pages[-1])
     check_many(browser, pages)
+
+
+WRITTEN = """["space", "second"].map((view) => [polhode.views[view].width, polhode.views[view].height,
+  (polhode.views[view].written ?? []).map(({ name, at, width }) => [name, ...at, width])])"""
+WORDS = """[document.body.innerText, ...[...document.querySelectorAll("[aria-label], [title]")].map(
+  (one) => `${one.ariaLabel} ${one.title}`)].join(" ")"""
+SHOW = "location.hash = 't=0&view={0}'; new Promise((done) => setTimeout(done, 60))"
+KEYS = """(() => {
+  const seen = (color) => { const one = document.createElement("i"); one.style.color = color; document.body.append(one);
+    const found = getComputedStyle(one).color; one.remove(); return found; };
+  return [Object.values(polhode.colors).flat().map(seen), [...document.querySelectorAll(".key")].map((one) => getComputedStyle(one).color)];
+})()"""
+CAPTIONS = """["space", "second"].map((name) => [document.getElementById(`${name}-caption`).textContent,
+  document.getElementById(name).getAttribute("aria-label")])"""
+
+
+def with_wheels(names: tuple[str, ...]) -> Any:
+    """Wheels under a load, with the longest names that anyone gives."""
+    axes = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1), (-1, 1, 0), (0, -1, -1)]
+    load: Any = sum(
+        loads.wheel(axis, 0.05, 40.0 * k + 1.0, name=name)
+        for k, (axis, name) in enumerate(zip(axes, names, strict=False))
+    )
+    body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
+    return body.simulate(np.linspace(0.0, 10.0, 101), (0.3, 0.2, 0.7), load=load)
+
+
+@needs_browser
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("wheel",),
+        ("reaction_wheel_of_the_roll_axis",),
+        ("reaction_wheel",) * 4,
+        ("a", "W" * 60, "rw", "x y z"),
+    ],
+)
+def test_no_name_meets_another_or_the_edge(browser: Browser, tmp_path: Path, names: tuple[str, ...]) -> None:
+    browser.open(with_wheels(names).animate(tmp_path / "a.html"), "#t=0")
+    for size in SIZES:
+        browser.screen(*size, touch=size[0] < 500)
+        for view in ("space", "body"):
+            browser.run(SHOW.format(view))
+            for t in np.linspace(0.0, 10.0, 6):
+                browser.run(f"polhode.show({t})")
+                for width, height, written in browser.run(WRITTEN):
+                    check_names(width, height, written)
+
+
+def check_names(width: float, height: float, written: list[tuple[str, float, float, float]]) -> None:
+    if not width:  # of a narrow screen the other view
+        return
+    assert {"ω", "L"} <= {name for name, *_ in written}
+    for name, x, y, wide in written:
+        assert wide / 2 <= x <= width - wide / 2, name
+        assert 8 <= y <= height - 8, name
+    for (one, x, y, wide), (other, p, q, far) in combinations(written, 2):
+        assert abs(x - p) >= (wide + far) / 2 or abs(y - q) >= 16, (one, other, width)
+
+
+@needs_browser
+@pytest.mark.parametrize("kind", KINDS)
+def test_pages_of_each_kind(browser: Browser, tmp_path: Path, kind: str) -> None:
+    """On each screen, in light and dark: no word for a colour, and what is read aloud is what is written."""
+    one = motion(kind, 1)
+    page = tmp_path / "a.html"
+    page.write_text(page_of(one.motion, one.end)[0], "utf-8")
+    browser.open(page, "#t=0")
+    assert browser.run("polhode.motion.surface.kind") == one.kind
+    has_rolling = browser.run("!document.querySelector('[data-view=poinsot]').hidden")
+    for size, dark in (*((size, False) for size in SIZES), (SIZES[2], True)):
+        browser.screen(*size, touch=size[0] < 500, dark=dark)
+        for view in ("space", "body", "poinsot"):
+            browser.run(SHOW.format(view))
+            words = browser.run(WORDS)
+            assert not re.search(COLOR_WORDS, words, re.IGNORECASE), words
+            captions = browser.run(CAPTIONS)
+            for caption, label in captions:
+                assert label == f"{caption}. Arrow keys turn the view, plus and minus bring it nearer."
+            if view != "space":  # which leaves the other view as it was
+                assert captions[1][0].startswith("Poinsot") == (view == "poinsot" and has_rolling)
+            lines, words = browser.run(KEYS)
+            assert set(words) <= set(lines)
+
+
+@needs_browser
+def test_another_start_changes_the_words(browser: Browser, tmp_path: Path) -> None:
+    """The separatrix goes where two moments become equal, in the caption too."""
+    start = RigidBody.from_principal(1.0, (1.0, 3.0, 3.2)).free_motion((0.01, 6.0, 0.0)).at([0.0, 5.0])
+    browser.screen(*SIZES[2])
+    browser.open(start.animate(tmp_path / "a.html"), "#t=0")
+    caption = "document.getElementById('second-caption').textContent"
+    assert "separatrix" in browser.run(caption)
+    browser.run(
+        "{ const s = document.getElementById('start-second'); s.value = 1; s.dispatchEvent(new Event('input')) }"
+    )
+    assert "separatrix" not in browser.run(caption)
+    assert "separatrix" not in browser.run("document.getElementById('second').getAttribute('aria-label')")
+    browser.run("document.getElementById('given').click()")
+    assert "separatrix" in browser.run(caption)
+
+
+def drawn_lines(ax: Any) -> list[np.ndarray]:
+    lines = [np.array(line.get_data_3d(), dtype=float).T for line in ax.get_lines()]
+    return [line[np.isfinite(line).all(axis=1)] for line in lines]
+
+
+def check_plots(one: Motion) -> None:
+    """What `polhode`, `poinsot` and `portrait` draw of a motion in closed form has its energy, and |L|."""
+    shown = one.motion
+    energy, tensor = float(shown.kinetic_energy), one.tensor
+    has_end = bool(shown.body.principal_moments[0] > 0.0)
+    size = float(np.linalg.norm(shown.angular_momentum))
+    if energy > 0.0 and has_end:
+        ax: Any = plot.polhode(shown)
+        paths = [line for line in drawn_lines(ax) if len(line) > 2]
+        for path in paths:
+            found = np.einsum("ti,ij,tj->t", path, tensor, path)
+            np.testing.assert_allclose(found, 2.0 * energy, rtol=1e-9)
+        assert bool(paths) == (len(ax.get_lines()) > 4)
+        plt.close("all")
+    if isinstance(shown, FreeMotion) and energy > 0.0 and has_end:
+        ax = plot.poinsot(shown, [0.0, one.end])
+        rolled = [line for line in drawn_lines(ax) if len(line) > 2]
+        herpolhode = next(
+            line
+            for line, made in zip(drawn_lines(ax), ax.get_lines(), strict=True)
+            if made.get_color() == plot.AXIS_COLORS[0]
+        )
+        np.testing.assert_allclose(herpolhode[:, 2], 2.0 * energy / size, rtol=1e-9)
+        assert rolled
+        plt.close("all")
+    if isinstance(shown, GyrostatMotion) and size > 0.0:
+        check_portrait(one, size)
+
+
+def check_portrait(one: Motion, size: float) -> None:
+    assert one.rotor is not None
+    inverse, h = np.linalg.inv(one.tensor), one.rotor
+
+    def level(n: np.ndarray) -> Any:
+        off = n / np.linalg.norm(n, axis=-1, keepdims=True) * size - h
+        return 0.5 * np.einsum("...i,ij,...j", off, inverse, off)
+
+    found = one.motion.equilibria
+    ax: Any = plot.portrait(one.motion, levels=0)
+    scale = float(level(found.direction).max())
+    saddles = [
+        float(level(n)) for n, kind in zip(found.direction, found.kind, strict=True) if kind == "saddle"
+    ]
+    for made in ax.get_lines():
+        line = np.array(made.get_data_3d(), dtype=float).T
+        line = line[np.isfinite(line).all(axis=1)]
+        if len(line) < 3:
+            continue
+        if made.get_color() == plot.MOMENTUM_COLOR:
+            np.testing.assert_allclose(level(line), float(one.motion.kinetic_energy), atol=1e-7 * scale)
+        elif made.get_color() == plot.AXIS_COLORS[1]:
+            off = np.abs(np.subtract.outer(level(line), saddles)).max(axis=0).min()
+            assert off < 1e-9 * scale
+    plt.close("all")
+
+
+PLOTTED = ("free", "gyrostat")
+
+
+@pytest.mark.parametrize("kind", PLOTTED)
+def test_plots_of_three_random_motions(kind: str) -> None:
+    many = (motion(kind, k) for k in range(20))
+    for one in [one for one in many if one.end is not None][:3]:
+        check_plots(one)
+
+
+@pytest.mark.long
+@pytest.mark.timeout(3600)
+@pytest.mark.parametrize("kind", PLOTTED)
+def test_plots_of_a_thousand_random_motions(kind: str) -> None:
+    for k in range(40, 1040):
+        one = motion(kind, k)
+        if one.end is not None:
+            check_plots(one)
