@@ -30,6 +30,7 @@ const wanted = asked(location.hash, start, end);
 // The motion that is shown: the given one, or that of another start.
 const surface = { ...given.surface, marks: given.surface.marks.map((mark) => ({ ...mark, curve: mark.curve && rowsOf(unpack(mark.curve, Float32Array)) })) };
 const toward = surface.momentum && scaled(surface.momentum, 1 / length(surface.momentum));
+const conserved = surface.kind === "torque-free" ? surface.momentum ?? [0, 0, 0] : surface.momentum; // L in space, in all digits
 const motion = { axes: given.axes, top: given.top, surface, onSphere: (q) => rotate(conjugate(q), toward), wheels: given.wheels.map((one) => new Wheel({ ...one, rate: unpack(one.rate, Float32Array), angle: unpack(one.angle, Float64Array) }, frames)) };
 const energy = { ...given.energy, kinetic: unpack(given.energy.kinetic, Float64Array), potential: unpack(given.energy.potential, Float64Array) };
 function follow(another) {
@@ -49,9 +50,11 @@ function follow(another) {
   const spin = (w) => along(w).reduce((v, x, i) => sum(v, given.axes[i].map((a) => a * x * motion.moments[i])), [0, 0, 0]);
   const momentum = ({ omega, inside }) => sum(spin(omega), inside ?? [0, 0, 0]);
   const most = (values) => values.reduce((a, b) => Math.max(a, b), 0) || 1;
-  motion.shows = { omega: samples.some(({ omega }) => length(omega)), momentum: samples.some((s) => length(momentum(s))), inside: samples.some(({ inside }) => inside && length(inside)) };
   motion.fastest = most(samples.map(({ omega }) => length(omega)));
-  motion.strongest = most(samples.map((s) => Math.max(length(momentum(s)), s.inside ? length(s.inside) : 0)));
+  const sizes = samples.map((s) => [length(s.omega), length(conserved ?? momentum(s)), s.inside ? length(s.inside) : 0]);
+  motion.strongest = most(sizes.map(([, total, inside]) => Math.max(total, inside)));
+  const [omega, total, inside] = [0, 1, 2].map((k) => sizes.some((one) => one[k] > 0));
+  motion.shows = { omega, momentum: total, inside };
   motion.ellipsoid = new Ellipsoid(motion.moments, along(samples[0].omega), motion.fastest);
   const widest = { ellipsoid: () => motion.ellipsoid.longest, sphere: () => 1.4 * motion.fastest, path: () => motion.fastest };
   motion.scale = 1.05 / (widest[drawnWith(surface, motion.ellipsoid)]() || 1);
@@ -59,7 +62,7 @@ function follow(another) {
   motion.trail = new Trail(stateAt, motion.fastest, span, { axis: given.top && given.top.axis, onSphere: toward && motion.onSphere, apart });
   motion.at = (t) => {
     const state = stateAt(t - start);
-    return { ...state, t, since: t - start, along: along(state.omega), momentum: rotate(state.q, momentum(state)) };
+    return { ...state, t, since: t - start, along: along(state.omega), momentum: conserved ?? rotate(state.q, momentum(state)) };
   };
 }
 
