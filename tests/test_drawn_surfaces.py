@@ -1,4 +1,4 @@
-"""What is drawn beside a motion is true of it: its path has the energy and the |L| of the surface that is named."""
+"""What is drawn beside a motion is true: its path has the energy and the |L| of the surface that is named."""
 
 from __future__ import annotations
 
@@ -26,19 +26,20 @@ if TYPE_CHECKING:
 ROUNDING = 3e-7
 """Of vectors that a page holds in four bytes, beside the largest of them."""
 RESOLVED = 1e-6
-"""Curvatures of the energy below this, beside the largest there can be, are those of equal moments or a fold."""
+"""Curvatures of the energy below this, beside the largest possible, are those of equal moments or a fold."""
 COLOR_WORDS = r"\b(dark|light|black|white|gr[ae]y|blue|green|red|pink|purple|orange|brown|yellow|vermilion)\b"
 SIZES = ((390, 844), (800, 700), (1440, 900))
 
 DRAWN = """(items) => items.map(({ surface, moments, along, fastest }) => {
   const ellipsoid = new polhode.Ellipsoid(moments, along, fastest);
   const shows = { omega: fastest > 0 }, plain = (html) => html.replace(/<[^>]*>/g, "");
-  const drawn = polhode.drawnWith(surface, ellipsoid), angles = [0, 1, 2.5, 4], parts = [-1, -0.9, -0.3, 0, 0.5, 1];
+  const drawn = polhode.drawnWith(surface, ellipsoid), isShown = drawn === "ellipsoid";
+  const angles = [0, 1, 2.5, 4], parts = [-1, -0.9, -0.3, 0, 0.5, 1];
   return {
     drawn, ends: ellipsoid.ends, isCut: ellipsoid.isCut,
-    points: drawn === "ellipsoid" ? parts.flatMap((part) => angles.map((angle) => ellipsoid.point(part, angle))) : [],
-    separatrix: drawn === "ellipsoid" ? ellipsoid.separatrix() : [],
-    captions: [false, true].map((isRolling) => plain(polhode.captionOf({ surface, ellipsoid, shows }, isRolling))),
+    points: isShown ? parts.flatMap((part) => angles.map((angle) => ellipsoid.point(part, angle))) : [],
+    separatrix: isShown ? ellipsoid.separatrix() : [],
+    captions: [false, true].map((rolls) => plain(polhode.captionOf({ surface, ellipsoid, shows }, rolls))),
   };
 })"""
 
@@ -95,7 +96,7 @@ def shown(one: Motion) -> Shown:
 
 
 def check_data(one: Motion, page: Shown) -> None:
-    """The kind that the page has of a motion is the one that its numbers obey, and it is the one that was made."""
+    """The kind that the page has of a motion is that which its numbers obey, and that which was made."""
     surface = page.surface
     assert surface["kind"] == one.kind
     np.testing.assert_allclose(
@@ -126,7 +127,7 @@ def tensor_at_reference(one: Motion) -> np.ndarray:
 
 
 def check_gyrostat(one: Motion, page: Shown) -> None:
-    """Energies of the path, of the marks and of the separatrices, in the body's own numbers; and what is stable."""
+    """Energies of the path, the marks and the separatrices, in the body's own numbers; and what is stable."""
     surface, inverse, h = page.surface, np.linalg.inv(one.tensor), one.rotor
     assert h is not None
     size = float(np.linalg.norm(surface["momentum"]))
@@ -252,9 +253,15 @@ WORDS = """[document.body.innerText, ...[...document.querySelectorAll("[aria-lab
   (one) => `${one.ariaLabel} ${one.title}`)].join(" ")"""
 SHOW = "location.hash = 't=0&view={0}'; new Promise((done) => setTimeout(done, 60))"
 KEYS = """(() => {
-  const seen = (color) => { const one = document.createElement("i"); one.style.color = color; document.body.append(one);
-    const found = getComputedStyle(one).color; one.remove(); return found; };
-  return [Object.values(polhode.colors).flat().map(seen), [...document.querySelectorAll(".key")].map((one) => getComputedStyle(one).color)];
+  const colorOf = (one) => getComputedStyle(one).color;
+  const seen = (color) => {
+    const one = document.createElement("i");
+    one.style.color = color; document.body.append(one);
+    const found = colorOf(one);
+    one.remove();
+    return found;
+  };
+  return [Object.values(polhode.colors).flat().map(seen), [...document.querySelectorAll(".key")].map(colorOf)];
 })()"""
 CAPTIONS = """["space", "second"].map((name) => [document.getElementById(`${name}-caption`).textContent,
   document.getElementById(name).getAttribute("aria-label")])"""
@@ -338,7 +345,8 @@ def test_another_start_changes_the_words(browser: Browser, tmp_path: Path) -> No
     caption = "document.getElementById('second-caption').textContent"
     assert "separatrix" in browser.run(caption)
     browser.run(
-        "{ const s = document.getElementById('start-second'); s.value = 1; s.dispatchEvent(new Event('input')) }"
+        "{ const slider = document.getElementById('start-second'); slider.value = 1;"
+        "slider.dispatchEvent(new Event('input')) }"
     )
     assert "separatrix" not in browser.run(caption)
     assert "separatrix" not in browser.run("document.getElementById('second').getAttribute('aria-label')")
@@ -355,6 +363,7 @@ def check_plots(one: Motion) -> None:
     """What `polhode`, `poinsot` and `portrait` draw of a motion in closed form has its energy, and |L|."""
     shown = one.motion
     energy, tensor = float(shown.kinetic_energy), one.tensor
+    assert one.end is not None
     has_end = bool(shown.body.principal_moments[0] > 0.0)
     size = float(np.linalg.norm(shown.angular_momentum))
     if energy > 0.0 and has_end:

@@ -1,4 +1,4 @@
-"""On what the path of a motion lies in the body: an ellipsoid, or the sphere of L with its curves of energy."""
+"""On what the path of a motion lies in the body: an ellipsoid, or the sphere of L with curves of energy."""
 
 from __future__ import annotations
 
@@ -182,7 +182,7 @@ def _marks(found: Equilibria, tensor: Floats, inside: Floats) -> tuple[Mark, ...
 
 
 def _gyrostat_motion(trajectory: Trajectory) -> GyrostatMotion | None:
-    """Give the motion of the gyrostat that a load makes of a body; None where no constant momentum is in it."""
+    """Find the motion of the gyrostat that a load makes of a body; None where its momentum changes."""
     about, omega = trajectory._about_word(), trajectory.omega[0]
     rest, wheels = np.zeros(3), []
     parts = parts_of(trajectory.load) if trajectory.load is not None else []

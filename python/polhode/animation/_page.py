@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 __all__ = ["page"]
 
 _MODULES: Final = (
-    "vectors", "double", "elliptic", "free", "frames", "trail", "labels", "camera", "theme", "surface", "solid",
-    "clock", "wheels", "views", "energy", "live", "main",
+    "vectors", "double", "elliptic", "free", "frames", "trail", "labels", "camera", "theme", "surface",
+    "solid", "clock", "wheels", "views", "energy", "live", "main",
 )  # fmt: skip
 """Of the folder ``page``, each after those that it imports; a browser reads them as one."""
 _SHARED: Final = {
