@@ -52,13 +52,20 @@ def animate(
         Name of the file; its ending tells the format. ``.html`` is an interactive page that needs no network.
         ``.gif`` and ``.mp4`` need matplotlib; ``.mp4`` also needs ffmpeg, which the extra ``film`` brings.
 
-        The page shows the body and its principal axes; ω, L and their paths in space; the angular momentum h
-        of wheels, which is part of L; and the path of ω on the ellipsoid of inertia in the body. For a free
-        body it also shows that ellipsoid rolling on its plane, and has sliders for another start, whose
-        motion the page computes itself. For a top it shows the path of the axis. It shows the speeds of
-        wheels, and kinetic energy T, potential energy V and their sum if the load has a potential; these are
-        in the units of the input. A wheel that turns by more than 20 degrees from picture to picture is drawn
-        2, 5, 10, … times slower, and a label says so.
+        The page shows the body and its principal axes; ω, L and the path of ω in space; and the angular
+        momentum h of wheels, which is part of L. For a top it shows the path of the axis.
+
+        A second view shows the path in the body, on what stays constant. For a free body this is the polhode
+        on the ellipsoid of inertia, with the separatrix. The page also shows this ellipsoid rolling on its
+        plane, and has sliders for another start, whose motion it computes itself. For a body with a rotor, or
+        with wheels that turn freely or at constant rates, it is the path of L on the sphere of constant
+        ``|L|``, with the steady spins and their separatrices. If only motors and dampers inside the body act,
+        the path of L is shown on this sphere alone. If a torque acts from outside, the path of ω is shown
+        without a surface.
+
+        The page shows the speeds of wheels, and kinetic energy T, potential energy V and their sum if the
+        load has a potential; these are in the units of the input. A wheel that turns by more than 20 degrees
+        from picture to picture is drawn 2, 5, 10, … times slower, and the page says so.
     end : float, optional
         For a motion in closed form, which has no times of its own: the motion is shown from 0 to this time.
     shape : (vertices, faces) or list, optional
