@@ -121,7 +121,8 @@ def to_text(body: RigidBody, program: str) -> str:
         _check_least(body)
     tensor = body.inertia
     inside = inside_edge(tensor)
-    if inside is not tensor:
+    # A rod has no moment about itself, and is written so.
+    if inside is not tensor and body.principal_moments[0] > 0.0:
         body = RigidBody(float(body.mass), inside, body.center_of_mass)
     principal = body.principal
     return _WRITERS[program](

@@ -272,7 +272,8 @@ class _Judging(NamedTuple):
         if own is not None:
             factor = _farthest(moments, own.principal_moments)
         better, inside = None, None
-        if standing.weld and self.format != "SDF" and _is_point(declared):  # libsdformat refuses it all the same
+        is_point = _is_point(declared) and (own is None or not declared.inertia.any())
+        if is_point and standing.weld and self.format != "SDF":  # libsdformat refuses it all the same
             word: Word = "good"
             reason = f"a point mass, tied to {standing.weld}"
             notes = (*notes, f"line {link.line}: {link.name} is {reason}: simulators join the two")
