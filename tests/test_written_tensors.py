@@ -172,9 +172,9 @@ def parsed(text: str | bytes) -> robots.Robot:
 
 def check_writers(bodies: Sequence[RigidBody]) -> None:
     for body in bodies:
-        for program in PROGRAMS:
-            for tensor in printed(body, program):
-                assert is_possible(tensor), (program, body.inertia.tolist())
+        written = {tensor.tobytes(): (tensor, p) for p in PROGRAMS for tensor in printed(body, p)}
+        for tensor, program in written.values():
+            assert is_possible(tensor.tolist()), (program, body.inertia.tolist())
     text = urdf_of([forms.to_text(body, "urdf") for body in bodies])
     assert refused_by_mujoco(text) == ""
     loaded_by_pinocchio(text, len(bodies))
@@ -243,7 +243,7 @@ def check_many(seed: int, count: int) -> None:
 
 
 def test_engines_take_what_is_written() -> None:
-    check_many(1, 200)
+    check_many(1, 100)
 
 
 @pytest.mark.long
@@ -333,7 +333,9 @@ class TestFix:
         assert [row["from"] for row in report["changed"]] == ["its own tensor, moved inside the edge"]
         text = (tmp_path / "b.urdf").read_text()
         assert refused_by_mujoco(text) == ""
-        np.testing.assert_allclose(report["changed"][0]["inertia"], report["changed"][0]["inertia_before"], atol=1e-20)
+        np.testing.assert_allclose(
+            report["changed"][0]["inertia"], report["changed"][0]["inertia_before"], atol=1e-20
+        )
         assert "on the edge" not in run("check", tmp_path / "b.urdf")[1]
 
     def test_one_clear_of_it_is_left(self) -> None:
@@ -346,8 +348,8 @@ class TestFix:
     def test_moments_that_mujoco_refuses_are_not_written(self, radius: str, is_written: bool) -> None:
         """Of a ball of 1e-9 kg, 2/5 m r² = 1e-14 at r = 5 mm."""
         ball = f'<visual><geometry><sphere radius="{0.005 * float(radius)!r}"/></geometry></visual>'
-        text = f"""<robot name="r"><link name="a"><inertial><mass value="1e-9"/><inertia ixx="1" iyy="1" izz="1"
-            ixy="0" ixz="0" iyz="0"/></inertial>{ball}</link></robot>"""
+        text = f"""<robot name="r"><link name="a"><inertial><mass value="1e-9"/>
+            <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>{ball}</link></robot>"""
         robot = parsed(text)
         (verdict,) = robots.check(robot)
         assert verdict.verdict == "placeholder"

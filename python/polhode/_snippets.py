@@ -27,9 +27,9 @@ if TYPE_CHECKING:
 __all__ = ["LEAST_MOMENT", "PROGRAMS", "inside_edge", "mjcf_tensor", "to_text"]
 
 LEAST_MOMENT: Final = {"MJCF": 1e-15, "URDF": 1e-14}
-"""In kg m^2: MuJoCo refuses a moment of a body that moves at the first (mjMINVAL; also a mass in kg), and an
-eigenvalue of a tensor that is not in principal axes, as in every URDF, below the second."""
-# Of the trace. MuJoCo diagonalises, turns and joins tensors with errors of up to 4 ε in 24,000 random laminae.
+"""In kg m^2: up to the first (mjMINVAL, for masses in kg too) MuJoCo refuses moments of what moves; up to the
+second it refuses eigenvalues of tensors that are not in principal axes, as in every URDF."""
+# Of the trace. MuJoCo diagonalises, turns and joins tensors to 4 ε, in 24,000 random laminae.
 _CLEAR: Final = 5.0 * 2.0**-52
 _INSIDE: Final = 8.0 * 2.0**-52
 # MuJoCo leaves elements up to 1e-12 kg m^2 beside the diagonal: below this moment they would count.
@@ -55,7 +55,7 @@ def inside_edge(inertia: Floats) -> Floats:
 
 
 def mjcf_tensor(inertia: Floats) -> dict[str, list[float]]:
-    """Return a tensor as attributes of MJCF's ``<inertial>``: in principal axes where MuJoCo would lose digits."""
+    """Return a tensor as attributes of ``<inertial>``: in principal axes where MuJoCo loses digits."""
     moments = np.asarray(principal_moments(inertia))
     xx, yy, zz, *beside = _six(inertia)
     if not any(beside):
@@ -68,7 +68,7 @@ def mjcf_tensor(inertia: Floats) -> dict[str, list[float]]:
 
 
 class _Numbers(NamedTuple):
-    """Of one body: the elements xx yy zz xy xz yz about C and about O, the axes as rows; the tensor about C."""
+    """Of one body: elements xx yy zz xy xz yz about C and about O, the axes as rows, the tensor about C."""
 
     mass: float
     center: list[float]
@@ -185,13 +185,13 @@ def _check_least(body: RigidBody) -> None:
     moment, mass = float(body.principal_moments[0]), float(body.mass)
     if not moment > least:
         raise PolhodeError(
-            f"body: its smallest moment is {moment:.6g}, and MuJoCo refuses a moving body with a moment up to "
-            f"{least:g} kg m^2 (mjMINVAL); give it a thickness, or write it in larger units"
+            f"body: its smallest moment is {moment:.6g}, and MuJoCo refuses moments up to {least:g} kg m^2 "
+            "(mjMINVAL) of what moves; give it a thickness, or state it in units that make it larger"
         )
     if not mass > least:
         raise PolhodeError(
-            f"body: its mass is {mass:.6g}, and MuJoCo refuses a moving body of a mass up to {least:g} kg "
-            "(mjMINVAL); write it in larger units"
+            f"body: its mass is {mass:.6g}, and MuJoCo refuses masses up to {least:g} kg (mjMINVAL) of what "
+            "moves; state it in units that make it larger"
         )
 
 

@@ -116,7 +116,7 @@ FORMATS: Final = {
         {"a": "good"},
     ),
     "SDF, a model that is not there": Row(
-        "<sdf version=\"1.6\"><world name=\"w\"><include><uri>model://sunny</uri></include></world></sdf>",
+        '<sdf version="1.6"><world name="w"><include><uri>model://sunny</uri></include></world></sdf>',
         {"(include of line 1)": "unreadable"},
         "model://sunny was not found",
     ),

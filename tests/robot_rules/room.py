@@ -13,7 +13,6 @@ __all__ = ["ROOM"]
 GROWN: Final = 6.0 * 2.0 * (0.5 + 0.02 * math.sqrt(3.0)) ** 2
 
 
-
 def dense(times: float) -> str:
     """A ball in which 5 kg have so many times 25,000 kg/m^3."""
     return f'<sphere radius="{(5.0 / (25_000.0 * times) * 0.75 / math.pi) ** (1.0 / 3.0)!r}"/>'
@@ -79,7 +78,9 @@ ROOM: Final = {
         urdf(link("a", 5.0, 2e-6, '<sphere radius="0.001"/>')), {"a": "suspect"}, "1.19e+09 kg/m^3"
     ),
     "dots of contact on a body": Row(
-        urdf(link("a", 5.0, 0.02, '<sphere radius="0.001"/>', seen=BALL)), {"a": "good"}, "as its visual shape"
+        urdf(link("a", 5.0, 0.02, '<sphere radius="0.001"/>', seen=BALL)),
+        {"a": "good"},
+        "as its visual shape",
     ),
     "a body seen as a dot": Row(
         urdf(link("a", 5.0, 0.02, BALL, seen='<sphere radius="0.001"/>')),

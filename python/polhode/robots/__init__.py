@@ -227,7 +227,8 @@ def check(
             raise ValueError(f"{name}: expected a finite number above 0, got {value!r}")
     if density is not None and density > MARKER:
         raise PolhodeError(
-            f"density: {density:.6g} kg/m^3, and no matter has more than {MARKER:g}; state the one of the material"
+            f"density: {density:.6g} kg/m^3, and no matter has more than {MARKER:g}; state the one of the "
+            "material"
         )
     return judge(robot, GeometryReader(robot.folder, addresses), density, mass)
 
@@ -235,8 +236,9 @@ def check(
 def fixed(robot: Robot, verdicts: Sequence[Verdict], words: Collection[str] = FAILURES) -> bytes:
     """Write better values into the links that fail the test, or whose tensor is on the edge of the possible.
 
-    What is written is a body's also after rounding: no engine finds I1 + I2 < I3 there. It is never computed from
-    shapes in which the mass would be denser than 25,000 kg/m^3.
+    What is written is a body's also after rounding: no engine finds I1 + I2 < I3 there. It is never computed
+    from shapes in which the mass would be denser than 25,000 kg/m^3. In URDF and MJCF no moment is so small
+    that MuJoCo refuses it. What is left as it is has a note that says why.
 
     Parameters
     ----------

@@ -324,8 +324,8 @@ def _counted(name: str, legacy: RigidBody, solid: RigidBody | None) -> tuple[Rig
 
 def _marker(role: str, mass: float, volume: float) -> str:
     return (
-        f"{mass:.6g} kg in its {role} shapes would be {mass / volume:.3g} kg/m^3, and no matter has more than "
-        f"{MARKER:g}: they are taken for markers and not used; correct the mass if they are the link"
+        f"{mass:.6g} kg in its {role} shapes would be {mass / volume:.3g} kg/m^3, and no matter has more "
+        f"than {MARKER:g}: they are taken for markers and not used; correct the mass if they are the link"
     )
 
 

@@ -285,7 +285,10 @@ class _Judging(NamedTuple):
         least = LEAST_MOMENT.get(self.format, 0.0)
         if better is not None and not (moment := _least_moment(better)) > least:
             what = "the nearest tensor of a body" if own is None else f"its {geometry.role} shape"
-            notes = (*notes, f"line {link.line}: {link.name}: {what} has {_refused(moment, least)}: not written")
+            notes = (
+                *notes,
+                f"line {link.line}: {link.name}: {what} has {_refused(moment, least)}: not written",
+            )
             better = None
         if inside is not None and not float(moments[0]) > least:
             notes = (*notes, f"line {link.line}: {link.name} has {_refused(float(moments[0]), least)}")
@@ -343,8 +346,8 @@ class _Judging(NamedTuple):
             return size.word, _joined(compared, size.reason, size.why, needed)
         if geometry.marker is not None:
             told = (
-                f"its mass would have {geometry.marker:.3g} kg/m^3 in its shapes, beyond {MARKER:g}: they are "
-                "markers, and nothing else that was read tells its size"
+                f"its mass would have {geometry.marker:.3g} kg/m^3 in its shapes, beyond {MARKER:g}: they "
+                "are markers, and nothing else that was read tells its size"
             )
             return "suspect", _joined(told, *((size.reason, size.why) if size else ()))
         if factor is not None and not LEAST <= factor <= MOST:
@@ -382,11 +385,6 @@ def _filled(
         if (body := geometry.filled(link)) is not None
     }
     volume = sum(float(body.mass) for body in without.values())
-    if mass is not None and mass > MARKER * volume > 0.0:
-        raise PolhodeError(
-            f"mass: {mass:.6g} kg in the shapes of links without mass would be {mass / volume:.3g} kg/m^3, and "
-            f"no matter has more than {MARKER:g}; they are markers, or their lengths are wrong: correct the file"
-        )
     unread = [
         link.name
         for link, verdict in zip(robot.links, verdicts, strict=True)
@@ -396,6 +394,12 @@ def _filled(
         raise PolhodeError(
             f"mass: the shape of {unread[0]}, which has no mass, tells no volume, so that its share is not "
             "known; pass density= instead"
+        )
+    if mass is not None and mass > MARKER * volume > 0.0:
+        raise PolhodeError(
+            f"mass: {mass:.6g} kg in the shapes of links without mass would be {mass / volume:.3g} kg/m^3, "
+            f"and no matter has more than {MARKER:g}: the shapes are markers, or their lengths are wrong; "
+            "correct the file, or pass less"
         )
     for i, body in without.items():
         weighed = body.scaled(mass=density if density is not None else (mass or 0.0) / volume)
