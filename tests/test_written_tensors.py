@@ -344,10 +344,11 @@ class TestFix:
         assert [verdict.inside for verdict in verdicts] == [None, None]
         assert robots.fixed(robot, verdicts) == robot.source
 
-    @pytest.mark.parametrize(("radius", "is_written"), [("0.99", False), ("1.01", True)])
-    def test_moments_that_mujoco_refuses_are_not_written(self, radius: str, is_written: bool) -> None:
-        """Of a ball of 1e-9 kg, 2/5 m r² = 1e-14 at r = 5 mm."""
-        ball = f'<visual><geometry><sphere radius="{0.005 * float(radius)!r}"/></geometry></visual>'
+    @pytest.mark.parametrize(("share", "is_written"), [(0.99, False), (1.01, True)])
+    def test_moments_that_mujoco_refuses_are_not_written(self, share: float, is_written: bool) -> None:
+        """Of a ball of 1e-9 kg, 2/5 m r² = 1e-14 at r = 5 mm; of a bar of 1e-10 kg, m l²/6 = 1e-15."""
+        radius = 0.005 * share**0.5
+        ball = f'<visual><geometry><sphere radius="{radius!r}"/></geometry></visual>'
         text = f"""<robot name="r"><link name="a"><inertial><mass value="1e-9"/>
             <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>{ball}</link></robot>"""
         robot = parsed(text)
@@ -356,6 +357,19 @@ class TestFix:
         assert (verdict.better is not None) == is_written
         assert (robots.fixed(robot, [verdict]) != robot.source) == is_written
         assert any("MuJoCo refuses what has no more than 1e-14" in n for n in verdict.notes) != is_written
+        half = 0.5 * (6e-15 / 1e-10 * share) ** 0.5
+        text = mjcf_of(
+            [
+                '<inertial pos="0 0 0" mass="1e-10" diaginertia="1 1 1"/><geom type="box" '
+                f'quat="1 2 3 4" size="{half!r} {half!r} {2.0 * half!r}"/>'
+            ]
+        )
+        robot = parsed(text)
+        (verdict,) = robots.check(robot)
+        assert any("MuJoCo refuses what has no more than 1e-15" in n for n in verdict.notes) != is_written
+        fixed = robots.fixed(robot, [verdict])
+        assert (fixed != robot.source) == is_written
+        assert refused_by_mujoco(fixed.decode()) == ""
 
     def test_a_mass_denser_than_any_matter_is_refused(self) -> None:
         robot = parsed(urdf(bare("base"), bare("a", '<box size="0.01 0.01 0.01"/>'), joint("base", "a")))
