@@ -189,9 +189,10 @@ def fits(second: Array, center: Array, low: Array, high: Array) -> bool:
 
 
 def standing(robot: Robot) -> tuple[set[int], set[int], set[int]]:
-    """Give the links that move, those of them that neither carry mass nor are tied to some, and the tied ones.
+    """Give the links that move, those of them that neither have mass nor are tied to some, and the tied ones.
 
-    Tied are those fixed to another with three moments above 0, where simulators join the two, or to the world.
+    Tied are those fixed to another with three moments above 0, with which simulators join them, or to the
+    world.
     """
     group = {link.name: link.name for link in robot.links} | {"world": "world"}
 
