@@ -15,16 +15,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode._hints import check_kind
-from polhode.errors import FileFormatError
+from polhode.errors import FileFormatError, PolhodeError
 from polhode.files.content import content_format
 from polhode.files.xml_source import Edit, Element, edited, parse_xml
 from polhode.robots import mjcf, sdf, urdf
 from polhode.robots.addresses import Addresses, own_root
 from polhode.robots.geometry import GeometryReader
 from polhode.robots.model import Inertial, Joint, Link, Place, Robot, Shape
+from polhode.robots.room import MARKER
 from polhode.robots.sdf_include import check_version
 from polhode.robots.sources import Sources, read_source
-from polhode.robots.verdict import FAILURES, Verdict, judge
+from polhode.robots.verdict import FAILURES, Verdict, judge, replacement
 from polhode.robots.words import shortened
 
 if TYPE_CHECKING:
@@ -226,11 +227,20 @@ def check(
     for name, value in (("density", density), ("mass", mass)):
         if value is not None and not 0.0 < value < np.inf:
             raise ValueError(f"{name}: expected a finite number above 0, got {value!r}")
+    if density is not None and density > MARKER:
+        raise PolhodeError(
+            f"density: {density:.6g} kg/m^3, and no matter has more than {MARKER:g}; state the one of the "
+            "material"
+        )
     return judge(robot, GeometryReader(robot.folder, addresses), density, mass)
 
 
 def fixed(robot: Robot, verdicts: Sequence[Verdict], words: Collection[str] = FAILURES) -> bytes:
-    """Write better values into the links that fail the test.
+    """Write better values into the links that fail the test, or whose tensor is on the edge of the possible.
+
+    What is written is a body's also after rounding: no engine finds I1 + I2 < I3 there. It is never computed
+    from shapes in which the mass would be denser than 25,000 kg/m^3. In URDF and MJCF no moment is so small
+    that MuJoCo refuses it. What is left as it is has a note that says why.
 
     Parameters
     ----------
@@ -258,8 +268,9 @@ def fixed(robot: Robot, verdicts: Sequence[Verdict], words: Collection[str] = FA
     check_kind(robot, "robot", "Robot")
     edits: list[Edit] = []
     for link, verdict in zip(robot.links, verdicts, strict=True):
-        if verdict.verdict in words and verdict.better is not None and link.rewrite is not None:
-            edits += link.rewrite(robot.source, verdict.better)
+        better = replacement(verdict, words)
+        if better is not None and link.rewrite is not None:
+            edits += link.rewrite(robot.source, better)
     return edited(robot.source, edits)
 
 
