@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, Final
+from functools import wraps
+from typing import TYPE_CHECKING, Final, ParamSpec, TypeVar
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
-__all__ = ["no_attribute", "no_name"]
+__all__ = ["no_attribute", "no_name", "with_labels"]
+
+_Takes = ParamSpec("_Takes")
+_Returns = TypeVar("_Returns")
 
 _OF_MODULES: Final = {
     "polhode": {
@@ -107,3 +111,29 @@ def no_attribute(name: str) -> AttributeError:
     return AttributeError(
         f"'Trajectory' object has no attribute {name!r}{f'; {way_out}' if way_out else ''}", name=name
     )
+
+
+_LABELS: Final = {
+    "time_unit": "time_label",
+    "rate_unit": "rate_label",
+    "energy_unit": "energy_label",
+    "length_unit": "length_label",
+    "unit": "momentum_label",
+}
+"""Words at axes, by the names of units, as which they would have to convert numbers."""
+
+
+def with_labels(function: Callable[_Takes, _Returns]) -> Callable[_Takes, _Returns]:
+    """Refuse the name of a unit where a function only takes words for its axes."""
+
+    @wraps(function)
+    def checked(*args: _Takes.args, **kwargs: _Takes.kwargs) -> _Returns:
+        for name in kwargs:
+            if name in _LABELS:
+                raise TypeError(
+                    f"{function.__name__}() got an unexpected keyword argument {name!r}; write "
+                    f"{_LABELS[name]}=, which is a word in the picture and converts no number"
+                )
+        return function(*args, **kwargs)
+
+    return checked

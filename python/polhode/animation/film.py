@@ -122,11 +122,13 @@ def _ffmpeg(file: Path) -> str:
     try:
         carrier: Any = require("imageio_ffmpeg", extra="film", purpose=f"path: {file}")
         return str(carrier.get_ffmpeg_exe())
-    except (ModuleNotFoundError, RuntimeError):
-        raise FileNotFoundError(
-            f'path: {file} needs the program ffmpeg: pip install "polhode[film]" brings it; '
-            "a .gif or .html needs none"
-        ) from None
+    except ModuleNotFoundError:
+        way_out = 'pip install "polhode[film]" brings it'
+    except RuntimeError:  # the package is there, without the program
+        way_out = "install it"
+    raise FileNotFoundError(
+        f"path: {file} needs the program ffmpeg; {way_out}, or write a .gif or .html, which need none"
+    )
 
 
 def _pixels(size: int | tuple[int, int] | None, file: Path) -> tuple[int, int]:

@@ -16,6 +16,7 @@ from polhode.files.components import MOST_FACES, overlapping
 from polhode.files.content import is_molecule
 from polhode.files.loaded import load
 from polhode.files.mesh_solid import solid_of
+from polhode.files.reading import words_of
 from polhode.files.saved_body import read_report
 from polhode.units import metres_per
 
@@ -90,11 +91,7 @@ def body_of_part(kind: str, table: Mapping[str, Any], scope: Scope, folder: Path
     except (ValueError, TypeError, OverflowError, OSError) as error:
         if str(error).startswith(scope.where):
             raise
-        what = (
-            f"{error.filename}: {error.strerror}; check the path"
-            if isinstance(error, OSError)
-            else _in_keys(str(error))
-        )
+        what = words_of(error) if isinstance(error, OSError) else _in_keys(str(error))
         kind_of_error = type(error) if isinstance(error, PolhodeError) else PolhodeError
         raise kind_of_error(f"{scope.where}: {what}") from error
     if made.body.shape:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import re
 import sys
 from contextlib import suppress
@@ -15,6 +14,7 @@ from cyclopts import CycloptsError
 from polhode.cli.app import GOOD, app
 from polhode.cli.standard_output import ReaderLeft, standard_output
 from polhode.cli.text import in_options, printable
+from polhode.files.reading import words_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,7 +27,6 @@ COMMANDS: Final = (
 )  # fmt: skip
 BAD_INPUT: Final = 2
 INTERRUPTED: Final = 130
-NO_FAULT_OF_THE_PATH: Final = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EPIPE)
 
 
 def _version_in_full() -> None:
@@ -70,8 +69,7 @@ def run(arguments: list[str]) -> int:
     except ReaderLeft:
         return GOOD
     except OSError as error:
-        what = f"{error.filename}: {error.strerror}" if error.filename is not None else str(error)
-        return _fail(what if error.errno in NO_FAULT_OF_THE_PATH else f"{what}; check the path")
+        return _fail(words_of(error))
     except MemoryError as error:
         return _fail(f"there is not enough memory for it ({error})")
     except (ValueError, ModuleNotFoundError) as error:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from polhode._hints import with_labels
 from polhode.plot._style import axes_2d, tidy
 
 if TYPE_CHECKING:
@@ -17,12 +18,13 @@ _COLORS = {"short-axis": "#0072b2", "long-axis": "#d55e00"}
 _OTHER = "#999999"
 
 
+@with_labels
 def flyby(
     found: Any,
     of: Literal["spin_ratio", "pole_shift", "rotation_period", "precession_period"] = "spin_ratio",
     ax: Axes | None = None,
     *,
-    time_unit: str = "",
+    time_label: str = "",
     time_scale: float = 1.0,
     bins: int = 40,
 ) -> Axes:
@@ -36,10 +38,10 @@ def flyby(
         The number: a property of :class:`polhode.flybys.Flyby`, or a period after the flyby.
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default.
-    time_unit : str, optional
-        Unit of the periods, for the label.
+    time_label : str, optional
+        Word for the unit of the periods; it converts no number.
     time_scale : float, optional
-        How many units of time of the motion `time_unit` is long. Periods are divided by this number.
+        Periods are divided by this number: 3600 shows periods in seconds as hours.
     bins : int, optional
         Number of bars. The outermost bars also contain the tails, the last percent at each end.
 
@@ -48,7 +50,7 @@ def flyby(
     matplotlib.axes.Axes
     """
     ax = axes_2d(ax)
-    unit = f" / {time_unit}" if time_unit else ""
+    unit = f" / {time_label}" if time_label else ""
     values: Any
     before: float | None = None
     match of:

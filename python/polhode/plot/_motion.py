@@ -8,6 +8,7 @@ import numpy as np
 
 from polhode import _core
 from polhode._drift import changes
+from polhode._hints import with_labels
 from polhode._lengths import lengths
 from polhode._scene.sampling import drawn_times
 from polhode._scene.shape import check_one
@@ -37,6 +38,7 @@ def _until(motion: FreeMotion | HeavyTop | GyrostatMotion, end: float | None) ->
     return motion.at(drawn_times(motion, [0.0, end]))
 
 
+@with_labels
 def angular_velocity(
     trajectory: Trajectory | FreeMotion | HeavyTop | GyrostatMotion,
     ax: Axes | None = None,
@@ -44,7 +46,7 @@ def angular_velocity(
     end: float | None = None,
     frame: Literal["body", "principal"] = "body",
     degrees: bool = False,
-    time_unit: str = "s",
+    time_label: str = "s",
     coverage: float | None = 0.95,
 ) -> Axes:
     """Draw the components of the angular velocity over time.
@@ -61,8 +63,8 @@ def angular_velocity(
         Components along the body's axes or along its principal axes (ascending moments).
     degrees : bool
         Degrees instead of radians.
-    time_unit : str
-        Name of the unit of time, for the labels.
+    time_label : str
+        Word for the unit of the times; it converts no number.
     coverage : float or None
         If the body or the start have sigmas, a band is drawn about each curve. At any one time the component
         is inside the band with this probability, to first order: 0.95 for 1.96 standard deviations. If
@@ -96,16 +98,17 @@ def angular_velocity(
         half = np.rad2deg(half) if isinstance(half, np.ndarray) else half
     _components(ax, trajectory, omega, labels, half)
     note = _bands.name_band(ax, trajectory.t, half, coverage, float(np.nanmax(lengths(omega), initial=0.0)))
-    return _over_time(ax, time_unit, f"angular velocity ({'deg' if degrees else 'rad'}/{time_unit})", *note)
+    return _over_time(ax, time_label, f"angular velocity ({'deg' if degrees else 'rad'}/{time_label})", *note)
 
 
+@with_labels
 def angular_momentum(
     trajectory: Trajectory,
     ax: Axes | None = None,
     *,
     frame: Literal["space", "body"] = "space",
-    unit: str = "kg m²/s",
-    time_unit: str = "s",
+    momentum_label: str = "kg m²/s",
+    time_label: str = "s",
     coverage: float | None = 0.95,
 ) -> Axes:
     """Draw the components of the spin angular momentum over time.
@@ -118,8 +121,8 @@ def angular_momentum(
         Where to draw; a new figure by default.
     frame : {"space", "body"}
         The frame whose axes the components refer to.
-    unit, time_unit : str
-        Name of the unit, for the labels.
+    momentum_label, time_label : str
+        Words for the units of the momentum and of the times; they convert no number.
     coverage : float or None
         Probability of the bands, as for :func:`angular_velocity`. Correlations of the tensor with the motion
         are included.
@@ -134,16 +137,17 @@ def angular_momentum(
     half = _bands.of_spin(trajectory, frame, coverage)
     _components(ax, trajectory, spin, [rf"$L_{i}$" for i in "xyz"], half)
     note = _bands.name_band(ax, trajectory.t, half, coverage, float(np.nanmax(lengths(spin), initial=0.0)))
-    return _over_time(ax, time_unit, f"angular momentum in {frame} ({unit})", *note)
+    return _over_time(ax, time_label, f"angular momentum in {frame} ({momentum_label})", *note)
 
 
+@with_labels
 def euler_angles(
     trajectory: Trajectory,
     ax: Axes | None = None,
     *,
     sequence: str = "ZXZ",
     unwrap: bool = False,
-    time_unit: str = "s",
+    time_label: str = "s",
     coverage: float | None = 0.95,
 ) -> Axes:
     """Draw the Euler angles over time, in degrees; where they are not defined there is a gap.
@@ -159,8 +163,8 @@ def euler_angles(
     unwrap : bool
         Whether the first and third angle are counted on over many turns. Otherwise the line is broken where
         an angle jumps by a turn.
-    time_unit : str
-        Name of the unit, for the labels.
+    time_label : str
+        Word for the unit of the times; it converts no number.
     coverage : float or None
         Probability of the bands, as for :func:`angular_velocity`. The first and third angle are not defined
         at some values of the second. They have no band where the band of the second angle contains such a
@@ -181,10 +185,11 @@ def euler_angles(
     half = np.rad2deg(half) if isinstance(half, np.ndarray) else half
     _components(ax, trajectory, angles, names, half)
     note = _bands.name_band(ax, trajectory.t, half, coverage, 90.0)
-    return _over_time(ax, time_unit, f"Euler angles {sequence} (degrees)", *note)
+    return _over_time(ax, time_label, f"Euler angles {sequence} (degrees)", *note)
 
 
-def invariants(trajectory: Trajectory, ax: Axes | None = None, *, time_unit: str = "s") -> Axes:
+@with_labels
+def invariants(trajectory: Trajectory, ax: Axes | None = None, *, time_label: str = "s") -> Axes:
     """Draw how far energy and angular momentum have drifted from their values at the start.
 
     Parameters
@@ -193,8 +198,8 @@ def invariants(trajectory: Trajectory, ax: Axes | None = None, *, time_unit: str
         The motion; of a stack, every body is drawn.
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default.
-    time_unit : str
-        Name of the unit, for the labels.
+    time_label : str
+        Word for the unit of the times; it converts no number.
 
     Returns
     -------
@@ -231,7 +236,7 @@ def invariants(trajectory: Trajectory, ax: Axes | None = None, *, time_unit: str
                 label=name if row == 0 else None,
             )  # fmt: skip
     ax.set_yscale("log")
-    return _over_time(ax, time_unit, "relative change since the start")
+    return _over_time(ax, time_label, "relative change since the start")
 
 
 def _components(
@@ -256,8 +261,8 @@ def _components(
             )
 
 
-def _over_time(ax: Axes, time_unit: str, quantity: str, note: str | None = None, columns: int = 3) -> Axes:
-    ax.set_xlabel(f"time ({time_unit})")
+def _over_time(ax: Axes, time_label: str, quantity: str, note: str | None = None, columns: int = 3) -> Axes:
+    ax.set_xlabel(f"time ({time_label})")
     ax.set_ylabel(quantity)
     tidy(ax)
     ax.legend(
