@@ -78,8 +78,8 @@ _FOREIGN: Final = (
     ),
     (
         (
-            ".fbx", ".blend", ".x3d", ".wrl", ".amf", ".usd", ".usda", ".usdc", ".usdz", ".3ds", ".max", ".msh",
-            ".inp",
+            ".fbx", ".blend", ".x3d", ".wrl", ".amf", ".usd", ".usda", ".usdc", ".usdz", ".3ds", ".max",
+            ".msh", ".inp",
         ),
         "export it as a mesh such as .stl, .obj or .glb",
     ),

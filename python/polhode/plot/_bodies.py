@@ -12,7 +12,7 @@ from polhode._hints import with_labels
 from polhode._scene.style import AXIS_COLORS, OUTLINE_COLOR
 from polhode._scene.triangles import cut, unit_normals
 from polhode.plot._style import axes_3d, show_around
-from polhode.plot._surfaces import toward_viewer
+from polhode.plot._surfaces import toward_viewer, translucent
 
 if TYPE_CHECKING:
     from mpl_toolkits.mplot3d.axes3d import Axes3D
@@ -83,8 +83,8 @@ def body(
         facecolors=np.concatenate([shades, np.tile(OUTLINE_COLOR, (len(outline), 1))]),
         edgecolors=np.concatenate([shades, np.tile(OUTLINE_COLOR, (len(outline), 1))]),
         linewidths=0.7,
-        alpha=opacity,
     )
+    translucent(surface, opacity)
     surface.set_zorder(2)
 
     def depth(z: Floats, axis: int) -> Floats:

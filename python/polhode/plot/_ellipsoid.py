@@ -77,7 +77,7 @@ def ellipsoid(
     mpl_toolkits.mplot3d.axes3d.Axes3D
     """
     check_one(body.shape, "body")
-    new = ax is None
+    new = ax is None or not ax.has_data()
     ax = axes_3d(ax)
     middle = _core.real_numbers(body.center_of_mass if center is None else center, "center")
     semi_axes = inertia_semi_axes(body.principal.moments)

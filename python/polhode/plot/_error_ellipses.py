@@ -77,12 +77,11 @@ def error_ellipses(
         (line,) = ax.plot([], [], [], color=color, linestyle=dash, label=f"$e_{k + 1}$: ± {size}{doubt}")
         legend.append(line)
     legend += _free_axes(ax, body, semi_axes, center, loose)
-    times = "" if enlarged == 1.0 else f", drawn {enlarged:g} times as large"
+    times = "" if enlarged == 1.0 else f",\ndrawn {enlarged:g} times as large"
     title = f"where the axes point with {100.0 * coverage:.4g} %{times}"
-    ax.legend(
-        handles=legend, title=title, loc="upper center", bbox_to_anchor=(0.5, 0.14), frameon=False,
-        fontsize="small", title_fontsize="small",
-    )  # fmt: skip
+    fonts = {"fontsize": "small", "title_fontsize": "small"}
+    drawn = ax.legend(handles=legend, title=title, loc="lower center", frameon=False, **fonts)
+    drawn.set_in_layout(False)
 
 
 def _ellipses(

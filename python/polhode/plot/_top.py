@@ -109,7 +109,7 @@ def nutation(top: HeavyTop, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
         / arm
         @ to_upright(-top.gravity / weight).T
     )
-    solid_ellipsoid(ax, np.ones(3), np.eye(3), np.zeros(3), 0.35)
+    solid_ellipsoid(ax, np.ones(3), np.eye(3), np.zeros(3), 0.6)
     around = np.linspace(0.0, 2.0 * np.pi, 181)
     for limit in top.nutation_limits:
         circle = np.stack(

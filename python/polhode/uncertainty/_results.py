@@ -200,7 +200,13 @@ class Ledger:
         write_json_ledger(self, path, covariance=covariance)
 
     def plot(
-        self, ax: Axes | None = None, *, of: str = "mass", at: str | None = None, number: str = "mass"
+        self,
+        ax: Axes | None = None,
+        *,
+        of: str = "mass",
+        at: str | None = None,
+        number: str = "mass",
+        mass_label: str | None = None,
     ) -> Axes:
         """Draw the contributions of the parts: to the mass as a sunburst, or to a variance as bars.
 
@@ -214,6 +220,9 @@ class Ledger:
             The id of a node; the root by default.
         number : str, optional
             The number whose variance is shared, see `variance_shares`.
+        mass_label : str, optional
+            Word for the unit of the masses; it converts no number. Without it the picture says that the unit
+            is that of the table.
 
         Returns
         -------
@@ -225,7 +234,7 @@ class Ledger:
             return bars(self.variance_shares(number, at), ax)
         if of != "mass":
             raise PolhodeError(f'of: expected "mass" or "variance", got {of!r}')
-        return sunburst(self[self.root if at is None else at], ax)
+        return sunburst(self[self.root if at is None else at], ax, mass_label=mass_label)
 
     def __getitem__(self, name: str) -> Part:
         row = self._tree.row_of.get(name) if isinstance(name, str) else None
