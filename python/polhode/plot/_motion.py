@@ -286,7 +286,7 @@ def _components(
 
 
 def _lowest(angles: Floats) -> float:
-    """Choose where the turn of an angle begins: at −180°, or at 0° where half of the breaks are saved then."""
+    """Choose where the turn of an angle begins: at −180°, or at 0° where this saves half of the breaks."""
     breaks = [
         int((np.abs(np.diff(one, axis=-1)) > 0.5 * _TURN).sum())
         for one in (angles, np.where(angles < 0.0, angles + _TURN, angles))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
@@ -94,8 +95,9 @@ def columns_that_fit(width: float, labels: Sequence[str], size: float, most: int
     """Return how many columns a legend may have, so that it is no wider than this number of points."""
     widths = [text_size(label, size)[0] + _ENTRY * size for label in labels]
     for columns in range(min(most, len(labels)), 1, -1):
-        rows = -(-len(labels) // columns)
-        if sum(max(widths[k : k + rows]) for k in range(0, len(labels), rows)) <= width:
+        rows, longer = divmod(len(labels), columns)
+        starts = [k * rows + min(k, longer) for k in range(columns + 1)]
+        if sum(max(widths[a:b]) for a, b in itertools.pairwise(starts)) <= width:
             return columns
     return 1
 

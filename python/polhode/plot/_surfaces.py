@@ -65,7 +65,7 @@ def translucent(surface: Any, opacity: float) -> None:
 
     def thinned(picture: Floats, _dpi: float) -> tuple[Floats, int, int]:
         thin = picture.copy()
-        thin[..., 3] *= opacity
+        thin[..., 3] = np.minimum(thin[..., 3], opacity)  # matplotlib may filter twice
         return thin, 0, 0
 
     surface.set_agg_filter(thinned)
