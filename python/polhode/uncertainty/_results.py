@@ -73,6 +73,11 @@ class Ledger:
         Basic mass plus mass growth allowance, rolled up.
     unstated : int
         Number of parts without standard deviations; these count as exact.
+    opposite_signs : dict of str to tuple of str
+        For each source whose parts state uncertain products of inertia with both signs (``POIconv``): the
+        names of these numbers. The parts share the error of the element of the tensor. So where a number that
+        is stated with ``-`` is too large by 0.7 of its sigma, one that is stated with ``+`` is too small by
+        0.7 of its own.
     """
 
     ids: tuple[str, ...]
@@ -85,6 +90,7 @@ class Ledger:
     inertia: Floats
     predicted_mass: Floats
     unstated: int
+    opposite_signs: dict[str, tuple[str, ...]]
     _tree: Tree
     _values: Values
     _covariances: Covariances | None
