@@ -9,7 +9,7 @@ from __future__ import annotations
 import inspect
 from difflib import get_close_matches
 from functools import wraps
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, ParamSpec, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -21,7 +21,11 @@ __all__ = [
     "no_attribute",
     "no_keyword",
     "no_name",
+    "with_hints",
 ]
+
+_Takes = ParamSpec("_Takes")
+_Returns = TypeVar("_Returns")
 
 _OF_MODULES: Final = {
     "polhode": {
@@ -233,6 +237,15 @@ _INSTEAD: Final = {
 }
 """Arguments that no other argument replaces as it is."""
 
+_LABELS: Final = {
+    "time_unit": "time_label",
+    "rate_unit": "rate_label",
+    "energy_unit": "energy_label",
+    "length_unit": "length_label",
+    "unit": "momentum_label",
+}
+"""Words at axes, by the names of units, as which they would have to convert numbers."""
+
 _MADE_BY: Final = {
     ("FreeMotion", "Trajectory"): "trajectory.body.free_motion(trajectory.omega[0]) is one, without a load",
     ("FreeMotion", "RigidBody"): "body.free_motion(omega) is one",
@@ -286,7 +299,9 @@ def no_keyword(function: str, given: str, known: Iterable[str]) -> TypeError:
     known = list(known)
     meant = [name for name, others in _OTHER_ARGUMENTS.items() if name in known and given in others]
     meant = meant or get_close_matches(given, known, 1)
-    if given in _INSTEAD:
+    if _LABELS.get(given) in known:
+        way_out = f"write {_LABELS[given]}=, which is a word in the picture and converts no number"
+    elif given in _INSTEAD:
         way_out = _INSTEAD[given]
     else:
         way_out = f"did you mean {meant[0]}=?" if meant else f"it takes {', '.join(known)}"
@@ -317,22 +332,25 @@ def explain_calls(names: dict[str, Any], public: Iterable[str]) -> None:
     """
     for name in public:
         if inspect.isroutine(names[name]):
-            names[name] = _explained(names[name], name, names["__name__"])
+            explained = with_hints(names[name], name)
+            explained.__name__ = explained.__qualname__ = name
+            explained.__module__ = names["__name__"]
+            names[name] = explained
 
 
-def _explained(function: Callable[..., Any], name: str, module: str) -> Callable[..., Any]:
+def with_hints(function: Callable[_Takes, _Returns], name: str | None = None) -> Callable[_Takes, _Returns]:
+    """Let a function say what to write instead of arguments that it does not take."""
+
     @wraps(function)
-    def call(*args: Any, **kwargs: Any) -> Any:
+    def call(*args: _Takes.args, **kwargs: _Takes.kwargs) -> _Returns:
         try:
             return function(*args, **kwargs)
         except TypeError:
-            error = _wrong_arguments(function, name, args, kwargs)
+            error = _wrong_arguments(function, name or function.__name__, args, kwargs)
             if error is None:
                 raise
         raise error
 
-    call.__name__ = call.__qualname__ = name
-    call.__module__ = module
     return call
 
 
@@ -340,12 +358,15 @@ def _wrong_arguments(
     function: Callable[..., Any], name: str, args: tuple[Any, ...], kwargs: Mapping[str, Any]
 ) -> TypeError | None:
     """Make the error for arguments that do not fit the signature; None where they fit."""
-    parameters = inspect.signature(function).parameters
+    every = inspect.signature(function).parameters
+    parameters = {
+        key: one for key, one in every.items() if one.kind not in (one.VAR_POSITIONAL, one.VAR_KEYWORD)
+    }
     unknown = [key for key in kwargs if key not in parameters]
-    if unknown:
+    if unknown and not any(one.kind is one.VAR_KEYWORD for one in every.values()):
         return no_keyword(name, unknown[0], parameters)
     places = [one.name for one in parameters.values() if one.kind is not one.KEYWORD_ONLY]
-    if len(args) > len(places):
+    if len(args) > len(places) and not any(one.kind is one.VAR_POSITIONAL for one in every.values()):
         by_name = [f"{key}=" for key in parameters if key not in places]
         takes = f"takes {', '.join(places)}" + (f", then by name {', '.join(by_name)}" if by_name else "")
         if places in (["size"], ["semi_axes"], ["gravity"]):

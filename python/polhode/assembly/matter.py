@@ -17,6 +17,7 @@ from polhode.files.components import MOST_FACES, overlapping
 from polhode.files.content import is_molecule
 from polhode.files.loaded import load
 from polhode.files.mesh_solid import solid_of
+from polhode.files.reading import words_of
 from polhode.files.saved_body import read_report
 from polhode.units import metres_per
 
@@ -96,11 +97,7 @@ def body_of_part(kind: str, table: Mapping[str, Any], scope: Scope, folder: Path
     except (ValueError, TypeError, OverflowError, OSError) as error:
         if str(error).startswith(scope.where):
             raise
-        what = (
-            f"{error.filename}: {error.strerror}; check the path"
-            if isinstance(error, OSError)
-            else _in_keys(str(error))
-        )
+        what = words_of(error) if isinstance(error, OSError) else _in_keys(str(error))
         kind_of_error = type(error) if isinstance(error, PolhodeError) else PolhodeError
         raise kind_of_error(f"{scope.where}: {what}") from error
     if made.body.shape:
@@ -234,7 +231,9 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
     solid = solid_of(loaded, scale=metres, **options)
     is_whole = options.keys().isdisjoint(("union", "closure", "repair", "weld"))
     if loaded.cad is not None or not is_whole or solid.faces > MOST_FACES:
-        return Matter(solid.body, metres, notes=loaded.notes)  # of solids of CAD their file tells what overlaps
+        return Matter(
+            solid.body, metres, notes=loaded.notes
+        )  # of solids of CAD their file tells what overlaps
     mesh = loaded.mesh.vertices * metres, loaded.mesh.faces
     lines = overlapping(*mesh)
     lines += ["union = true counts what components share once"] if lines else []

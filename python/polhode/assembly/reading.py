@@ -16,7 +16,7 @@ from polhode.assembly.overlaps import Form, Placed, find_overlaps, words_of
 from polhode.assembly.placing import HERE, Place, copies, place_of
 from polhode.assembly.result import Assembly, Member
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.files.reading import read_text
+from polhode.files.reading import read_text, words_of
 from polhode.uncertainty.ledger import ledger_of_bodies
 
 if TYPE_CHECKING:
@@ -185,9 +185,7 @@ def _part(
         try:
             inner = _file(folder / text_of(row, "assembly", scope.where), known, inside)
         except OSError as error:
-            raise PolhodeError(
-                f"{scope.where}: {error.filename}: {error.strerror}; check the path"
-            ) from error
+            raise PolhodeError(f"{scope.where}: {words_of(error)}") from error
         one = _Unit(
             name, comment or inner.comment, children=inner.children, members=inner.members, notes=inner.notes
         )

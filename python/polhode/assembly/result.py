@@ -125,7 +125,7 @@ class Assembly:
         ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
             Where to draw; a new figure by default.
         **options
-            `length_unit`, see :func:`polhode.plot.body`.
+            `length_label`, see :func:`polhode.plot.body`.
 
         Returns
         -------

@@ -179,9 +179,11 @@ def _unusual(volume: float, unit: str | None, loaded: Loaded) -> list[str]:
     ]
     if not likely:
         return [f"a volume of {volume:.4g} m^3 is unusual for a part; check the unit of length"]
-    way_out = f"state --length-unit {likely[0]}"
+    way_out = f"check that the file is in {unit}, as --length-unit says"
     if loaded.states_unit:
         way_out = "check what exported the file, which says its unit itself"
+    elif loaded.unit == unit:
+        way_out = f"check what exported the file, since {loaded.format} is in {unit} by its standard"
     return [
         f"a volume of {volume:.4g} m^3 is unusual for a part: in {likely[0]} it would be "
         f"{stored * metres_per(likely[0]) ** 3:.4g} m^3; {way_out}"

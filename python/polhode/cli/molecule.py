@@ -15,8 +15,9 @@ from polhode.cli.source import as_file, shown
 from polhode.cli.tables import FileUnits, body_fields, tensor_fields, trust_fields
 from polhode.errors import PolhodeError
 from polhode.files.body import molecule_isotopes
-from polhode.files.content import is_molecule
+from polhode.files.content import EXPECTED_CONTENT, MOLECULE_SUFFIXES, is_molecule, unread
 from polhode.files.loaded import load
+from polhode.files.unpacked import inner_suffix
 from polhode.molecules import Isotope, isotopes
 from polhode.units import METRES, metres_per
 
@@ -34,6 +35,9 @@ def molecule_report(file: Path, options: MoleculeOptions) -> Report:
     """Report on the rotation of the molecule in a file, and of isotopologues of it."""
     with as_file(file) as path:
         if not is_molecule(path):
+            suffix = inner_suffix(path)
+            if suffix not in EXPECTED_CONTENT:
+                raise unread(file, suffix, MOLECULE_SUFFIXES)
             raise PolhodeError(
                 f"{shown(file)}: a molecule is an XYZ, PDB, MOL or SDF file; polhode report reads meshes"
             )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import re
 import sys
 from contextlib import suppress
@@ -16,6 +15,7 @@ from cyclopts import CycloptsError, UnusedCliTokensError
 from polhode.cli.app import GOOD, app
 from polhode.cli.standard_output import ReaderLeft, standard_output
 from polhode.cli.text import in_options, printable
+from polhode.files.reading import words_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -74,7 +74,6 @@ OTHER_OPTIONS: Final = (
     ("--index-base 0", "--zero-based --base"),
 )  # fmt: skip
 """What to write, and the names under which people look for it; the first that a command has is meant."""
-NO_FAULT_OF_THE_PATH: Final = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EPIPE)
 
 
 def _version_in_full() -> None:
@@ -115,7 +114,9 @@ def unknown_option(arguments: list[str]) -> str | None:
             ),
             next(iter(get_close_matches(name, sorted(known), 1, 0.7)), None),
         )
-        way_out = f"did you mean {meant}?" if meant else f"choose one that it has (see polhode {command} --help)"
+        way_out = (
+            f"did you mean {meant}?" if meant else f"choose one that it has (see polhode {command} --help)"
+        )
         return f"{name}: {command} has no such option; {way_out}"
     return None
 
@@ -150,8 +151,7 @@ def run(arguments: list[str]) -> int:
     except ReaderLeft:
         return GOOD
     except OSError as error:
-        what = f"{error.filename}: {error.strerror}" if error.filename is not None else str(error)
-        return _fail(what if error.errno in NO_FAULT_OF_THE_PATH else f"{what}; check the path")
+        return _fail(words_of(error))
     except MemoryError as error:
         return _fail(f"there is not enough memory for it ({error})")
     except (ValueError, ModuleNotFoundError) as error:

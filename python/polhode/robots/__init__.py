@@ -16,7 +16,7 @@ import numpy as np
 
 from polhode._hints import check_kind
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.files.content import content_format
+from polhode.files.content import EXPECTED_CONTENT, content_format, rename
 from polhode.files.xml_source import Edit, Element, edited, parse_xml
 from polhode.robots import mjcf, sdf, urdf
 from polhode.robots.addresses import Addresses, own_root
@@ -136,7 +136,11 @@ def parse_robot(
         raise FileFormatError(f"{name}: the file is empty; check the file")
     body_format, _ = content_format(source[:4096], len(source))
     if body_format is not None:
-        way_out = "unpack it with gunzip" if "gzip" in body_format else "polhode report reads it"
+        way_out = "polhode report reads it"
+        if "gzip" in body_format:
+            way_out = "unpack it with gunzip"
+        elif body_format not in EXPECTED_CONTENT.get(Path(name).suffix.lower(), ()):
+            way_out = f"{rename(Path(name), body_format, source[:4096])}, and {way_out}"
         raise FileFormatError(f"{name}: is {body_format}, not a robot; {way_out}")
     home = Path(folder)
     addresses = Addresses(home, [Path(package) for package in packages], allow_outside=allow_outside)

@@ -9,7 +9,7 @@ import numpy as np
 
 from polhode import RigidBody, principal_moments
 from polhode._snippets import LEAST_MOMENT, inside_edge
-from polhode.errors import PolhodeError
+from polhode.errors import InvalidInertiaError, PolhodeError
 from polhode.robots.mjcf_compiler import as_compiled
 from polhode.robots.model import Inertial
 from polhode.robots.room import (
@@ -326,6 +326,8 @@ class _Judging(NamedTuple):
         """Say which law fails, the plainest first."""
         try:
             body = RigidBody(declared.mass, declared.inertia, declared.center_of_mass)
+        except InvalidInertiaError as error:  # its remedies are those of Python's arguments
+            return "impossible", error.fault
         except PolhodeError as error:
             return "impossible", str(error)
         if geometry.unread or geometry.low is None:

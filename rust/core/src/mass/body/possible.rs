@@ -88,7 +88,23 @@ impl RigidBody {
             trace(&about_origin),
             rtol,
             true,
-        )?;
+        )
+        .map_err(|error| match error {
+            Error::Body(BodyFault::NegativeMoment {
+                moments,
+                is_from_origin,
+                ..
+            }) => {
+                let is_possible_as_given =
+                    Self::new(mass, inertia_about_origin, center_of_mass, rtol).is_ok();
+                Error::Body(BodyFault::NegativeMoment {
+                    moments,
+                    is_from_origin,
+                    is_possible_as_given,
+                })
+            }
+            other => other,
+        })?;
         let rounding = (body.error_bound).rounded(&Vector3::zeros(), trace(&about_origin));
         Ok(body.with_bound(rounding))
     }
@@ -188,6 +204,7 @@ impl RigidBody {
                 moments,
                 deficit,
                 relative: deficit / (i1 + i2 + i3),
+                is_given: false,
             }
             .into());
         }
