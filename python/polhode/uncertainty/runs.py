@@ -10,9 +10,8 @@ from polhode import _core
 from polhode._from_zero import runs_from_zero
 from polhode._repr import short
 from polhode._rows import rows_of
-from polhode._variables import of_forms
+from polhode._variables import angles_of, of_forms, row_of
 from polhode.errors import PolhodeError
-from polhode.uncertainty.motions import row_of
 from polhode.uncertainty.neighbours import Neighbours
 from polhode.uncertainty.propagation import is_enough
 
@@ -78,7 +77,7 @@ def _row(run: Trajectory, stack: tuple[int, ...], row: int) -> NDArray[np.bool_]
     if of_omega is not None:
         arguments.append(row_of(of_omega, rows_of(np.shape(of_omega.value)[:-1], stack)[row]))
     if of_attitude is not None:
-        arguments.append(of_forms(np.zeros(3), of_attitude._forms()))
+        arguments.append(of_forms(np.zeros(3), angles_of(of_attitude, stack, row)))
     around = Neighbours(None if body.covariance is None else body, arguments)
     rng = np.random.default_rng(20)
     directions = rng.normal(size=(DIRECTIONS, around.rank))
@@ -96,7 +95,7 @@ def _row(run: Trajectory, stack: tuple[int, ...], row: int) -> NDArray[np.bool_]
     if of_omega is not None:
         omega = np.array([one[0] for one in neighbours])
     if of_attitude is not None:
-        attitude = _product(_exponential(np.array([one[-1] for one in neighbours])), attitude)
+        attitude = product(_exponential(np.array([one[-1] for one in neighbours])), attitude)
     at_start: dict[str, Any] = {} if run.pivoted else {"velocity": run.velocity[place][0]}
     if "_given" in run.__dict__:
         at_start["states"] = {name: run.states[name][place][0] for name in run.__dict__["_given"]}
@@ -114,7 +113,7 @@ def _row(run: Trajectory, stack: tuple[int, ...], row: int) -> NDArray[np.bool_]
         return np.zeros((len(run.t), 6), dtype=bool)
     back = run.quaternion[place] * np.array([-1.0, -1.0, -1.0, 1.0])
     moved = np.concatenate(
-        [_logarithm(_product(back, beside.quaternion)), beside.omega - run.omega[place]], axis=-1
+        [logarithm(product(back, beside.quaternion)), beside.omega - run.omega[place]], axis=-1
     )
     above, below, near, beyond = moved.reshape(4, DIRECTIONS, len(run.t), 6)
     first = (near - beyond) / (2 * NEAR)
@@ -130,7 +129,7 @@ def _taken(many: Any, stack: tuple[int, ...], row: int) -> Any:
     return many[np.unravel_index(rows_of(many.shape, stack)[row], many.shape)]
 
 
-def _product(a: Floats, b: Floats) -> Floats:
+def product(a: Floats, b: Floats) -> Floats:
     """Multiply quaternions (x, y, z, w): the rotation b, then a."""
     u, v = a[..., :3], b[..., :3]
     vector = a[..., 3:] * v + b[..., 3:] * u + np.cross(u, v)
@@ -144,7 +143,7 @@ def _exponential(angles: Floats) -> Floats:
     return np.concatenate([0.5 * angles * np.sinc(half / np.pi), np.cos(half)], axis=-1)
 
 
-def _logarithm(quaternion: Floats) -> Floats:
+def logarithm(quaternion: Floats) -> Floats:
     """Give the rotation vectors of quaternions, of at most half a turn."""
     q = np.where(quaternion[..., 3:] < 0.0, -quaternion, quaternion)
     sine = np.linalg.norm(q[..., :3], axis=-1, keepdims=True)
