@@ -128,7 +128,7 @@ def test_start_and_states_against_clones(phase: float) -> None:
     small, direction = 0.1, (0.3, -0.2, 1.0)
     body: Any = RigidBody.from_principal(1.0, Uncertain(MOMENTS, small * OF_MOMENTS))
     both: Any = [Uncertain(value, small * s) for value, s in zip(PERIODS, OF_PERIODS, strict=True)]
-    given = {"phase": phase, "angular_momentum_direction": direction}
+    given: Any = {"phase": phase, "angular_momentum_direction": direction}
     motion = body.free_motion_from_periods(*both, mode="short-axis", **given)
     t = np.array([0.0, 20.0, 90.0])
     found = motion.at(t)
@@ -163,8 +163,8 @@ def test_one_source_of_body_and_period_is_followed() -> None:
 
 def test_the_command_prints_them() -> None:
     words = (
-        "spin", "--moments", "0.6100 ± 0.0012, 0.9650 ± 0.0004, 1.0000 ± 0.0002", "--periods", "263 h, 27.38 h",
-        "--mode", "short-axis",
+        "spin", "--moments", "0.6100 ± 0.0012, 0.9650 ± 0.0004, 1.0000 ± 0.0002",
+        "--periods", "263 h, 27.38 h", "--mode", "short-axis",
     )  # fmt: skip
     code, out, err = run(*words, "--format", "json")
     assert (code, err) == (0, "")

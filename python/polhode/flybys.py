@@ -197,7 +197,8 @@ def clones(
     if numbers is None:
         known = cast("float", rotation_period)
         phase = distributions.uniform(0.0, float(known), name="phase")
-        bodies, start = body, distributions.made(_at, motion, phase)
+        bodies: Any = body
+        start = distributions.made(_at, motion, phase)
     else:
         share = distributions.uniform(0.0, 1.0, name="phase")
         bodies = distributions.made(_bodies, body, numbers)
@@ -277,7 +278,9 @@ def flyby(
             raise TypeError(
                 f"{name}: flyby tells the start and the end of all clones; flybys.clones takes it"
             )
-    given = {"rotation_period": rotation_period, "precession_period": precession_period, "mode": mode}
+    given: dict[str, Any] = {
+        "rotation_period": rotation_period, "precession_period": precession_period, "mode": mode,
+    }  # fmt: skip
     many = clones(body, orbit, span, **given, n=n, seed=seed, progress=progress, **options)
     motion = body.free_motion_from_periods(rotation_period, precession_period, mode)
     found = _told(body, _numbers(motion), seed, many.compute())

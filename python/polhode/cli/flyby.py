@@ -110,18 +110,21 @@ def _run(
         raise PolhodeError('--periods: state the two periods, as in "264.178 h, 27.38547 h"')
     if options.mode is None:
         raise PolhodeError(f"--mode: {MODES}")
+    notes: tuple[str, ...]
     if file is not None:
         loaded = any_body(file, body)
         asteroid, notes = loaded.body, tuple(loaded.notes)
     else:
         check_moments_alone(body)
-        notes: tuple[str, ...] = ()
+        notes = ()
         asteroid = RigidBody.from_principal(1.0, amounts(options.moments, 3, "kg m^2", "--moments"))
     rotation, precession = amounts(options.periods, 2, "s", "--periods")
     span = quantity(options.span, "s", "--span")
     if not span > 0.0:
         raise PolhodeError(f"--span: expected a positive time, got {span:g}")
-    if not options.eccentricity >= 1.0:
+    if not options.eccentricity >= 0.0:
+        raise PolhodeError(f"--eccentricity: expected 1 or more, got {options.eccentricity:g}")
+    if options.eccentricity < 1.0:
         raise PolhodeError(
             f"--eccentricity: {options.eccentricity:g} is that of an ellipse, on which the body goes round "
             "the planet; a flyby has 1 or more, as in --eccentricity 4.25. For an ellipse call "

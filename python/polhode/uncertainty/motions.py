@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from polhode._rows import rows_of
 from polhode._variables import of_forms, row_of
 from polhode.uncertainty.neighbours import Neighbours
 from polhode.uncertainty.propagation import Propagated, propagate, slopes_of
-from polhode.uncertainty.runs import logarithm, product
+from polhode.uncertainty.runs import _logarithm, _product
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -178,14 +178,14 @@ class FromPeriods(NamedTuple):
 
     rotation_period: Any
     precession_period: Any
-    mode: str
+    mode: Literal["long-axis", "short-axis"]
     sense: float
     phase: Any
     angular_momentum_direction: Any
 
     def row(self, shape: tuple[int, ...], row: int) -> FromPeriods:
         """Give the arguments of one motion of a stack."""
-        periods = []
+        periods: list[Any] = []
         for given in self[:2]:
             value = _value(given)
             which = rows_of(value.shape, shape)[row]
@@ -207,8 +207,9 @@ class FromPeriods(NamedTuple):
         """Solve for the motion of a body, with these values in place of the uncertain periods."""
         values = iter(periods)
         rotation, precession = (next(values) if isinstance(x, _core.Uncertain) else x for x in self[:2])
-        found: FreeMotion = body.free_motion_from_periods(rotation, precession, *self[2:])
-        return found
+        return body.free_motion_from_periods(
+            rotation, precession, self.mode, self.sense, self.phase, self.angular_momentum_direction
+        )
 
 
 @dataclass(frozen=True)
@@ -250,7 +251,7 @@ def start_from_periods(
 
         def start(body: Any, *periods: Any, one: FromPeriods = one, back: Floats = back) -> Floats:
             near = one.motion(body, periods)
-            return np.concatenate([near.omega, logarithm(product(near.quaternion, back))])
+            return np.concatenate([near.omega, _logarithm(_product(near.quaternion, back))])
 
         steps = slopes_of(start, around, (6,)).T @ around.of_variables
         forms = [

@@ -122,8 +122,8 @@ def axis_probabilities(body: RigidBody) -> AxisProbabilities:
 def mode_probabilities(motion: FreeMotion) -> ModeProbabilities:
     """Compute the probabilities of long-axis mode and short-axis mode of a free motion.
 
-    The mode follows from the sign of ``1 − 2T I₂/L²``, which is taken as normally distributed. That of a motion
-    from given periods was given, and is certain.
+    The mode follows from the sign of ``1 − 2T I₂/L²``, which is taken as normally distributed. The mode of a
+    motion from given periods was given, and is certain.
 
     Parameters
     ----------

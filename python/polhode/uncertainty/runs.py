@@ -95,7 +95,7 @@ def _row(run: Trajectory, stack: tuple[int, ...], row: int) -> NDArray[np.bool_]
     if of_omega is not None:
         omega = np.array([one[0] for one in neighbours])
     if of_attitude is not None:
-        attitude = product(_exponential(np.array([one[-1] for one in neighbours])), attitude)
+        attitude = _product(_exponential(np.array([one[-1] for one in neighbours])), attitude)
     at_start: dict[str, Any] = {} if run.pivoted else {"velocity": run.velocity[place][0]}
     if "_given" in run.__dict__:
         at_start["states"] = {name: run.states[name][place][0] for name in run.__dict__["_given"]}
@@ -113,7 +113,7 @@ def _row(run: Trajectory, stack: tuple[int, ...], row: int) -> NDArray[np.bool_]
         return np.zeros((len(run.t), 6), dtype=bool)
     back = run.quaternion[place] * np.array([-1.0, -1.0, -1.0, 1.0])
     moved = np.concatenate(
-        [logarithm(product(back, beside.quaternion)), beside.omega - run.omega[place]], axis=-1
+        [_logarithm(_product(back, beside.quaternion)), beside.omega - run.omega[place]], axis=-1
     )
     above, below, near, beyond = moved.reshape(4, DIRECTIONS, len(run.t), 6)
     first = (near - beyond) / (2 * NEAR)
@@ -129,7 +129,7 @@ def _taken(many: Any, stack: tuple[int, ...], row: int) -> Any:
     return many[np.unravel_index(rows_of(many.shape, stack)[row], many.shape)]
 
 
-def product(a: Floats, b: Floats) -> Floats:
+def _product(a: Floats, b: Floats) -> Floats:
     """Multiply quaternions (x, y, z, w): the rotation b, then a."""
     u, v = a[..., :3], b[..., :3]
     vector = a[..., 3:] * v + b[..., 3:] * u + np.cross(u, v)
@@ -143,7 +143,7 @@ def _exponential(angles: Floats) -> Floats:
     return np.concatenate([0.5 * angles * np.sinc(half / np.pi), np.cos(half)], axis=-1)
 
 
-def logarithm(quaternion: Floats) -> Floats:
+def _logarithm(quaternion: Floats) -> Floats:
     """Give the rotation vectors of quaternions, of at most half a turn."""
     q = np.where(quaternion[..., 3:] < 0.0, -quaternion, quaternion)
     sine = np.linalg.norm(q[..., :3], axis=-1, keepdims=True)
