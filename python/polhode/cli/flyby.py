@@ -127,8 +127,8 @@ def _run(
     if options.eccentricity < 1.0:
         raise PolhodeError(
             f"--eccentricity: {options.eccentricity:g} is that of an ellipse, on which the body goes round "
-            "the planet; a flyby has 1 or more, as in --eccentricity 4.25. For an ellipse call "
-            "polhode.ensemble in Python, with load=loads.gravity_gradient(orbit)"
+            "the planet; state 1 or more, as in --eccentricity 4.25, or for an ellipse call polhode.ensemble "
+            "in Python, with load=loads.gravity_gradient(orbit)"
         )
     mu = quantity(options.mu, "m^3/s^2", "--mu")
     periapsis = quantity(options.periapsis, "m", "--periapsis")
