@@ -114,14 +114,15 @@ impl PyFreeMotion {
         self.numbers(py, Invariants::complementary_modulus)
     }
 
-    /// The periods of the motion, in the long-axis convention of the literature on tumbling asteroids.
+    /// The periods of the motion: each mode has its own, and those that it does not have are NaN.
     ///
     /// Returns
     /// -------
     /// Periods
-    ///     ``rotation``: P_ψ, after which the components of ω in the body repeat. ``precession``: P_φ, the
-    ///     mean period of axis 1 about L. ``flip``: time from one turning over of the intermediate axis to
-    ///     the next. ``rates``: mean rate of precession of each principal axis about L.
+    ///     ``turn``, ``wobble``: of a steady rotation. ``spin``, ``precession``: of a symmetric body.
+    ///     ``rotation``, ``precession``: P_ψ and P_φ of long- and short-axis mode, in the long-axis convention
+    ///     of the literature on tumbling asteroids. ``flip``: time from one turning over of the intermediate
+    ///     axis to the next. ``rates``: mean rate of precession of each principal axis about L.
     ///
     /// Examples
     /// --------
@@ -136,6 +137,9 @@ impl PyFreeMotion {
         let (py, this) = (slf.py(), slf.get());
         let periods = this.invariants(py)?.map(py, Invariants::periods)?;
         let parts = (
+            write_numbers_of(py, &periods, |periods| periods.turn)?,
+            write_numbers_of(py, &periods, |periods| periods.wobble)?,
+            write_numbers_of(py, &periods, |periods| periods.spin)?,
             write_numbers_of(py, &periods, |periods| periods.rotation)?,
             write_numbers_of(py, &periods, |periods| periods.precession)?,
             write_numbers_of(py, &periods, |periods| periods.flip)?,

@@ -189,8 +189,8 @@ impl PyGyrostatMotion {
         write_words_of(py, &self.motions, |motion| motion.mode.as_str(), "<U10")
     }
 
-    /// Time after which the components of ω and L in the body repeat; infinite where they are constant or
-    /// never repeat.
+    /// Time after which the components of ω and L in the body repeat; infinite where they never repeat, NaN where
+    /// they are constant (``mode`` "steady").
     #[getter]
     fn period<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.numbers(py, |motion| motion.period.rounded())

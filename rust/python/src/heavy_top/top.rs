@@ -54,7 +54,8 @@ pub(super) struct Start {
 /// nutation_limits : numpy.ndarray, shape (..., 2)
 ///     Least and largest inclination θ of the axis, from the pivot to the centre of mass, from the upward vertical.
 /// nutation_period : float or numpy.ndarray, shape (...)
-///     Time from one least inclination to the next: infinite on an asymptotic path, NaN where the axis rests.
+///     Time from one least inclination to the next: infinite on an asymptotic path, NaN where the inclination
+///     is constant: on the paths "regular" and "steady".
 /// mean_precession : float or numpy.ndarray, shape (...)
 ///     Mean rate at which the axis goes about the upward vertical, the mean of φ̇. Through the vertical φ jumps by half a
 ///     turn.
