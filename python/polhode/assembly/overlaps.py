@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     Integers = NDArray[np.int64]
     Surface = tuple[Floats, Integers]
 
-__all__ = ["Form", "Placed", "find_overlaps", "words_of"]
+__all__ = ["Form", "Placed", "find_overlaps", "overlap_notes"]
 
 _FINE, _COARSE = 64, 32
 """Facets around a round solid."""
@@ -284,7 +284,7 @@ def _placed(part: Placed, segments: int) -> Surface:
     return vertices @ part.place.rotation.T + part.place.displacement, faces
 
 
-def words_of(found: Sequence[Overlap]) -> list[str]:
+def overlap_notes(found: Sequence[Overlap]) -> list[str]:
     """Say which parts overlap, the first of them one by one."""
     same: dict[str, list[str]] = {}
     for each in found:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 from polhode.assembly.keys import COMMON, TOP, check_keys, text_of
 from polhode.assembly.matter import body_of_part, kind_of
 from polhode.assembly.numbers import Scope
-from polhode.assembly.overlaps import Form, Placed, find_overlaps, words_of
+from polhode.assembly.overlaps import Form, Placed, find_overlaps, overlap_notes
 from polhode.assembly.placing import HERE, Place, copies, place_of
 from polhode.assembly.result import Assembly, Member
 from polhode.errors import FileFormatError, PolhodeError
@@ -235,7 +235,7 @@ def _assembled(whole: _Unit) -> Assembly:
         name=whole.name,
         parts=tuple(members.values()),
         ledger=ledger_of_bodies(ids, parents, bodies, comments),
-        notes=(*whole.notes, *words_of(found), *unseen),
+        notes=(*whole.notes, *overlap_notes(found), *unseen),
         overlaps=tuple(found),
     )
 
