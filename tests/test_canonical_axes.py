@@ -60,16 +60,15 @@ def check_nearest(axes: np.ndarray, k: int) -> None:
         assert v[leading] > 0
 
 
-@pytest.mark.parametrize("canonical", [False, True])
 @pytest.mark.parametrize("moments", TOPS.values(), ids=TOPS)
-def test_no_pair_is_nearer_to_the_body_frame(moments: list[float], canonical: bool) -> None:
+def test_no_pair_is_nearer_to_the_body_frame(moments: list[float]) -> None:
     turns = Rotation.random(60, np.random.default_rng(2)).as_matrix()
     tensors = turned(moments, turns)
-    found = principal_axes(tensors, canonical=canonical)
-    for axes in found.axes:
-        check_nearest(axes, 2 if moments[0] == moments[1] else 0)
-    back = np.einsum("nij,nj,nkj->nik", found.axes, found.moments, found.axes)
-    np.testing.assert_allclose(back, tensors, atol=4e-15)
+    for found in (principal_axes(tensors, canonical=True), RigidBody(1.0, tensors).principal):
+        for axes in found.axes:
+            check_nearest(axes, 2 if moments[0] == moments[1] else 0)
+        back = np.einsum("nij,nj,nkj->nik", found.axes, found.moments, found.axes)
+        np.testing.assert_allclose(back, tensors, atol=4e-15)
 
 
 @pytest.mark.parametrize("moments", TOPS.values(), ids=TOPS)
@@ -83,7 +82,7 @@ def test_a_symmetry_axis_across_its_own_has_one_pair_too(moments: list[float]) -
         for tilt in rng.uniform(-1e-12, 1e-12, 10):
             axis = n + np.insert([0.0, 0.0], k, tilt)
             tensor = moments[1] * np.eye(3) + (moments[k] - moments[1]) * np.outer(axis, axis)
-            axes.append(principal_axes(symmetric(tensor)).axes)
+            axes.append(RigidBody(1.0, symmetric(tensor)).principal.axes)
             check_nearest(axes[-1], k)
         assert np.ptp(axes, axis=0).max() < 1e-11
 
@@ -131,7 +130,7 @@ def test_axes_do_not_depend_on_how_a_body_was_made(kind: str) -> None:
         expected = bodies["particles"].principal.axes
         for way, body in bodies.items():
             np.testing.assert_allclose(body.principal.axes, expected, atol=2e-13, err_msg=way)
-            alone = principal_axes(body.inertia).axes
+            alone = principal_axes(body.inertia, canonical=True).axes
             np.testing.assert_allclose(alone, expected, atol=2e-13, err_msg=way)
         if kind == "spherical":
             np.testing.assert_array_equal(expected, np.eye(3))
@@ -189,7 +188,6 @@ def test_moments_apart_by_more_than_rounding_keep_their_axes(scale: float) -> No
         gap = 16 * epsilon * part
         for diagonal in ([1.0 + gap, 1.0, 1.6], [0.5, 1.0 + gap, 1.0]):
             tensor = scale * np.diag(diagonal)
-            assert (principal_axes(tensor).axes == np.eye(3)).all() == is_free
             assert (RigidBody(1.0, tensor).principal.axes == np.eye(3)).all() == is_free
     kept = RigidBody.from_principal(1.0, scale * np.array([1.0 + epsilon, 1.0, 1.6]))
     np.testing.assert_array_equal(kept.principal.axes[:, 0], [0.0, 1.0, 0.0])
@@ -203,9 +201,10 @@ def test_the_last_bits_of_a_top_do_not_turn_its_axes() -> None:
     turns = np.repeat(Rotation.random(1, rng).as_matrix(), 200, axis=0)
     top = turned([1.0, 1.0, 1.5], turns)
     noise = 2e-16 * rng.normal(size=top.shape)
-    for canonical in (False, True):
-        axes = principal_axes(symmetric(top + noise), canonical=canonical).axes
-        assert np.ptp(axes, axis=0).max() < 1e-13
+    tensors = symmetric(top + noise)
+    for found in (principal_axes(tensors, canonical=True), RigidBody(1.0, tensors).principal):
+        assert np.ptp(found.axes, axis=0).max() < 1e-13
+    assert np.ptp(principal_axes(tensors).axes, axis=0).max() > 0.1
 
 
 def test_three_different_moments_leave_nothing_free() -> None:

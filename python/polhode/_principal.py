@@ -77,7 +77,8 @@ class PrincipalAxes:
         Principal moments, ascending.
     axes : numpy.ndarray, shape (..., 3, 3)
         The axes are the **columns**, right-handed: ``inertia = axes @ diag(moments) @ axes.T`` and
-        ``v_body = axes @ v_principal``. Where moments are equal, to rounding, the axes nearest to the body axes.
+        ``v_body = axes @ v_principal``. Where moments of a body are equal, to rounding, the axes nearest to
+        the body axes.
     top_rtol : float or numpy.ndarray, shape (..., 3)
         Tolerance of `top`: differences of moments below `top_rtol` times the largest moment count as zero. It
         is 1e-6 for most bodies. For a molecule from a file with few digits it is three numbers, one for each
@@ -152,13 +153,13 @@ class PrincipalAxes:
         return _core.ray_kappa(self.moments)
 
     def canonical(self, rtol: float = 1e-6) -> PrincipalAxes:
-        """Choose the principal axes nearest to the body axes where nearly equal moments leave the choice open.
+        """Choose the principal axes nearest to the body axes where equal moments leave the choice open.
 
         If two moments are equal, every pair of perpendicular axes in their plane is a pair of principal axes.
         The pair chosen here has the largest sum of the cosines of the angles between the k-th principal axis
-        and the k-th body axis. For a spherical top, where any axes are principal axes, the body axes themselves
-        are chosen. `axes` are chosen in this way already where rounding alone keeps moments apart; this
-        method does it for moments that differ by more.
+        and the k-th body axis. For a spherical top, where any axes are principal axes, the body axes
+        themselves are chosen. The axes of a body are chosen in this way already where rounding alone keeps
+        its moments apart; this method does it for moments that differ by more.
 
         Parameters
         ----------

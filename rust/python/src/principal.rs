@@ -32,16 +32,16 @@ type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
 ///     the smallest to the largest floats. A tensor with an element that is not finite gives NaN in
 ///     its own row only.
 /// canonical : bool, optional
-///     Whether moments that differ by 1e-6 of the largest or less count as equal where axes are chosen, as
-///     :meth:`polhode.PrincipalAxes.canonical` does.
+///     Whether to choose those axes that equal moments (to 1e-6 of the largest) leave free near the body
+///     axes, as :meth:`polhode.PrincipalAxes.canonical` does. Without it they are those of this very tensor,
+///     last bits included.
 ///
 /// Returns
 /// -------
 /// PrincipalAxes
 ///     ``moments`` (..., 3), ascending, and ``axes`` (..., 3, 3), whose columns are the axes: right-handed,
 ///     ``inertia = axes @ diag(moments) @ axes.T``. The signs: in columns 0 and 1 the component of largest
-///     size is positive (the first such, if several are equal to 1e-8). Where moments are equal, to rounding,
-///     the axes nearest to the body axes.
+///     size is positive (the first such, if several are equal to 1e-8).
 ///
 /// Raises
 /// ------

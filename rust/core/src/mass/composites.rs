@@ -49,7 +49,7 @@ pub fn combined(bodies: &[RigidBody]) -> Result<RigidBody, Error> {
             all_finite_of_body("inertia", &sum.inertia)?;
             all_finite_of_body("inertia", &[sum.spread])?;
             // The sum of possible bodies is possible.
-            let mut principal = principal_axes(&sum.inertia);
+            let mut principal = canonical_to_rounding(&principal_axes(&sum.inertia));
             if is_thin(&principal) {
                 principal = sum.refined(&principal);
                 all_finite_of_body("moments", &principal.moments)?;
@@ -106,7 +106,7 @@ impl RigidBody {
         all_finite_of_body("center_of_mass", &rest.center)?;
         all_finite_of_body("inertia", &rest.inertia)?;
         all_finite_of_body("inertia", &[rest.spread])?;
-        let mut principal = principal_axes(&rest.inertia);
+        let mut principal = canonical_to_rounding(&principal_axes(&rest.inertia));
         let [i1, i2, i3] = principal.moments;
         // Along the axis of the largest moment the second moment is the smallest.
         let smallest = 0.5 * (i1 + i2 - i3);

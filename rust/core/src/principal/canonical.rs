@@ -68,20 +68,9 @@ pub fn canonical(principal: &PrincipalAxes, rtol: f64) -> PrincipalAxes {
 #[must_use]
 #[inline]
 pub fn canonical_to_rounding(principal: &PrincipalAxes) -> PrincipalAxes {
-    align(principal, is_rounding)
-}
-
-/// Whether rounding alone may keep two of the moments apart: seen at a glance, where many are asked. Only then
-/// [`canonical_to_rounding`] turns axes.
-#[inline]
-pub(super) fn may_be_free(&[i1, i2, i3]: &[f64; 3]) -> bool {
-    (i2 - i1).min(i3 - i2) <= ROUNDING_RTOL * i1.abs().max(i3.abs())
-}
-
-/// Whether rounding alone keeps two moments, a ≤ b, apart.
-#[inline]
-fn is_rounding(a: f64, b: f64) -> bool {
-    b - a <= ROUNDING_RTOL * a.abs().max(b.abs())
+    align(principal, |a, b| {
+        b - a <= ROUNDING_RTOL * a.abs().max(b.abs())
+    })
 }
 
 /// The free axes turned to the body frame, `are_equal` saying of two moments in ascending order whether they are.

@@ -7,7 +7,9 @@ use crate::error::{Error, all_finite, finite};
 use crate::mass::parallel_axis::from_center_of_mass;
 use crate::mass::validity::trace;
 use crate::numerics::power_of_two::{root_of_ratio, times_dot};
-use crate::principal::{PrincipalAxes, TOP_RTOL, principal_axes, rounding_rtols};
+use crate::principal::{
+    PrincipalAxes, TOP_RTOL, canonical_to_rounding, principal_axes, rounding_rtols,
+};
 
 impl RigidBody {
     /// Inertia tensor `I_P` about the point P (from the origin of the body frame).
@@ -71,7 +73,7 @@ impl RigidBody {
             return self.principal;
         }
         let inertia = self.inertia_about(point);
-        let mut about = principal_axes(&inertia);
+        let mut about = canonical_to_rounding(&principal_axes(&inertia));
         clear_noise(&mut about, trace(&inertia));
         about
     }

@@ -11,7 +11,9 @@ use crate::mass::validity::{
     ROUNDING, check_mass, check_moments, check_rotation, mean_of_halves, symmetrized, trace,
 };
 use crate::numerics::eigen3::{Eigen3, eigen3};
-use crate::principal::{PrincipalAxes, canonical, principal_axes, with_sign_rule};
+use crate::principal::{
+    PrincipalAxes, canonical, canonical_to_rounding, principal_axes, with_sign_rule,
+};
 
 /// A rigid body: mass m > 0, centre of mass C, inertia tensor `I_C` about C, all in the axes of the body frame B.
 ///
@@ -223,7 +225,7 @@ impl RigidBody {
         all_finite_of_body("inertia", &inertia)?;
         // All that is rounding is relative to it; a trace beyond all numbers would admit anything.
         finite_of_body("the trace of inertia", scale)?;
-        let principal = principal_axes(&inertia);
+        let principal = canonical_to_rounding(&principal_axes(&inertia));
         finite_of_body(
             "the largest principal moment of inertia",
             principal.moments[2],
