@@ -169,7 +169,7 @@ def test_the_seed_makes_the_clones() -> None:
 
 @pytest.mark.parametrize("of", ["spin_ratio", "pole_shift", "rotation_period", "precession_period"])
 def test_all_clones_are_in_the_picture(of: Any) -> None:
-    ax = plot.flyby(FOUND, of, time_unit="h", time_scale=HOUR)
+    ax = plot.flyby(FOUND, of, time_label="h", time_scale=HOUR)
     heights = [patch.get_height() for bars in ax.containers for patch in bars]
     assert sum(heights) == len(FOUND.failed)
     legend = ax.get_legend()

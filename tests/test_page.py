@@ -153,7 +153,7 @@ class TestWhatIsDrawn:
         x, y = (int(part) for part in middle(browser, "second"))
         shown = picture[y - 250 : y + 250, x - 250 : x + 250]
         assert near(shown, browser.run("polhode.colors.omega")).sum() > 150
-        assert near(shown, browser.run("polhode.colors.ink"), 60).sum() > 80
+        assert near(shown, browser.run("polhode.colors.e2"), 60).sum() > 200
 
     def test_names_are_not_written_over_each_other(self, browser: Browser, page: Path, top: Path) -> None:
         for one, end in ((page, 20.0), (top, 2.0)):

@@ -12,6 +12,7 @@ from polhode._scene.energy import Energy, energy_of
 from polhode._scene.footage import of_motion, of_samples
 from polhode._scene.pivot import Pivot, pivot_of, top_of
 from polhode._scene.shape import Shape, body_shape, check_size, notes_on, shape_of
+from polhode._scene.surface import Surface, surface_of
 from polhode._scene.wheels import Disc, discs_of
 
 if TYPE_CHECKING:
@@ -53,6 +54,8 @@ class Scene:
         The moments about them.
     is_free : bool
         Whether the motion is that of a free body, which its first frame determines.
+    surface : Surface
+        On what the path in the body lies.
     pivot : Pivot or None
         Of a body with a fixed point: what is drawn of that.
     axis_path : numpy.ndarray, shape (T, 3), or None
@@ -81,6 +84,7 @@ class Scene:
     axes: Floats
     moments: Floats
     is_free: bool
+    surface: Surface
     pivot: Pivot | None
     axis_path: Floats | None
     shape: Shape
@@ -206,10 +210,10 @@ class Scene:
         momentum = trajectory.angular_momentum().spin[chosen]
         gyrostat = motion if isinstance(motion, _core.GyrostatMotion) else None
         if shape is None:
-            surface, notes = body_shape(trajectory.body, about, is_cut=is_cut)
+            drawn, notes = body_shape(trajectory.body, about, is_cut=is_cut)
         else:
-            surface = shape_of(shape, about, is_cut=is_cut, at_most=at_most)
-            notes = notes_on(surface)
+            drawn = shape_of(shape, about, is_cut=is_cut, at_most=at_most)
+            notes = notes_on(drawn)
         return cls(
             t=trajectory.t[chosen],
             quaternion=trajectory.quaternion[chosen],
@@ -221,10 +225,11 @@ class Scene:
             axes=principal.axes,
             moments=principal.moments,
             is_free=isinstance(motion, _core.FreeMotion),
+            surface=surface_of(trajectory, motion),
             pivot=pivot,
             axis_path=None if pivot is None else _core.rotate(trajectory.quaternion, pivot.axis),
-            shape=surface,
-            discs=discs_of(footage, surface, gyrostat),
+            shape=drawn,
+            discs=discs_of(footage, drawn, gyrostat),
             energy=energy_of(footage, is_exact=motion is not None, travel=travel),
             title=title,
             time_unit=time_unit,

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from polhode._scene.scene import Scene
+    from polhode._scene.surface import Surface
     from polhode._scene.wheels import Disc
 
     Floats = NDArray[np.float64]
@@ -29,8 +30,8 @@ if TYPE_CHECKING:
 __all__ = ["page"]
 
 _MODULES: Final = (
-    "vectors", "double", "elliptic", "free", "frames", "trail", "labels", "camera", "theme", "solid", "clock",
-    "wheels", "views", "energy", "live", "main",
+    "vectors", "double", "elliptic", "free", "frames", "trail", "labels", "camera", "theme", "surface",
+    "solid", "clock", "wheels", "views", "energy", "live", "main",
 )  # fmt: skip
 """Of the folder ``page``, each after those that it imports; a browser reads them as one."""
 _SHARED: Final = {
@@ -73,6 +74,7 @@ def page(scene: Scene) -> str:
         "axes": scene.axes.T.tolist(),
         "moments": scene.moments.tolist(),
         "free": _start(scene),
+        "surface": _surface(scene.surface),
         "top": None
         if pivot is None
         else {
@@ -101,6 +103,26 @@ def _start(scene: Scene) -> dict[str, list[float]] | None:
         "moments": scene.moments.tolist(),
         "omega": (scene.omega[0] @ scene.axes).tolist(),
         "quaternion": scene.quaternion[0].tolist(),
+    }
+
+
+def _surface(surface: Surface) -> dict[str, Any]:
+    """Give what the path in the body lies on: the kind of motion, and the marks and curves of a gyrostat."""
+    return {
+        "kind": surface.kind,
+        "momentum": None if surface.momentum is None else surface.momentum.tolist(),
+        "level": surface.level,
+        "is_reduced": surface.is_reduced,
+        "marks": [
+            {
+                "kind": mark.kind,
+                "direction": mark.direction.tolist(),
+                "circle": None if mark.circle is None else mark.circle.tolist(),
+                "level": mark.level,
+                "curve": None if mark.curve is None else _packed(mark.curve, "<f4"),
+            }
+            for mark in surface.marks
+        ],
     }
 
 

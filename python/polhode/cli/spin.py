@@ -9,6 +9,7 @@ import numpy as np
 
 from polhode import RigidBody, Uncertain
 from polhode._quantities import amount, amounts, quantity, vector
+from polhode._rounding import at_most
 from polhode._scene.sampling import fastest
 from polhode.cli.layout import Field, Report
 from polhode.cli.loading import LoadedBody
@@ -182,7 +183,7 @@ def _check_end(motion: FreeMotion | HeavyTop | GyrostatMotion, until: float) -> 
         raise PolhodeError(
             f"--until: after {until:g} s at {rate:.4g} rad/s the last digit of the angular velocity turns "
             f"the body by {digit * abs(until):.2g} rad, and its attitude is not known; end before "
-            f"{1.0 / digit:.2g} s"
+            f"{at_most(1.0 / digit, 2)} s"
         )
 
 

@@ -12,7 +12,8 @@ from polhode._extras import require
 from polhode._scene.sampling import once_round
 from polhode._scene.shape import check_one
 from polhode._scene.style import AXIS_COLORS, AXIS_DASHES, MOMENTUM_COLOR
-from polhode.plot._style import axes_3d, matplotlib
+from polhode._scene.surface import energy_level, separatrix
+from polhode.plot._style import axes_3d, columns_that_fit, matplotlib, room
 from polhode.plot._surfaces import curve_on, plain_frame, solid_ellipsoid, toward_viewer
 
 if TYPE_CHECKING:
@@ -81,10 +82,9 @@ def portrait(
     ax = axes_3d(ax)
     if new:
         ax.view_init(elev=20.0, azim=35.0)
-    inverse = np.linalg.inv(inertia) * np.max(np.abs(inertia))
     points, kinds = np.asarray(found.direction), list(found.kind)
     solid_ellipsoid(ax, np.ones(3), np.eye(3), np.zeros(3), 1.0)
-    energies = [float(_energy(inverse, inside, n)) for n in points]
+    energies = [float(energy_level(inertia, inside, n)) for n in points]
     saddles = [e for e, kind in zip(energies, kinds, strict=True) if kind == "saddle"]
     # Without a saddle every curve goes round both: the half of the way tells to which it is nearer.
     middle = [0.5 * (min(energies) + max(energies))]
@@ -95,11 +95,12 @@ def portrait(
             color, dash = AXIS_COLORS[0], AXIS_DASHES[0]
         elif level < least:
             color, dash = AXIS_COLORS[2], AXIS_DASHES[2]
-        for curve in _curves(inverse, inside, level):
+        for curve in _curves(inertia, inside, level):
             curve_on(ax, curve, curve, color, linestyle=dash, linewidth=1.1)
-    for level in saddles:
-        for curve in _curves(inverse, inside, level):
-            curve_on(ax, curve, curve, AXIS_COLORS[1], linewidth=1.6)
+    for n, kind in zip(points, kinds, strict=True):
+        through = separatrix(inertia, inside, n) if kind == "saddle" else None
+        if through is not None:
+            curve_on(ax, through, through, AXIS_COLORS[1], linewidth=1.6)
     for n, axis, kind in zip(points, np.asarray(found.circle), kinds, strict=True):
         if np.any(axis):
             ring = _circle(n, axis)
@@ -161,8 +162,8 @@ def portraits(
         shown.update(kinds)
         words = f"|h| = {factor * size / momentum:.3g} |L|: {len(kinds)} equilibria"
         ax.text2D(0.5, 0.02, words, transform=ax.transAxes, ha="center", fontsize=10)
-    handles = [_mark(kind) for kind in _LOOKS if kind in shown]
-    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), frameon=False)
+    width = 72.0 * float(figure.get_figwidth())
+    figure.legend(loc="outside lower center", **_legend([k for k in _LOOKS if k in shown], width))
     return np.asarray(row[0])
 
 
@@ -200,12 +201,6 @@ def _draw_path(ax: Axes3D, path: Floats) -> None:
     ax.plot(*(1.005 * path[0])[:, np.newaxis], color=MOMENTUM_COLOR, **style)
 
 
-def _energy(inverse: Floats, inside: Floats, n: Floats) -> Any:
-    """½ (n − h)·I⁻¹(n − h), in units of L² over the largest moment."""
-    off = n - inside
-    return 0.5 * np.einsum("...i,ij,...j", off, inverse, off)
-
-
 def _levels(stationary: list[float], count: int) -> list[float]:
     """Energies between stationary ones, denser towards the extrema, where a curve's size is as the root."""
     distinct = sorted(set(stationary))
@@ -230,7 +225,7 @@ def _levels(stationary: list[float], count: int) -> list[float]:
     return levels
 
 
-def _curves(inverse: Floats, inside: Floats, level: float) -> Iterator[Floats]:
+def _curves(inertia: Floats, inside: Floats, level: float) -> Iterator[Floats]:
     """Where the energy on the unit sphere has one value: pieces, cut at the edges of a cube."""
     contourpy: Any = require("contourpy", extra="plot", purpose="drawing")
     edge = np.linspace(-0.25 * np.pi, 0.25 * np.pi, _CELLS + 1)
@@ -244,7 +239,7 @@ def _curves(inverse: Floats, inside: Floats, level: float) -> Iterator[Floats]:
                 return unit
 
             a, b = np.meshgrid(edge, edge)
-            values = _energy(inverse, inside, onto(a, b))
+            values = energy_level(inertia, inside, onto(a, b))
             for line in contourpy.contour_generator(a, b, values).lines(level):
                 yield onto(line[:, 0], line[:, 1])
 
@@ -270,8 +265,20 @@ def _marks(ax: Axes3D, points: Floats, kinds: list[str], labels: bool) -> None:
             zorder=7 if near else 3,
         )  # fmt: skip
     if labels:
-        present = [_mark(kind) for kind in _LOOKS if kind in kinds]
-        ax.legend(handles=present, loc="lower center", ncols=len(present), frameon=False, fontsize=9)
+        legend = ax.legend(loc="lower center", **_legend([k for k in _LOOKS if k in kinds], room(ax)[0]))
+        legend.set_in_layout(False)
+
+
+def _legend(kinds: list[str], width: float) -> dict[str, Any]:
+    """Return what a legend of marks is made of, in as many columns as so many points have room for."""
+    columns = columns_that_fit(width, [_LOOKS[kind][2] for kind in kinds], 9.0, len(kinds))
+    return {
+        "handles": [_mark(kind) for kind in kinds],
+        "ncols": columns,
+        "frameon": False,
+        "fontsize": 9,
+        "columnspacing": 1.2,
+    }
 
 
 def _mark(kind: str) -> Any:
@@ -297,10 +304,17 @@ def _names(ax: Axes3D, inside: Floats) -> None:
         if meets[k]:  # beyond the line of h, which is thicker and longer than that of an axis
             words, beyond, across = f"$L_{name}$, $h$", 1.44, float(axis @ to_the_right)
             side = "left" if across > 0.3 else "right" if across < -0.3 else "center"
-        ax.text(*(beyond * axis), words, color="0.15", ha=side, va="center", fontsize=11, zorder=8)
+        faint = 1.0 if axis @ viewer >= -0.2 else 0.4
+        ax.text(
+            *(beyond * axis), words, color="0.15", ha=side, va="center", fontsize=11, zorder=8, alpha=faint
+        )
     if size > 0.0:
         order = 6 if unit @ viewer >= 0.0 else 1
         ax.plot(*np.stack([unit, 1.3 * unit], axis=-1), color="0.0", linewidth=2.4, zorder=order)
         ax.plot(*unit[:, np.newaxis], linestyle="none", marker="o", markersize=3.5, color="0.0", zorder=order)
         if not meets.any():
-            ax.text(*(1.42 * unit), "$h$", color="0.0", ha="center", va="center", fontsize=12, zorder=8)
+            # Beside its line where that points at the viewer.
+            beside = 0.2 * to_the_right * max(0.0, float(unit @ viewer))
+            ax.text(
+                *(1.42 * unit + beside), "$h$", color="0.0", ha="center", va="center", fontsize=12, zorder=8
+            )

@@ -153,6 +153,11 @@ impl PyRigidBody {
 
 #[pymethods]
 impl PyFreeMotion {
+    /// Asked where there is no such attribute.
+    fn __getattr__(slf: &Bound<'_, Self>, name: &str) -> PyResult<Py<PyAny>> {
+        Err(crate::hints::no_attribute(slf.as_any(), name))
+    }
+
     /// Angular velocity of the body relative to space at t = 0, components in the body frame, in radians per unit
     /// of time, shape (..., 3).
     #[getter]

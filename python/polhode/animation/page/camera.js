@@ -1,7 +1,9 @@
 // A view: an orthographic camera that turns with pointers and keys, and the pen that draws in it.
 
-import { placed } from "./labels.js";
+import { placed, shortened } from "./labels.js";
 import { dot, scaled, sum, length } from "./vectors.js";
+
+const NAME_PART = 0.4; // of the width of a view, that a name takes at most
 
 export class View {
   constructor(canvas, azimuth, elevation, redraw) {
@@ -82,6 +84,17 @@ export class View {
     const [x, y] = this.place(at);
     this.pen.fillStyle = color; this.pen.beginPath(); this.pen.arc(x, y, radius, 0, 2 * Math.PI); this.pen.fill();
   }
+  /** A mark of a kind of equilibrium, by its form: a disc, a triangle, a cross or a diamond. */
+  mark(at, kind, color, alpha) {
+    const pen = this.pen, [x, y] = this.place(at), r = 5.5;
+    pen.globalAlpha = alpha; pen.fillStyle = pen.strokeStyle = color; pen.lineWidth = 2.2; pen.beginPath();
+    if (kind === "minimum") pen.arc(x, y, 4.5, 0, 2 * Math.PI);
+    else if (kind === "saddle") { pen.moveTo(x - r, y - r); pen.lineTo(x + r, y + r); pen.moveTo(x - r, y + r); pen.lineTo(x + r, y - r); }
+    else if (kind === "maximum") { pen.moveTo(x, y - r); pen.lineTo(x + r, y + r); pen.lineTo(x - r, y + r); }
+    else { pen.moveTo(x, y - r); pen.lineTo(x + r, y); pen.lineTo(x, y + r); pen.lineTo(x - r, y); }
+    if (kind === "saddle") pen.stroke(); else pen.fill();
+    pen.globalAlpha = 1;
+  }
   arrow(tip, color, name, from = [0, 0, 0]) {
     const pen = this.pen, [x0, y0] = this.place(from), [x, y] = this.place(tip), size = Math.hypot(x - x0, y - y0);
     this.path([from, tip], color, 2.6);
@@ -90,20 +103,21 @@ export class View {
       pen.fillStyle = color; pen.beginPath(); pen.moveTo(x + 4 * ux, y + 4 * uy);
       pen.lineTo(x - 8 * ux - 5 * uy, y - 8 * uy + 5 * ux); pen.lineTo(x - 8 * ux + 5 * uy, y - 8 * uy - 5 * ux); pen.fill();
     }
-    this.label(tip, color, name, from);
+    if (size > 0) this.label(tip, color, name, from); // a zero vector has no direction to name
   }
-  /** A name beyond a tip; those that are asked for first keep their place. */
-  label(at, color, name, from = [0, 0, 0]) {
-    if (!name) return;
+  /** A name beyond a tip, or a shorter one where there is less room; those that are asked for first keep their place. */
+  label(at, color, name, from = [0, 0, 0], shorter = name) {
     const [x, y] = this.place(at), [x0, y0] = this.place(from), size = Math.hypot(x - x0, y - y0) || 1;
-    this.names.push({ x, y, ux: (x - x0) / size, uy: (y - y0) / size, size, color, name });
+    this.names.push({ x, y, ux: (x - x0) / size, uy: (y - y0) / size, size, color, texts: [name, shorter] });
   }
-  /** Writes the names, none over another. */
+  /** Writes the names, none over another; one without room is left out. */
   end(ground) {
     const pen = this.pen;
     pen.font = "600 16px system-ui, sans-serif"; pen.textAlign = "center"; pen.textBaseline = "middle";
     pen.strokeStyle = ground; pen.lineWidth = 4;
-    this.written = placed(this.names.map((one) => ({ ...one, width: pen.measureText(one.name).width })), this.width, this.height);
+    const widthOf = (text) => pen.measureText(text).width;
+    const most = NAME_PART * this.width, choices = ([name, shorter]) => [name, shorter, shortened(shorter, most, widthOf)].map((text) => ({ name: text, width: widthOf(text) })).filter(({ width }) => width <= most);
+    this.written = placed(this.names.map((one) => ({ ...one, choices: choices(one.texts) })), this.width, this.height);
     for (const { at, color, name } of this.written) {
       pen.globalAlpha = 0.75; pen.strokeText(name, ...at); pen.globalAlpha = 1;
       pen.fillStyle = color; pen.fillText(name, ...at);

@@ -7,9 +7,10 @@ import { Frames, numbers } from "./frames.js";
 import { FreeBody, quaternionOf } from "./free.js";
 import { buildSliders } from "./live.js";
 import { Solid, boxOf } from "./solid.js";
+import { Ellipsoid, captionOf, drawnWith } from "./surface.js";
 import { colors, key, readColors } from "./theme.js";
 import { Trail } from "./trail.js";
-import { areThree, conjugate, dot, length, rotate, sum, times } from "./vectors.js";
+import { areThree, conjugate, dot, length, rotate, scaled, sum, times } from "./vectors.js";
 import { drawBody, drawPoinsot, drawSpace } from "./views.js";
 import { Wheel, slowed } from "./wheels.js";
 
@@ -17,6 +18,7 @@ const PATHS = { steady: "at rest", regular: "a circle", cusp: "with cusps", loop
 const element = (id) => document.getElementById(id);
 const given = JSON.parse(element("motion").textContent);
 const unpack = (text, Kind) => (text === null ? null : numbers(text, Kind));
+const rowsOf = (array) => Array.from({ length: array.length / 3 }, (_, k) => Array.from(array.subarray(3 * k, 3 * k + 3)));
 const inUnits = (array, unit) => (array === null || unit === 1 ? array : Float64Array.from(array, (x) => x * unit));
 const frames = new Frames(unpack(given.t, Float64Array), unpack(given.quaternion, Float32Array), inUnits(unpack(given.omega, Float32Array), given.omega_unit), inUnits(unpack(given.inside, Float32Array), given.inside_unit));
 const solid = new Solid(unpack(given.vertices, Float32Array), unpack(given.faces, Uint32Array), unpack(given.colors, Uint8Array));
@@ -26,7 +28,10 @@ if (given.free) given.free.attitude = times(given.free.quaternion, toBodyAxes);
 const wanted = asked(location.hash, start, end);
 
 // The motion that is shown: the given one, or that of another start.
-const motion = { axes: given.axes, top: given.top, wheels: given.wheels.map((one) => new Wheel({ ...one, isBrief: given.wheels.length > 4, rate: unpack(one.rate, Float32Array), angle: unpack(one.angle, Float64Array) }, frames)) };
+const surface = { ...given.surface, marks: given.surface.marks.map((mark) => ({ ...mark, curve: mark.curve && rowsOf(unpack(mark.curve, Float32Array)) })) };
+const toward = surface.momentum && scaled(surface.momentum, 1 / length(surface.momentum));
+const conserved = surface.kind === "torque-free" ? surface.momentum ?? [0, 0, 0] : surface.momentum; // L in space, in all digits
+const motion = { axes: given.axes, top: given.top, surface, onSphere: (q) => rotate(conjugate(q), toward), wheels: given.wheels.map((one) => new Wheel({ ...one, rate: unpack(one.rate, Float32Array), angle: unpack(one.angle, Float64Array) }, frames)) };
 const energy = { ...given.energy, kinetic: unpack(given.energy.kinetic, Float64Array), potential: unpack(given.energy.potential, Float64Array) };
 function follow(another) {
   const begin = another ?? given.free, body = begin && new FreeBody(begin.moments, begin.omega, given.free.attitude);
@@ -46,21 +51,26 @@ function follow(another) {
   const momentum = ({ omega, inside }) => sum(spin(omega), inside ?? [0, 0, 0]);
   const most = (values) => values.reduce((a, b) => Math.max(a, b), 0) || 1;
   motion.fastest = most(samples.map(({ omega }) => length(omega)));
-  motion.strongest = most(samples.map((s) => Math.max(length(momentum(s)), s.inside ? length(s.inside) : 0)));
-  const energies = samples.map(({ omega }) => dot(omega, spin(omega)));
-  const widest = Math.min(2.5 * motion.fastest, Math.sqrt(most(energies) / (Math.min(...motion.moments) || 1e-300)));
-  motion.scale = 1.05 / Math.max(motion.fastest, widest);
-  motion.trail = new Trail(stateAt, motion.fastest, span, given.top && given.top.axis);
+  const sizes = samples.map((s) => [length(s.omega), length(conserved ?? momentum(s)), s.inside ? length(s.inside) : 0]);
+  motion.strongest = most(sizes.map(([, total, inside]) => Math.max(total, inside)));
+  const [omega, total, inside] = [0, 1, 2].map((k) => sizes.some((one) => one[k] > 0));
+  motion.shows = { omega, momentum: total, inside };
+  motion.ellipsoid = new Ellipsoid(motion.moments, along(samples[0].omega), motion.fastest);
+  const widest = { ellipsoid: () => motion.ellipsoid.longest, sphere: () => 1.4 * motion.fastest, path: () => motion.fastest };
+  motion.scale = 1.05 / (widest[drawnWith(surface, motion.ellipsoid)]() || 1);
+  const apart = body || frames.count < 2 ? Infinity : Math.abs(span) / (frames.count - 1); // else the way would be coarser than what is known
+  motion.trail = new Trail(stateAt, motion.fastest, span, { axis: given.top && given.top.axis, onSphere: toward && motion.onSphere, apart });
   motion.at = (t) => {
     const state = stateAt(t - start);
-    return { ...state, t, since: t - start, along: along(state.omega), momentum: rotate(state.q, momentum(state)) };
+    return { ...state, t, since: t - start, along: along(state.omega), momentum: conserved ?? rotate(state.q, momentum(state)) };
   };
 }
 
 readColors();
 follow(null);
 let now = wanted.t ?? start, playing = wanted.t === null && !matchMedia("(prefers-reduced-motion: reduce)").matches, last = null, waiting = false;
-let second = given.free ? wanted.view === "poinsot" ? "poinsot" : "body" : "body", view = wanted.view ?? "space";
+const rolls = () => surface.kind === "free" && motion.moments[0] > 0 && motion.ellipsoid.doubled > 0;
+let second = wanted.view === "poinsot" && rolls() ? "poinsot" : "body", view = wanted.view ?? "space";
 const views = { space: new View(element("space"), 0.9, 0.35, later), second: new View(element("second"), 0.9, 0.4, later) };
 if (given.top) { views.space.center = given.top.down.map((x) => -0.3 * x); views.space.reach = 1.35; }
 const rate = (Math.abs(span) || 1) / given.duration;
@@ -122,17 +132,24 @@ function show(t) { play(false); now = t; draw(); }
 
 /** Chooses what is seen: on a narrow screen one view, on a wide one what stands beside space. */
 function choose(name) {
-  view = name;
-  if (name !== "space") second = name;
-  document.body.dataset.view = name;
+  view = name === "poinsot" && !rolls() ? "body" : name;
+  if (view !== "space") second = view;
+  document.body.dataset.view = view;
   for (const button of element("tabs").children) button.setAttribute("aria-pressed", String(button.dataset.view === (matchMedia("(max-width: 640px)").matches ? view : second)));
-  const path = given.top ? `, and the path of its axis${given.top.path ? ` (${PATHS[given.top.path] ?? given.top.path})` : ""}` : "";
-  element("space-caption").innerHTML = `In space: the body, ${key("omega", "\u03c9")}, ${key("momentum", "L")}${given.inside ? ` (with ${key("inside", "h")}, which the body carries along)` : ""}${path}${motion.wheels.length ? `; ${key("inside", "discs")}: its wheels, not to scale, turning relative to it` : ""}`;
-  element("second-caption").innerHTML = second === "poinsot"
-    ? `Poinsot: the ellipsoid of inertia rolls on the plane that ${key("momentum", "L")} is normal to; the tip of ${key("omega", "\u03c9")} is where they touch`
-    : `In the body: ${key("omega", "\u03c9")} on the ellipsoid of inertia; its path, the polhode${areThree(given.moments) ? `; ${key("ink", "dark")}, the separatrix` : ""}`;
+  describe();
   for (const one of Object.values(views)) one.fit();
   draw();
+}
+/** Says in words what both views show; what is drawn can change with another start. */
+function describe() {
+  const { omega, momentum, inside } = motion.shows;
+  const arrows = [...(omega ? [key("omega", "\u03c9")] : []), ...(momentum ? [key("momentum", "L")] : [])];
+  const carried = inside ? ` (with ${key("inside", "h")}, which the body carries along)` : "", still = arrows.length ? "" : " at rest";
+  const path = given.top ? `, and the path of its axis${given.top.path ? ` (${PATHS[given.top.path] ?? given.top.path})` : ""}` : "";
+  const discs = motion.wheels.length ? `; ${key("inside", "discs")}: its wheels, not to scale, turning relative to it` : "";
+  element("space-caption").innerHTML = `In space: ${["the body", ...arrows].join(", ")}${still}${carried}${path}${discs}`;
+  element("second-caption").innerHTML = captionOf(motion, second === "poinsot");
+  for (const name of ["space", "second"]) element(name).setAttribute("aria-label", `${element(`${name}-caption`).textContent}. Arrow keys turn the view, plus and minus bring it nearer.`);
 }
 
 document.title = element("title").textContent = given.title;
@@ -146,7 +163,7 @@ element("full").addEventListener("click", () => (document.fullscreenElement ? do
 element("full").hidden = !document.fullscreenEnabled;
 for (const id of ["traces", "axes"]) element(id).addEventListener("change", later);
 for (const button of element("tabs").children) button.addEventListener("click", () => choose(button.dataset.view));
-element("tabs").lastElementChild.hidden = !given.free;
+element("tabs").lastElementChild.hidden = !rolls();
 document.addEventListener("keydown", (event) => {
   if (event.key !== " " || event.target.closest("button, input, select, textarea, summary")) return;
   event.preventDefault();
@@ -160,9 +177,9 @@ element("frame").value = `<iframe src="${file}#embed" title="${given.title.repla
 element("copy").addEventListener("click", () => { element("frame").select(); navigator.clipboard?.writeText(element("frame").value).catch(() => document.execCommand("copy")); });
 if (given.free) {
   element("live").hidden = false;
-  buildSliders(element("sliders"), given.free, given.time_unit, element("given"), element("mode"), (begin) => { follow(begin); draw(); });
+  buildSliders(element("sliders"), given.free, given.time_unit, element("given"), element("mode"), (begin) => { follow(begin); describe(); draw(); });
 }
 play(playing);
-choose(wanted.view === "poinsot" && !given.free ? "body" : view);
+choose(view);
 if (playing) requestAnimationFrame(tick);
-globalThis.polhode = { FreeBody, slowed, frames, motion, views, show, play, draw, colors, stateAt: (t) => motion.at(t), get now() { return now; }, get playing() { return playing; } };
+globalThis.polhode = { Ellipsoid, FreeBody, captionOf, drawnWith, slowed, frames, motion, views, show, play, draw, colors, stateAt: (t) => motion.at(t), get now() { return now; }, get playing() { return playing; } };

@@ -40,10 +40,14 @@ export class Wheel {
   /** How many times slower its turning is drawn, at so many units of time a second on the screen. */
   factor(speed) { return this.fastest === null ? 1 : slowed(this.fastest * Math.abs(speed) / PICTURES); }
 
-  /** What is written beside it; briefly where there are many. */
-  label(speed) {
-    const factor = this.factor(speed);
-    return factor > 1 ? `${this.name}${this.isBrief ? " \u00f7" : ", slowed "}${plain(factor)}${this.isBrief ? "" : "\u00d7"}` : this.name;
+  /** Writes its name beside it, unless it is behind the body, and where there is room how much slower it is drawn. */
+  label(view, { q }, size, speed) {
+    if (dot(rotate(q, this.axis), view.toward) < -0.35) return;
+    const middle = scaled(rotate(q, this.middle), size), side = this.isNear(view, q) ? this.half : -this.half;
+    const rim = this.ring(this.radius, side).map((p) => scaled(rotate(q, p), size));
+    const away = (p) => { const [x, y] = view.place(p); return Math.hypot(x - view.width / 2, y - view.height / 2); };
+    const factor = this.factor(speed), name = factor > 1 ? `${this.name}, slowed ${plain(factor)}\u00d7` : this.name;
+    view.label(rim.reduce((a, b) => (away(b) > away(a) ? b : a)), colors.inside, name, middle, this.name);
   }
 
   /** Its speed, in words. */
@@ -56,12 +60,22 @@ export class Wheel {
   /** Whether it is on the near side of the body: a plane normal to its axis parts the two. */
   isNear(view, q) { return dot(rotate(q, this.axis), view.toward) >= 0; }
 
+  /** A point in the body at an angle about its axis, so far from it, and so far along it from the middle. */
+  point(angle, radius, height) {
+    const around = sum(scaled(this.across, radius * Math.cos(angle)), scaled(this.beside, radius * Math.sin(angle)));
+    return sum(sum(this.middle, scaled(this.axis, height)), around);
+  }
+
+  ring(radius, height, from = 0, to = 2 * Math.PI, count = RING) {
+    return Array.from({ length: count + 1 }, (_, k) => this.point(from + (to - from) * k / count, radius, height));
+  }
+
   /** Draws it at an attitude, so many times its size. */
   draw(view, now, size, speed) {
     const { q } = now, put = (v) => scaled(rotate(q, v), size), known = this.at(now.t);
     const side = this.isNear(view, q) ? this.half : -this.half;
-    const point = (angle, radius, height) => put(sum(sum(this.middle, scaled(this.axis, height)), sum(scaled(this.across, radius * Math.cos(angle)), scaled(this.beside, radius * Math.sin(angle)))));
-    const ring = (radius, height, from = 0, to = 2 * Math.PI, count = RING) => Array.from({ length: count + 1 }, (_, k) => point(from + (to - from) * k / count, radius, height));
+    const point = (angle, radius, height) => put(this.point(angle, radius, height));
+    const ring = (...part) => this.ring(...part).map(put);
     const edge = Math.atan2(dot(cross(rotate(q, this.axis), view.toward), rotate(q, this.beside)), dot(cross(rotate(q, this.axis), view.toward), rotate(q, this.across)));
     const r = this.radius, rim = { fill: colors.rim };
     view.path(ring(r, -side), colors.inside, 1, rim);
@@ -73,8 +87,5 @@ export class Wheel {
       view.path([point(0, 0, side), ...ring(SPOKE * r, side, turned, turned + 2 * Math.PI / SPOKES, 8), point(0, 0, side)], colors.inside, 0, { fill: colors.inside }); // its mark
       for (let k = 2; k < SPOKES; k++) view.path([point(0, 0, side), point(turned + 2 * Math.PI * k / SPOKES, SPOKE * r, side)], colors.inside, 1.6);
     } else for (const part of RINGS) view.path(ring(part * r, side), colors.inside, 1);
-    if (dot(rotate(q, this.axis), view.toward) < -0.35) return; // behind the body
-    const away = (p) => { const [x, y] = view.place(p); return Math.hypot(x - view.width / 2, y - view.height / 2); };
-    view.label(ring(r, side).reduce((a, b) => (away(b) > away(a) ? b : a)), colors.inside, this.label(speed), put(this.middle));
   }
 }

@@ -8,7 +8,9 @@ use polhode::motion::stability::stability;
 use pyo3::prelude::*;
 
 use super::PyFreeMotion;
-use crate::arrays::{Item, Numbers, write_any_of, write_numbers_of, write_of, write_words_of};
+use crate::arrays::{
+    Item, Numbers, read_scalar, write_any_of, write_numbers_of, write_of, write_words_of,
+};
 use crate::stack::Stack;
 
 type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
@@ -266,7 +268,11 @@ impl PyFreeMotion {
     /// >>> brick.kinetic_energy(curve).rotational.round(12)
     /// array([1.5975, 1.5975, 1.5975, 1.5975, 1.5975])
     #[pyo3(signature = (n=181))]
-    fn polhode<'py>(&self, py: Python<'py>, n: i128) -> PyResult<Bound<'py, PyAny>> {
+    fn polhode<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = read_scalar)] n: i128,
+    ) -> PyResult<Bound<'py, PyAny>> {
         if n < 2 {
             return Err(pyo3::exceptions::PyValueError::new_err(format!(
                 "n: expected at least 2 points of a closed curve, got {n}"

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::PyFreeMotion;
-use crate::arrays::{Argument, read, read_or, write_numbers_of, write_of};
+use crate::arrays::{Argument, read, read_or, read_scalar, write_numbers_of, write_of};
 use crate::body::PyRigidBody;
 use crate::stack::{Broadcast, Stack};
 use crate::uncertain::{UncertainStart, value_of};
@@ -80,8 +80,8 @@ impl PyRigidBody {
         py: Python<'_>,
         rotation_period: &Bound<'_, PyAny>,
         precession_period: &Bound<'_, PyAny>,
-        mode: Option<&str>,
-        sense: f64,
+        #[pyo3(from_py_with = read_scalar)] mode: Option<&str>,
+        #[pyo3(from_py_with = read_scalar)] sense: f64,
         phase: Argument<'_>,
         angular_momentum_direction: Argument<'_>,
     ) -> PyResult<PyFreeMotion> {
