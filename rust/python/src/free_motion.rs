@@ -180,9 +180,8 @@ impl PyFreeMotion {
     }
 
     /// The periods of an uncertain motion that was made from them, else None.
-    #[getter]
-    #[pyo3(name = "_from_periods")]
-    fn from_periods(&self, py: Python<'_>) -> Option<Py<PyAny>> {
+    #[getter(_from_periods)]
+    fn given_periods(&self, py: Python<'_>) -> Option<Py<PyAny>> {
         self.from_periods.as_ref().map(|given| given.clone_ref(py))
     }
 
@@ -254,7 +253,7 @@ impl PyFreeMotion {
         let body = self.body.bind(py).clone().into_any();
         let uncertain = self.uncertain_start(py)?.into_any();
         let [omega, quaternion] = [self.omega(py)?, self.quaternion(py)?].map(in_slabs);
-        let given = self.from_periods(py).into_pyobject(py)?.into_any();
+        let given = self.given_periods(py).into_pyobject(py)?.into_any();
         let parts = [body, omega?, quaternion?, uncertain, given];
         Ok((restore, PyTuple::new(py, parts)?))
     }

@@ -85,7 +85,8 @@ impl Invariants {
     /// much where it is axis 1.
     #[must_use]
     pub fn periods(&self) -> Periods {
-        let half = self.half_period().rounded() / self.rate_unit;
+        let half_period = self.half_period().rounded();
+        let half = half_period / self.rate_unit;
         let is_steady = match self.mode {
             Mode::Spherical | Mode::Steady => true,
             Mode::Symmetric => self.is_steady(),
@@ -94,7 +95,7 @@ impl Invariants {
         if is_steady {
             return self.steady_periods(half);
         }
-        let rates = (self.mean_precession(half * self.rate_unit)).map(|rate| rate * self.rate_unit);
+        let rates = (self.mean_precession(half_period)).map(|rate| rate * self.rate_unit);
         let none = Periods {
             rates,
             ..Periods::NONE
