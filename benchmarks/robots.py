@@ -6,6 +6,7 @@ holds git repositories named ``owner+name`` or ``owner/name`` (a fork serves, if
 ``ours``, or who gave the expectations: ``law`` (ElementTree, NumPy, trimesh), ``mujoco``, ``pinocchio``;
 these need ``pip install mujoco pin pycollada``. ``--processes 40`` also times ``polhode check`` as a process
 on so many of the files, spread over the list. ``--renew`` writes into ``robots.toml`` what they say.
+``--fixes`` asks the engines whether what they load they also load after ``--fix``.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ import time
 from collections import Counter, defaultdict
 from pathlib import Path
 
-from robots_judges import FAILING, JUDGES, Judged, ask, expectation, unique
+from robots_judges import FAILING, JUDGES, Judged, ask, expectation, sourced, unique
 from robots_list import LIST, File, listed, written
 from robots_mirrors import mirror, unpacked
 
@@ -56,6 +57,26 @@ def compare(file: File, judged: Judged) -> list[tuple[str, str, str, str, str]]:
     return found
 
 
+def count_fix(file: File, folder: Path, counts: Counter[str]) -> None:
+    """Count the engines that load a file before --fix and after it, and print those that do not after it."""
+    from robots_engines import lost_by_fix
+
+    path = folder / file.path
+    if path.suffix not in (".urdf", ".xml"):
+        return
+    counts["files"] += 1
+    try:
+        loaded, lost = lost_by_fix(path, sourced(folder))
+    except (ValueError, OSError) as error:
+        print(f"unread: {file.repository}: {file.path}: {error}")
+        counts["unread"] += 1
+        return
+    counts["loaded before, by one engine"] += loaded
+    counts["lost by --fix"] += len(lost)
+    for why in lost:
+        print(f"lost: {file.repository}: {file.path}: {why}")
+
+
 def renewed(file: File, path: Path, folder: Path) -> File | None:
     """Give a row with what the judges say now; None where they cannot read the file."""
     judged = expectation(path, folder)
@@ -80,6 +101,7 @@ def main() -> None:
     parser.add_argument("--scratch", type=Path, default=Path(tempfile.gettempdir()) / "polhode-robots")
     parser.add_argument("--judge", choices=JUDGES, default="ours")
     parser.add_argument("--processes", type=int, default=0, metavar="N", help="time N files as processes")
+    parser.add_argument("--fixes", action="store_true", help="load the files before and after --fix")
     parser.add_argument("--renew", action="store_true", help="write what the judges say into robots.toml")
     options = parser.parse_args()
     options.mirrors, options.scratch = options.mirrors.resolve(), options.scratch.resolve()
@@ -100,6 +122,9 @@ def main() -> None:
         folder = unpacked(git, file.repository, file.commit, options.scratch)
         if options.renew:
             rows += filter(None, [renewed(file, folder / file.path, folder)])
+            continue
+        if options.fixes:
+            count_fix(file, folder, counts)
             continue
         judged = ask(options.judge, folder / file.path, folder)
         paths.append(folder / file.path)

@@ -11,6 +11,7 @@ import robots_files as files
 import robots_law as law
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     import mujoco
@@ -133,8 +134,56 @@ def mjcf(path: Path) -> tuple[list[tuple[str, str, str]], str]:
         elif link.is_empty:
             said.append((link.name, "good", "mujoco"))
         else:
-            said.append((link.name, *law.of_tensor(link, copied)))
+            said.append((link.name, *law.of_tensor(link, copied, is_tied=_is_tied(model, link.name))))
     return said, ""
+
+
+def _is_tied(model: mujoco.MjModel, name: str) -> bool:
+    """Whether no joint stands between a body and the world, or another body with three moments above 0."""
+    i = model.body(name).id
+    weld = model.body_weldid[i]
+    others = (k for k in range(1, model.nbody) if k != i and model.body_weldid[k] == weld)
+    return bool(weld == 0 or any(model.body_inertia[k].min() > 0.0 for k in others))
+
+
+def lost_by_fix(path: Path, packages: tuple[Path, ...]) -> tuple[int, list[str]]:
+    """Count the engines that load a file before ``--fix``, and name those that do not after it."""
+    from polhode import robots
+
+    robot = robots.read_robot(path, packages)
+    verdicts = robots.check(robot, packages)
+    before = _loading(path)
+    lost = []
+    for words in (robots.FAILURES, robots.FAILURES | {"suspect"}):
+        fixed = path.with_name(f"fixed-{path.name}")
+        fixed.write_bytes(robots.fixed(robot, verdicts, words))
+        after = _loading(fixed)
+        fixed.unlink()
+        lost += [f"{engine}: {after[engine]}" for engine, why in before.items() if not why and after[engine]]
+    return sum(not why for why in before.values()), lost
+
+
+def _loading(path: Path) -> dict[str, str]:
+    """Give for each engine why it does not load a file; "" where it does. Of URDF shapes are left out."""
+    import mujoco
+
+    if path.suffix == ".xml":
+        return {"mujoco": _why(lambda: mujoco.MjModel.from_xml_path(str(path)))}
+    import pinocchio as pin
+
+    text = ET.tostring(urdf_without_shapes(path), encoding="unicode")
+    return {
+        "mujoco": _why(lambda: mujoco.MjModel.from_xml_string(text)),
+        "pinocchio": _why(lambda: pin.buildModelFromXML(text)),
+    }
+
+
+def _why(load: Callable[[], object]) -> str:
+    try:
+        load()
+    except Exception as error:  # whatever an engine says
+        return str(error).splitlines()[0]
+    return ""
 
 
 def _link(model: mujoco.MjModel, i: int) -> files.Link:

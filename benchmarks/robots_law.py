@@ -4,6 +4,8 @@ Of each link they say a word and the rule that gave it:
 
 - ``law``: no body has the mass and the tensor (one is negative, or a moment larger than the others' sum);
 - ``sign``: the tensor stands for nothing (the unit tensor, none with a mass, one for unlike masses);
+- ``tied``: a point mass, of no tensor or less than a ball of osmium has, tied to what has one (``good``);
+- ``marker``: the mass would be denser in its shapes than any matter, so that they say nothing (``suspect``);
 - ``joints``: it has a shape and is moved by a joint, and neither it nor what is fixed to it has mass;
 - ``room``: the second moments are beyond those of matter within the box around all its shapes (``suspect``
   where they are 3 to 1000 times those of the box filled, and the centre of mass is inside)
@@ -29,6 +31,7 @@ Said = tuple[str, str]
 NARROW = 0.02  # of the diagonal of the box around the shapes
 GREY = 1.5  # factor either side of a threshold
 ABSURD, MOST, LEAST = 1000.0, 3.0, 0.1
+OSMIUM, DENSEST = 22_590.0, 25_000.0  # kg/m^3
 
 
 def judged(robot: Robot) -> list[Said]:
@@ -38,11 +41,11 @@ def judged(robot: Robot) -> list[Said]:
         if not link.problem and not link.is_static and (moment := isotropic(link.tensor)) is not None:
             repeated[moment].add(link.mass)
     copied = {m for m, masses in repeated.items() if m == 1.0 or len(masses) > 1}
-    moved, idle = standing(robot)
-    return [_judged(link, copied, i in moved, i in idle) for i, link in enumerate(robot.links)]
+    moved, idle, tied = standing(robot)
+    return [_judged(link, copied, i in moved, i in idle, i in tied) for i, link in enumerate(robot.links)]
 
 
-def _judged(link: Link, copied: set[float], is_moved: bool, is_idle: bool) -> Said:
+def _judged(link: Link, copied: set[float], is_moved: bool, is_idle: bool, is_tied: bool) -> Said:
     if link.is_static:
         return "good", "static"
     if link.problem:
@@ -53,10 +56,10 @@ def _judged(link: Link, copied: set[float], is_moved: bool, is_idle: bool) -> Sa
         return ("missing" if link.shapes else "disputed"), "joints"
     if link.is_empty or not (link.is_declared or is_moved):
         return "good", "joints"
-    return of_tensor(link, copied)
+    return of_tensor(link, copied, is_tied=is_tied)
 
 
-def of_tensor(link: Link, copied: set[float]) -> Said:
+def of_tensor(link: Link, copied: set[float], *, is_tied: bool = False) -> Said:
     """Judge a mass and a tensor that are given."""
     moments = np.linalg.eigvalsh(link.tensor)
     largest = float(np.abs(moments).max())
@@ -64,13 +67,21 @@ def of_tensor(link: Link, copied: set[float]) -> Said:
         return "impossible", "law"
     if moments[2] - moments[0] - moments[1] > 1e-9 * largest:
         return "impossible", "law"
+    own, density = filled(link)
+    if is_tied and (
+        largest == 0.0 or (own is None and moments.sum() < 1.2 * link.mass * of_osmium(link.mass))
+    ):
+        return "good", "tied"
     if largest == 0.0:
         return "placeholder", "sign"
     known = [each for _, each in link.shapes if each is not None]
-    own = filled(link)
+    if density > DENSEST:
+        known = []
     if isotropic(link.tensor) in copied:
         is_true = own is not None and np.allclose(own * link.mass, moments, rtol=1e-2, atol=0.0)
         return ("good" if is_true else "placeholder"), "sign"
+    if density:
+        return ("suspect" if density > DENSEST * GREY else "disputed"), "marker"
     ratio = 1.0 if own is None else farthest(moments, own * link.mass)
     if known:
         corners = np.concatenate([each.corners for each in known])
@@ -108,13 +119,26 @@ def isotropic(tensor: Array) -> float | None:
     )
 
 
-def filled(link: Link) -> Array | None:
-    """Give the moments, per unit of mass, of the shapes of one role filled evenly."""
+def of_osmium(mass: float) -> float:
+    """Give the square of the radius of a ball of osmium."""
+    return float((0.75 * mass / np.pi / OSMIUM) ** (2.0 / 3.0))
+
+
+def filled(link: Link) -> tuple[Array | None, float]:
+    """Give the moments, per unit of mass, of the shapes of one role filled evenly.
+
+    Shapes in which the mass would be denser than any matter, or nearly so, are passed over: the density is
+    the least of theirs where no others are left, else 0.
+    """
+    dense: list[float] = []
     for role in ("collision", "visual"):
         parts = [each for kind, each in link.shapes if kind == role]
         solids = [part for part in parts if part is not None]
         volume = sum(solid.volume for solid in solids)
         if len(solids) < len(parts) or not volume > 0.0:
+            continue
+        if link.mass > DENSEST / GREY * volume:
+            dense.append(link.mass / volume)
             continue
         center = sum(solid.volume * solid.center for solid in solids) / volume
         second = sum(
@@ -123,8 +147,8 @@ def filled(link: Link) -> Array | None:
         )
         tensor = (np.trace(second) * np.eye(3) - second) / volume
         moments: Array = np.linalg.eigvalsh(tensor)
-        return moments
-    return None
+        return moments, 0.0
+    return None, min(dense, default=0.0)
 
 
 def farthest(moments: Array, own: Array) -> float:
@@ -164,8 +188,12 @@ def fits(second: Array, center: Array, low: Array, high: Array) -> bool:
     return is_within and bool((second <= room + slack).all() and (second[off] >= least[off] - slack).all())
 
 
-def standing(robot: Robot) -> tuple[set[int], set[int]]:
-    """Give the links that move, and those of them that carry no mass, nor does anything fixed to them."""
+def standing(robot: Robot) -> tuple[set[int], set[int], set[int]]:
+    """Give the links that move, those of them that neither have mass nor are tied to some, and the tied ones.
+
+    Tied are those fixed to another with three moments above 0, with which simulators join them, or to the
+    world.
+    """
     group = {link.name: link.name for link in robot.links} | {"world": "world"}
 
     def find(name: str) -> str:
@@ -183,6 +211,22 @@ def standing(robot: Robot) -> tuple[set[int], set[int]]:
     moved.discard(world)
     heavy = {find(link.name) for link in robot.links if not link.is_empty or link.problem}
     places = [find(link.name) for link in robot.links]
-    return {i for i, p in enumerate(places) if p in moved}, {
-        i for i, p in enumerate(places) if p in moved - heavy
+    spread = [i for i, link in enumerate(robot.links) if is_spread(link)]
+    tied = {
+        i
+        for i, place in enumerate(places)
+        if place == find("world") or any(places[k] == place and k != i for k in spread)
     }
+    return (
+        {i for i, p in enumerate(places) if p in moved},
+        {i for i, p in enumerate(places) if p in moved - heavy},
+        tied if robot.format != "SDF" else set(),  # libsdformat refuses a tensor of zero
+    )
+
+
+def is_spread(link: Link) -> bool:
+    """Whether a body has its tensor, with three moments above 0."""
+    if link.problem or link.mass <= 0.0 or not np.isfinite(link.tensor).all():
+        return False
+    first, second, third = np.linalg.eigvalsh(link.tensor)
+    return bool(first > 1e-14 * third and third <= (first + second) * (1.0 + 1e-9))

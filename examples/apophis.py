@@ -36,8 +36,8 @@ def draw(clones: int = 2000) -> Figure:
 
     figure = Figure(figsize=(11.0, 7.4), layout="constrained")
     axes = figure.subplots(2, 2).ravel()
-    plot.flyby(found, "rotation_period", axes[0], time_unit="h", time_scale=HOUR)
-    plot.flyby(found, "precession_period", axes[1], time_unit="h", time_scale=HOUR)
+    plot.flyby(found, "rotation_period", axes[0], time_label="h", time_scale=HOUR)
+    plot.flyby(found, "precession_period", axes[1], time_label="h", time_scale=HOUR)
     plot.flyby(found, "spin_ratio", axes[2])
     plot.flyby(found, "pole_shift", axes[3])
     return figure
@@ -48,7 +48,7 @@ def animate(file: str) -> None:
     motion = RigidBody.from_principal(1.0, MOMENTS).free_motion_from_periods(
         ROTATION / DAY, PRECESSION / DAY, mode="short-axis"
     )
-    motion.at([0.0, 30.0]).animate(file, title="Apophis before the flyby", time_unit="d")
+    motion.at([0.0, 30.0]).animate(file, title="Apophis before the flyby", time_label="d")
 
 
 if __name__ == "__main__":

@@ -29,8 +29,8 @@ def draw() -> Figure:
         figure.add_subplot(1, 3, 2, projection="3d", computed_zorder=False),
         figure.add_subplot(1, 3, 3, projection="3d", computed_zorder=False),
     )
-    plot.euler_angles(motion.at(t), left, time_unit="d")
-    plot.poinsot(motion, t, middle, rate_unit="rad/d")
+    plot.euler_angles(motion.at(t), left, time_label="d")
+    plot.poinsot(motion, t, middle, rate_label="rad/d")
     plot.cones(motion, t, right)
     return figure
 
@@ -39,7 +39,7 @@ def animate(file: str) -> None:
     """Write the moving page of 37 days, about five periods of precession."""
     toutatis = RigidBody.from_principal(1.0, MOMENTS)
     motion = toutatis.free_motion_from_periods(ROTATION, PRECESSION, mode="long-axis")
-    motion.at(np.linspace(0.0, 37.0, 601)).animate(file, title="Toutatis", time_unit="d", duration=30)
+    motion.at(np.linspace(0.0, 37.0, 601)).animate(file, title="Toutatis", time_label="d", duration=30)
 
 
 if __name__ == "__main__":

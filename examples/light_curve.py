@@ -39,7 +39,7 @@ def draw() -> Figure:
 def animate(file: str) -> None:
     """Write the moving page of three weeks."""
     motion = TOUTATIS.free_motion_from_periods(5.41, 7.35, mode="long-axis")
-    motion.at([0.0, 21.0]).animate(file, title="Toutatis over three weeks", time_unit="d")
+    motion.at([0.0, 21.0]).animate(file, title="Toutatis over three weeks", time_label="d")
 
 
 if __name__ == "__main__":

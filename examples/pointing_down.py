@@ -40,7 +40,7 @@ def animate(file: str) -> None:
     t = np.linspace(0.0, 20 * np.pi, 2001)
     body = RigidBody(1.0, np.diag(SHAPES["roll 0.3, pitch 1, yaw 0.9"]))
     run = body.simulate(t, CIRCLE.frame(0.0).omega, begin(), load=loads.gravity_gradient(CIRCLE))
-    run.animate(file, title="It tumbles; t is the angle along the orbit", time_unit="rad")
+    run.animate(file, title="It tumbles; t is the angle along the orbit", time_label="rad")
 
 
 if __name__ == "__main__":

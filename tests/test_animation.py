@@ -198,7 +198,7 @@ class TestTime:
     )
     def test_paces(self, rate: float, end: float, unit: str, factor: float | None, tmp_path: Path) -> None:
         motion = RigidBody.from_principal(1.0, (1.0, 1.0, 1.0)).free_motion((0.0, 0.0, rate))
-        seconds = data(animate(motion, tmp_path / "a.html", end=end, time_unit=unit))["duration"]
+        seconds = data(animate(motion, tmp_path / "a.html", end=end, time_label=unit))["duration"]
         unit_seconds = {"s": 1.0, "h": 3600.0, "turns": 1.0}[unit]
         if factor is None:
             assert seconds == pytest.approx(max(10.0, end * rate / 30.0 / np.deg2rad(20.0)))

@@ -111,7 +111,16 @@ def test_whoever_reads_it_tells_it(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert TOLD in out
     code, out, _ = run("report", path, "--density", "2700 kg/m^3", "--as", "urdf")
     assert code == 0
-    orbit = ("--periods", "264.178 h, 27.38547 h", "--eccentricity", "4.25", "--clones", "2")
+    orbit = (
+        "--periods",
+        "264.178 h, 27.38547 h",
+        "--mode",
+        "long-axis",
+        "--eccentricity",
+        "4.25",
+        "--clones",
+        "2",
+    )
     code, out, _ = run("flyby", path, "--density", "2700 kg/m^3", *orbit)
     assert code == 0
     assert TOLD in out

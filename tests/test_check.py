@@ -83,7 +83,7 @@ def test_control_characters_of_a_file_do_not_reach_the_terminal(tmp_path: Path) 
 def test_a_robot_of_placeholders(tmp_path: Path) -> None:
     """Links whose tensors nobody filled in, as in the tutorial of ROS; one has a mesh that is not there."""
     cylinder, box = '<cylinder radius="0.035" length="0.1"/>', '<box size="0.4 0.28 0.07"/>'
-    shapes = (cylinder, box, '<sphere radius="0.01"/>', '<mesh filename="tip.dae"/>')
+    shapes = (cylinder, box, '<sphere radius="0.06"/>', '<mesh filename="tip.dae"/>')
     links = [
         f'''<link name="l{k}"><inertial>
 <mass value="{k + 1}"/>

@@ -97,7 +97,7 @@ def test_any_other_word_may_name_a_state(name: str, tmp_path: Path) -> None:
         (
             lambda: flybys.flyby(
                 BODY, orbits.kepler(1.0, (9, 0, 0), (0, 1, 0)), 1.0, rotation_period=9.0,
-                precession_period=7.0, reduce=reductions.mean("omega"),
+                precession_period=7.0, mode="long-axis", reduce=reductions.mean("omega"),
             ),
             "reduce: flyby tells",
         ),

@@ -7,20 +7,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
 import mpmath as mp
 import numpy as np
 import pytest
 import random_matter
 from oracles import exact_simplices, rational
+from oracles.exact_bodies import Body
 from oracles.exact_cells import cells_matter
 from oracles.exact_particles import Particles
 from oracles.exact_polyhedron import polyhedron
 from oracles.exact_shapes import tensor, tetrahedra
 from oracles.meshes import box, icosphere, tetrahedron
 from polhode import RigidBody, laminae, solids
-from polhode.errors import MeshError, PolhodeError
+from polhode.errors import InvalidInertiaError, MeshError, PolhodeError
+from scipy.spatial.transform import Rotation
 
 LEAST = Fraction(2) ** -1022
 MOST = Fraction(np.finfo(float).max)
@@ -218,7 +220,100 @@ def curve_faults(number: int) -> list[str]:
     )
 
 
+class Pair(NamedTuple):
+    """A body and what it is in exact arithmetic on the numbers that it was made of."""
+
+    body: RigidBody
+    exact: Body
+
+
+def any_pairs(rng: np.random.Generator) -> Iterator[Pair]:
+    """A tight cluster far away or not, whole, a part of it, and tensors that are as large and as far away."""
+    far = 10.0 ** rng.uniform(-3, 9)
+    size = far * 2.0**-52 * 10.0 ** rng.uniform(0, 6) if rng.integers(2) else 10.0 ** rng.uniform(-9, 1)
+    count = int(rng.integers(1, 6))
+    masses = 10.0 ** (rng.uniform(-9, 0) + rng.uniform(-10 * float(rng.integers(2)), 0, count))
+    places = far * rng.normal(size=3) * rng.integers(0, 2, 3) + size * rng.normal(size=(count, 3))
+    for part in (slice(None), slice(int(rng.integers(1, count + 1))), slice(int(rng.integers(count)), None)):
+        exact = Body.from_particles(masses[part], places[part])
+        mass = masses[part].sum()
+        center = np.array(exact.center, dtype=float)
+        match rng.integers(4):
+            case 0 | 1:
+                yield Pair(RigidBody.from_particles(masses[part], places[part]), exact)
+            case 2:
+                inertia = np.array(exact.inertia, dtype=float)
+                body = RigidBody(mass, inertia, center)
+                yield Pair(body, Body.from_tensor(mass, inertia, center))
+            case _:
+                trace = sum(exact.second[k][k] for k in range(3))
+                about = np.array(
+                    [[(trace if i == j else 0) - exact.second[i][j] for j in range(3)] for i in range(3)],
+                    dtype=float,
+                )
+                try:
+                    body = RigidBody(mass, inertia_about_origin=about, center_of_mass=center)
+                except InvalidInertiaError:  # rounded about the origin it is none
+                    continue
+                yield Pair(body, Body.from_tensor_about_origin(mass, about, center))
+
+
+def operation_faults(number: int) -> list[str]:
+    """What is wrong with the bodies that a few operations make, one after the other."""
+    rng = random_matter.generator("operations", number)
+    pairs = list(any_pairs(rng))
+    faults: list[str] = []
+    if not pairs:
+        return faults
+    a = pairs[0]
+    for b in [*pairs[1:], *pairs][: int(rng.integers(1, 4))]:
+        d = 10.0 ** rng.uniform(-9, 9) * rng.normal(size=3)
+        turn, s, k = Rotation.random(None, rng).as_matrix(), *np.exp(rng.normal(size=2))
+        try:
+            match rng.integers(8):
+                case 0:
+                    a = Pair(a.body + b.body, a.exact.plus(b.exact))
+                case 1 | 2:
+                    a = Pair(a.body - b.body, a.exact.plus(b.exact, -1))
+                case 3:
+                    whole = Pair(a.body + b.body, a.exact.plus(b.exact))
+                    a = Pair(whole.body - b.body, whole.exact.plus(b.exact, -1))
+                case 4:
+                    a = Pair(a.body.translated(d), a.exact.translated(d))
+                case 5:
+                    a = Pair(a.body.rotated(turn), a.exact.rotated(turn))
+                case 6:
+                    a = Pair(a.body.scaled(s, k), a.exact.scaled(s, k))
+                case _:
+                    bodies, exact = [pair.body for pair in pairs], pairs[0].exact
+                    for pair in pairs[1:]:
+                        exact = exact.plus(pair.exact)
+                    a = Pair(RigidBody.stack(bodies).combined(), exact)
+        except InvalidInertiaError:  # nothing is left, to rounding
+            break
+        if a.exact.mass <= 0:  # what mass is left is rounding, and where it is not known
+            if Fraction(a.body.mass) - a.exact.mass > a.body.error_bound.mass:
+                faults.append("mass of rounding")
+            break
+        faults += short(a.body, a.exact.mass, a.exact.center, a.exact.inertia)
+    return [f"{number}: {fault}" for fault in faults]
+
+
+def test_what_a_rounded_center_adds_to_a_difference() -> None:
+    """A speck far away: its place is lost in the sum's centre, and so all that is left is in the bound."""
+    both = RigidBody.from_particles([1.0, 1e-9], [(1e8, 0.0, 0.0), (1e8 + 1.0, 0.0, 0.0)])
+    rest = both - RigidBody(1.0, np.zeros((3, 3)), (1e8, 0.0, 0.0))
+    # What is left is a point at 1e8 + 1.
+    assert rest.error_bound.inertia >= np.abs(rest.inertia).max() > 0.0
+    assert rest.error_bound.center_of_mass >= abs(rest.center_of_mass[0] - 1e8 - 1.0) > 0.0
+    # Masses that cancel but for rounding say nothing of where the rest is.
+    third = RigidBody.from_principal(0.1, (1.0, 1.0, 1.0)).scaled(mass=1.0 / 3.0)
+    least = (third + third.translated((1.0, 0.0, 0.0))) - third.scaled(mass=2.0 - 2.0**-52)
+    assert least.error_bound.center_of_mass == np.inf
+
+
 SOURCES = {
+    "operations": (operation_faults, 1000, 100_000),
     "tetrahedra": (cell_faults, 2000, 100_000),
     "particles": (cloud_faults, 1000, 50_000),
     "voxels": (grid_faults, 400, 20_000),

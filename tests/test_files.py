@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 from polhode import RigidBody, Trajectory, Uncertain, files, loads, solids
-from polhode.errors import FileFormatError
+from polhode.errors import FileFormatError, PolhodeError
 from polhode.molecules import isotopes
+from rdkit import Chem
+from rdkit.Chem import AllChem
 
 TILT = np.array([0.3, -0.1, 0.4, 0.86]) / np.linalg.norm([0.3, -0.1, 0.4, 0.86])
 BODIES = {
@@ -258,3 +260,22 @@ class TestOtherLibraries:
             RigidBody.from_atoms(molecule)
         with pytest.raises(TypeError, match="expected ASE's Atoms or RDKit's Mol, got str"):
             RigidBody.from_atoms("H2O")
+
+    def test_rdkit_drawings_and_hydrogens_without_places(self) -> None:
+        """RDKit itself: a conformer in the plane is refused, missing hydrogens are told."""
+        ethanol: Any = Chem.AddHs(Chem.MolFromSmiles("CCO"))
+        AllChem.EmbedMolecule(ethanol, randomSeed=1)
+        assert RigidBody.from_atoms(ethanol).mass == pytest.approx(46.0418648, abs=1e-6)
+        with pytest.warns(UserWarning, match="6 hydrogens have no positions"):
+            assert RigidBody.from_atoms(Chem.RemoveHs(ethanol)).mass == pytest.approx(39.9949146, abs=1e-6)
+        drawing: Any = Chem.MolFromSmiles("CCO")
+        AllChem.Compute2DCoords(drawing)
+        with pytest.raises(PolhodeError, match="a drawing in the plane, not a geometry; make one with"):
+            RigidBody.from_atoms(drawing)
+        drawing = Chem.AddHs(drawing, addCoords=True)
+        drawing.GetConformer().Set3D(True)  # as its message says
+        RigidBody.from_atoms(drawing)
+        water: Any = Chem.MolFromXYZBlock("3\n\nO 0 0 0\nH 1 0 0\nH 0 1 0\n")
+        for _ in range(2):
+            assert RigidBody.from_atoms(water).mass == pytest.approx(18.0105647, abs=1e-6)
+            water.UpdatePropertyCache(strict=False)  # valences without bonds, which nobody stated

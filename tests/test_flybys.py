@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import re
 from typing import TYPE_CHECKING, Any
@@ -168,7 +169,7 @@ def test_the_seed_makes_the_clones() -> None:
 
 @pytest.mark.parametrize("of", ["spin_ratio", "pole_shift", "rotation_period", "precession_period"])
 def test_all_clones_are_in_the_picture(of: Any) -> None:
-    ax = plot.flyby(FOUND, of, time_unit="h", time_scale=HOUR)
+    ax = plot.flyby(FOUND, of, time_label="h", time_scale=HOUR)
     heights = [patch.get_height() for bars in ax.containers for patch in bars]
     assert sum(heights) == len(FOUND.failed)
     legend = ax.get_legend()
@@ -202,6 +203,35 @@ def test_all_clones_are_in_the_picture(of: Any) -> None:
         ),
         (lambda: passed(rotation_period=HOUR), PolhodeError, "period"),
         (lambda: passed(n=0), ValueError, "n: expected a positive integer"),
+        (lambda: passed(radius=38011.5), PolhodeError, "is 38011.5, within its radius of 38011.5"),
+        (
+            lambda: flybys.clones(APOPHIS, orbits.kepler(EARTH, (9e3, 0, 0), (0, 7, 0)), DAY, **PERIODS),
+            PolhodeError,
+            "orbit: its eccentricity is 0.106",
+        ),
+        (
+            lambda: flybys.flyby(
+                APOPHIS,
+                orbits.from_elements(
+                    EARTH, eccentricity=2.0, periapsis=6378.0, since_periapsis=-DAY, j2=1e-3, radius=6378.137
+                ),
+                2 * DAY,
+                **PERIODS,
+            ),
+            PolhodeError,
+            "within its radius of 6378.14",
+        ),
+        (
+            lambda: flybys.clones(
+                APOPHIS,
+                orbits.sampled(EARTH, [0.0, 1e3, 2e3, 3e3], 4e3 * np.eye(4, 3) + 1.0),
+                1e3,
+                radius=6378.0,
+                **PERIODS,
+            ),
+            PolhodeError,
+            "within its radius",
+        ),
         (
             lambda: passed(rotation_period=[1e6, 2e6]),
             ValueError,
@@ -219,6 +249,30 @@ WORDS = (
     "--moments", "0.64", "0.97", "1", "--periods", "264.178 h, 27.38547 h", "--mode", "short-axis",
     "--eccentricity", "4.253901873", "--periapsis", "38011.486 km", "--clones", "200",
 )  # fmt: skip
+
+
+@pytest.mark.parametrize("call", [flybys.flyby, flybys.clones])
+def test_the_mode_has_no_default(call: Any) -> None:
+    """Most pairs of periods are those of two motions: who leaves the mode out is told which there are."""
+    without = {name: value for name, value in PERIODS.items() if name != "mode"}
+    with pytest.raises(TypeError, match=r'mode: state which.*mode="long-axis".*mode="short-axis"'):
+        call(APOPHIS, ORBIT, 6 * DAY, n=5, **without)
+    with pytest.raises(TypeError, match=r'mode: state which.*mode="long-axis".*mode="short-axis"'):
+        APOPHIS.free_motion_from_periods(**without)
+    assert inspect.signature(call).parameters["mode"].default is inspect.Parameter.empty
+    assert inspect.signature(RigidBody.free_motion_from_periods).parameters["mode"].default is (
+        inspect.Parameter.empty
+    )
+
+
+def test_an_orbit_just_beyond_the_planet_and_a_parabola_are_flybys() -> None:
+    assert not passed(3, radius=38011.48).failed.any()
+    parabola = orbits.from_elements(EARTH, eccentricity=1.0, periapsis=4e4, since_periapsis=-DAY)
+    assert not flybys.flyby(APOPHIS, parabola, 2 * DAY, n=3, **PERIODS).failed.any()
+    code, _, err = run(
+        "flyby", *WORDS[:-6], "--eccentricity", "1", "--periapsis", "6371.1 km", "--clones", "3"
+    )
+    assert code == 0, err
 
 
 class TestCommand:
@@ -246,7 +300,11 @@ class TestCommand:
             (("--moments", "1 2 2.5"), "--periods: state the two periods"),
             ((*WORDS[:-1], "0"), "--clones: expected a positive number, got 0"),
             ((*WORDS, "--span", "-1 d"), "--span: expected a positive time"),
-            ((*WORDS[:8], "--eccentricity", "-1"), "--eccentricity: expected 0 or more"),
+            ((*WORDS[:8], "--eccentricity", "-1"), "--eccentricity: expected 1 or more, got -1"),
+            ((*WORDS[:8], "--eccentricity", "0.5"), "--eccentricity: 0.5 is that of an ellipse"),
+            ((*WORDS[:10], "--periapsis", "6371 km"), "6371 km from the centre is within the planet"),
+            ((*WORDS, "--radius", "40000 km"), "38011.5 km from the centre is within the planet"),
+            (WORDS[:6], "--mode: state which of the two motions has these periods: --mode long-axis"),
             (
                 (*WORDS, "--save", "x.txt"),
                 "--save: 'x.txt' has a suffix that is not written; use one of .png, .pdf, .svg",

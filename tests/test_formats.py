@@ -16,6 +16,7 @@ from mesh_files import ascii_stl, binary_stl, dae, glb, gltf, numbered_plates, t
 from oracles.meshes import cube
 from polhode import RigidBody, robots
 from polhode.errors import FileFormatError, PolhodeError
+from polhode.files.budget import LIMITS, Limit
 from polhode.files import load, read_mesh, solid_from_file, unpacked
 
 CUBE = cube(2.0)
@@ -307,17 +308,18 @@ class TestPacked:
         assert RigidBody.from_file(path).mass == pytest.approx(19.99244)
         assert run("molecule", str(path))[0] == 0
 
-    def test_a_limit(self, tmp_path: Path) -> None:
+    def test_a_limit(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         data = ascii_stl(*CUBE)
         path = written(tmp_path / "part.stl.gz", gzip.compress(data))
-        with unpacked.unpacked(path, most=len(data)) as inside:
+        monkeypatch.setitem(LIMITS, "unpacked bytes", Limit(len(data), 0.0, "unpack it"))
+        with unpacked.unpacked(path) as inside:
             assert inside.read_bytes() == data
-        assert unpacked.MOST_UNPACKED == 4 << 30
+        monkeypatch.setitem(LIMITS, "unpacked bytes", Limit(len(data) - 1, 0.0, "unpack it"))
         with (
             pytest.raises(
-                FileFormatError, match=f"unpacks to more than {len(data) - 1} bytes; unpack it with gunzip"
+                FileFormatError, match=f"there are more than {len(data) - 1} unpacked bytes; unpack it"
             ),
-            unpacked.unpacked(path, most=len(data) - 1),
+            unpacked.unpacked(path),
         ):
             pass
         assert not inside.exists()

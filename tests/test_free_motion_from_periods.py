@@ -156,7 +156,7 @@ def test_what_no_motion_has_is_refused_with_the_reach() -> None:
             body.free_motion_from_periods(1e4, 1.0, mode=mode)
     sphere = RigidBody.from_principal(1.0, (1.0, 1.0, 1.0))
     with pytest.raises(PolhodeError, match="long-axis mode"):
-        sphere.free_motion_from_periods(1.0, 1.0)
+        sphere.free_motion_from_periods(1.0, 1.0, mode="long-axis")
 
 
 NEEDLE = (3.7336506454180177e-19, 6.846093914796246e-7, 6.84609391479998e-7)
@@ -185,14 +185,14 @@ def test_arguments() -> None:
     with pytest.raises(ValueError, match="mode"):
         body.free_motion_from_periods(1.0, 1.0, mode="long")  # type: ignore[arg-type]
     with pytest.raises(PolhodeError, match=r"row 1: rotation_period.*-1\.0"):
-        body.free_motion_from_periods([1.0, -1.0], 1.0)
+        body.free_motion_from_periods([1.0, -1.0], 1.0, "long-axis")
     with pytest.raises(PolhodeError, match="precession_period"):
-        body.free_motion_from_periods(1.0, np.nan)
+        body.free_motion_from_periods(1.0, np.nan, "long-axis")
     with pytest.raises(PolhodeError, match=r"sense must be \+1 or -1, got 2\.0"):
-        body.free_motion_from_periods(1.0, 1.0, sense=2)
+        body.free_motion_from_periods(1.0, 1.0, "long-axis", sense=2)
     with pytest.raises(PolhodeError, match="phase"):
-        body.free_motion_from_periods(1.0, 1.0, phase=np.inf)
+        body.free_motion_from_periods(1.0, 1.0, "long-axis", phase=np.inf)
     with pytest.raises(PolhodeError, match="angular_momentum_direction"):
-        body.free_motion_from_periods(1.0, 1.0, angular_momentum_direction=(0, 0, 0))
-    stack = body.free_motion_from_periods([1.0, 1.1], 1.0, phase=[[0.0], [0.5], [0.7]])
+        body.free_motion_from_periods(1.0, 1.0, "long-axis", angular_momentum_direction=(0, 0, 0))
+    stack = body.free_motion_from_periods([1.0, 1.1], 1.0, "long-axis", phase=[[0.0], [0.5], [0.7]])
     assert stack.shape == (3, 2)

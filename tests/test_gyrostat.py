@@ -175,6 +175,19 @@ def test_a_start_on_the_separatrix_and_next_to_it(off: float, mode: str, *, is_t
         )
     assert motion.mode == mode
     assert np.isinf(motion.period) == (mode == "separatrix")
+    assert not np.isnan(motion.period)
+
+
+def test_a_steady_rotation_has_no_period() -> None:
+    """ω is constant: with momentum inside, without, and along the axis of a symmetric body."""
+    for gyrostat, omega in (
+        (BODY.gyrostat((0.0, 0.3, 0.0)), (0.0, 1.0, 0.0)),
+        (BODY.gyrostat((0.0, 0.0, 0.0)), (0.0, 1.0, 0.0)),
+        (RigidBody.from_principal(1.0, (1.0, 1.0, 2.0)).gyrostat((0.0, 0.0, 0.0)), (0.0, 0.0, 1.0)),
+    ):
+        motion = gyrostat.free_motion(omega)
+        assert motion.mode == "steady"
+        assert np.isnan(motion.period)
 
 
 def test_a_start_next_to_the_middle_axis_turns_over_when_it_should() -> None:

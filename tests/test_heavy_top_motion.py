@@ -299,6 +299,8 @@ class TestWhatItTells:
                 omega = euler_angles.angular_velocity((0, theta, 0), rates)
                 top = body.heavy_top(omega, euler_angles.to_quaternion((0, theta, 0)), G)
                 assert np.ptp(top.nutation_limits) < 1e-7
+                # On either side of what is judged to be regular.
+                assert np.isnan(top.nutation_period) == (top.path == "regular")
                 assert top.mean_precession == pytest.approx(rate, rel=1e-9)
                 assert top.mean_spin == pytest.approx(rates[2], rel=1e-9)
 

@@ -14,6 +14,8 @@ import pytest
 from mesh_files import obj
 from oracles.meshes import cube
 from polhode import RigidBody, _hints, forms, laminae, loads, rods, solids
+from polhode.cli.app import app
+from polhode.cli.running import COMMANDS, OTHER_OPTIONS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,6 +29,7 @@ SOLIDS: Any = solids
 LAMINAE: Any = laminae
 RODS: Any = rods
 POLHODE: Any = polhode
+TRAJECTORY: Any = polhode.Trajectory
 SPUN = ([0.0, 1.0], (0.0, 0.0, 1.0))
 
 MISTAKES: list[tuple[str, Callable[[], object], type[Exception], str]] = [
@@ -129,6 +132,82 @@ MISTAKES: list[tuple[str, Callable[[], object], type[Exception], str]] = [
     ),
     ("a body's picture", lambda: BODY.plot("b.png"), TypeError, ".figure.savefig('b.png')"),
     (
+        "three lengths of a box",
+        lambda: SOLIDS.box(2, 3, 4, mass=1.0),
+        TypeError,
+        "box() takes its numbers as one argument: box((2, 3, 4), ...); 3 arguments were given without a name",
+    ),
+    (
+        "the length of a cylinder",
+        lambda: SOLIDS.cylinder(radius=1.0, length=2.0, mass=1.0),
+        TypeError,
+        "cylinder() got an unexpected keyword argument 'length'; did you mean height=?",
+    ),
+    (
+        "the diameter of a ball",
+        lambda: SOLIDS.sphere(diameter=1.0, mass=1.0),
+        TypeError,
+        "'diameter'; half of it is the radius",
+    ),
+    (
+        "a mass without its name",
+        lambda: SOLIDS.cylinder(1.0, 2.0, 3.0),
+        TypeError,
+        "cylinder() takes radius, height, then by name mass=, density=; 3 arguments were given",
+    ),
+    ("no height", lambda: SOLIDS.cylinder(1.0, mass=1.0), TypeError, "cylinder() needs height="),
+    (
+        "a radius given twice",
+        lambda: SOLIDS.sphere(1.0, radius=1.0, mass=1.0),
+        TypeError,
+        "sphere() got radius twice: by its place and by its name",
+    ),
+    ("g", lambda: LOADS.uniform_gravity(g=9.81), TypeError, "'g'; did you mean gravity=?"),
+    ("a coefficient", lambda: LOADS.damping(coefficient=1.0), TypeError, "did you mean matrix=?"),
+    (
+        "corners of a polygon",
+        lambda: LAMINAE.polygon(points=[(0, 0), (1, 0), (0, 1)], mass=1.0),
+        TypeError,
+        "'points'; did you mean vertices=?",
+    ),
+    ("a rod of a mass", lambda: RODS.rod(2.0, 1.0), TypeError, "rod() takes length, then by name mass="),
+    (
+        "the name of an axis",
+        lambda: BODY.moment_about("z"),
+        TypeError,
+        "axis: expected real numbers, got dtype <U1; the axis z is (0, 0, 1)",
+    ),
+    (
+        "a number beyond floats",
+        lambda: MADE(1.0, np.eye(3), rtol=10**400),
+        TypeError,
+        "expected a number that a float can be, at most 1.8e308 in size",
+    ),
+    (
+        "a whole number beyond all",
+        lambda: BODY.simulate(*SPUN, max_steps=10**400),
+        TypeError,
+        "expected a whole number of at most 38 digits",
+    ),
+    (
+        "half of a letter",
+        lambda: BODY.simulate(*SPUN, method="\ud800"),
+        TypeError,
+        "expected a word, got a string with half of a surrogate pair in it",
+    ),
+    (
+        "a file for a robot",
+        lambda: POLHODE.robots.check("robot.urdf"),
+        TypeError,
+        'robot: expected Robot, got str; robots.read_robot("robot.urdf") reads one',
+    ),
+    (
+        "a word for a point",
+        lambda: POLHODE.symbolic.shape("cone").inertia_about("apex"),
+        ValueError,
+        "point: expected three expressions or numbers, got 'apex'; the axes are those of center_of_mass",
+    ),
+    (
         "a density with a unit",
         lambda: MADE.from_file("part.stl", density="2.7 g/cm^3"),
         TypeError,
@@ -196,6 +275,33 @@ def test_a_molecule_is_no_mesh(tmp_path: Path, option: dict[str, Any]) -> None:
         (lambda: RODS.hoop, "module 'polhode.rods' has no attribute 'hoop'; ring(radius) is one"),
         (lambda: POLHODE.Body, "module 'polhode' has no attribute 'Body'; RigidBody is the class"),
         (lambda: POLHODE.solid, "'solid'; did you mean solids?"),
+        (
+            lambda: BODY.inertia_at((0, 0, 1)),
+            "'inertia_at'; inertia_about(point) is the tensor about a point",
+        ),
+        (lambda: BODY.translate((0, 0, 1)), "'translate'; translated(displacement) is the moved body"),
+        (lambda: BODY.rotate((0, 0, 0, 1)), "'rotate'; rotated(rotation) makes the turned body"),
+        (lambda: BODY.principal_momnts, "'principal_momnts'; did you mean principal_moments?"),
+        (
+            lambda: BODY.free_motion((0, 0, 1)).omega_at(3),
+            "'FreeMotion' object has no attribute 'omega_at'; at(t)",
+        ),
+        (lambda: BODY.free_motion((0, 0, 1)).modde, "'modde'; did you mean mode?"),
+        (lambda: TOP.heavy_top((0, 0, 1), gravity=(0, 0, -1)).energy, "'energy'; kinetic_energy is it"),
+        (lambda: BODY.gyrostat((0, 0, 1)).equilibra, "'equilibra'; did you mean equilibria?"),
+        (
+            lambda: TRAJECTORY.load("m.npz"),
+            "'Trajectory' has no attribute 'load'; Trajectory.from_file(path)",
+        ),
+        (lambda: BODY.simulate(*SPUN).periods, "'periods'; body.free_motion(omega).periods has them"),
+        (lambda: LOADS.torque, "module 'polhode.loads' has no attribute 'torque'; constant_torque("),
+        (lambda: LOADS.gravity, "'gravity'; uniform_gravity((0, 0, -9.81)) is one"),
+        (lambda: POLHODE.orbits.circular, "'circular'; from_elements("),
+        (lambda: POLHODE.robots.load, "'load'; read_robot("),
+        (lambda: POLHODE.symbolic.cone, "'cone'; shape(name) makes one"),
+        (lambda: POLHODE.plot.trajectory, "'trajectory'; angular_velocity(trajectory) draws one"),
+        (lambda: POLHODE.euler_angles.from_matrix, "from_quaternion takes a quaternion"),
+        (lambda: POLHODE.kinematics.velocity, "RigidBody.point_velocity(point, omega) is it"),
     ],
 )
 def test_other_names_lead_to_those_here(ask: Callable[[], object], says: str) -> None:
@@ -208,6 +314,18 @@ def test_what_nobody_means_has_no_hint() -> None:
         assert not hasattr(owner, "_q")
         with pytest.raises(AttributeError, match=r"has no attribute 'qqqqqq'$"):
             owner.qqqqqq  # noqa: B018 (asks for it)
+
+
+def test_other_options_lead_to_options_that_a_command_has() -> None:
+    options = {
+        name
+        for command in COMMANDS
+        for one in app[command].assemble_argument_collection()
+        for name in one.names
+    }
+    for meant, others in OTHER_OPTIONS:
+        assert meant.split()[0] in options, meant
+        assert meant.split()[0] not in others.split(), meant
 
 
 def test_hints_name_what_there_is() -> None:

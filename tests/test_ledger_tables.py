@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
+from command_line import run
 from polhode import RigidBody, laminae, samples, solids
 from polhode.errors import InvalidInertiaError
 from polhode.uncertainty import ledger
@@ -298,6 +299,53 @@ class TestTables:
                 array[0] = 1.0
         with pytest.raises(AttributeError):
             made.mass = made.mass  # type: ignore[misc]
+
+
+class TestSigns:
+    """Rows of one source with products of both signs share the error of the element of the tensor."""
+
+    ROWS: ClassVar[list[dict[str, Any]]] = [
+        {"id": "whole", "parent": ""},
+        *(
+            {"id": name, "parent": "whole", "mass": 2.0, "Cx": x, "Cy": 0.5, "Cz": 0.0, "Ixx": 3.0}
+            | {"Iyy": 3.0, "Izz": 3.0, "Ixy": 0.2, "Ixz": 0.0, "Iyz": -0.1, "POIconv": "-", "source": source}
+            | {"sigma_Ixy": 0.03, "sigma_Iyz": sigma}
+            for name, x, source, sigma in (
+                ("a", 0.0, "rig", 0.02), ("b", 1.0, "rig", 0.0), ("c", 2.0, "rig", 0.01), ("d", 3.0, "", 0.02)
+            )
+        ),
+    ]  # fmt: skip
+
+    def with_signs(self, signs: str) -> list[dict[str, Any]]:
+        rows = [dict(row) for row in self.ROWS]
+        for row, sign in zip(rows[1:], signs, strict=True):
+            if sign == "+":
+                row |= {"POIconv": "+"} | {name: -row[name] for name in ("Ixy", "Ixz", "Iyz")}
+        return rows
+
+    @pytest.mark.parametrize("signs", ["----", "++++", "+---", "-+--", "--+-", "---+", "+-+-"])
+    def test_the_words_of_a_table_change_no_covariance(self, signs: str) -> None:
+        made, plain = (ledger(self.with_signs(each)) for each in (signs, "----"))
+        assert made.covariance is not None
+        assert plain.covariance is not None
+        np.testing.assert_array_equal(made.covariance, plain.covariance)
+        stated = {
+            name: {signs[k] for k in range(3) if self.ROWS[k + 1][f"sigma_{name}"]} for name in ("Ixy", "Iyz")
+        }
+        both = tuple(name for name, found in stated.items() if len(found) == 2)
+        assert made.opposite_signs == ({"rig": both} if both else {})
+
+    def test_they_are_told(self, tmp_path: Path) -> None:
+        for signs, is_told in (("+---", True), ("++++", False)):
+            path = tmp_path / f"{is_told}.csv"
+            rows = self.with_signs(signs)
+            names = list(rows[1])
+            lines = [",".join(str(row.get(name, "")) for name in names) for row in rows]
+            path.write_text("\n".join([",".join(names), *lines]), "utf-8")
+            code, out, _ = run("ledger", path)
+            assert code == 0
+            told = "source rig: its parts state Ixy, Iyz with both signs of POIconv; what they share is"
+            assert (told in out) == is_told
 
 
 class TestShapes:

@@ -74,7 +74,7 @@ def test_orders_and_pairs() -> None:
 
 def test_the_report_tells_them() -> None:
     """Toutatis: 5.41 d and 7.35 d give 3.116 d in the short-axis convention."""
-    words = ("spin", "--moments", "1 3.01307 3.18992", "--periods", "5.41 d, 7.35 d")
+    words = ("spin", "--moments", "1 3.01307 3.18992", "--periods", "5.41 d, 7.35 d", "--mode", "long-axis")
     code, out, err = run(*words, "--format", "json")
     assert (code, err) == (0, "")
     told = json.loads(out)
@@ -87,7 +87,10 @@ def test_the_report_tells_them() -> None:
     assert rows[1, 1]["frequency"] == pytest.approx(1 / 5.41 + 1 / 7.35, rel=1e-9)
     assert "swinging, about e3" in run(*words)[1]
     code, out, _ = run("spin", "--moments", "1 3 3.2", "--omega", "0 0.1 1", "--format", "json")
-    assert "light_curve" not in json.loads(out)
+    told = json.loads(out)  # however the motion was started
+    assert len(told["light_curve"]) == 12
+    periods = RigidBody.from_principal(1.0, (1.0, 3.0, 3.2)).free_motion((0.0, 0.1, 1.0)).periods
+    assert told["short_axis"]["precession_period"] == pytest.approx(periods.precession_short_axis, rel=1e-12)
     code, out, _ = run(
         "spin", "--moments", "0.61 0.965 1", "--periods", "263 h, 27.38 h", "--mode", "short-axis"
     )

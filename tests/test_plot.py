@@ -53,7 +53,7 @@ def test_components_over_time(trajectory: Trajectory) -> None:
 
 
 def test_components_along_principal_axes_in_degrees_per_hour(trajectory: Trajectory) -> None:
-    ax: Any = plot.angular_velocity(trajectory, frame="principal", degrees=True, time_unit="h")
+    ax: Any = plot.angular_velocity(trajectory, frame="principal", degrees=True, time_label="h")
     expected = np.rad2deg(trajectory.omega @ trajectory.body.principal.axes)
     for i, line in enumerate(ax.get_lines()):
         np.testing.assert_allclose(line.get_ydata(), expected[:, i], rtol=1e-13, atol=1e-12)
@@ -80,7 +80,7 @@ def test_unknown_frame(trajectory: Trajectory) -> None:
 def test_body_and_axes(tmp_path: Path) -> None:
     vertices, faces = cube(2.0)
     body = RigidBody.from_mesh(vertices * [1, 2, 3], faces, density=1.0)
-    ax: Any = plot.body(vertices * [1, 2, 3], faces, length_unit="m")
+    ax: Any = plot.body(vertices * [1, 2, 3], faces, length_label="m")
     assert plot.principal_axes(body, ax, length=4.0) is ax
     assert ax.get_xlabel() == "x (m)"
     assert {text.get_text() for text in ax.texts} == {"$e_1$", "$e_2$", "$e_3$"}

@@ -14,9 +14,8 @@ import pytest
 from command_line import one_line, run
 from polhode import Event, RigidBody, euler_angles, regions, robots
 from polhode.errors import SingularAttitudeError
-from polhode.files import xml_source
+from polhode.files.budget import LIMITS
 from polhode.files.reading import MOST_TEXT
-from polhode.robots import sources
 from scipy.spatial.transform import Rotation
 from test_check import ROBOT
 
@@ -124,13 +123,13 @@ def test_the_limits_of_files_are_those_that_the_page_states() -> None:
     assert MOST_TEXT == 1 << 30
     limits = " ".join(page[page.index("nests more than") :].split())
     assert "more than a million elements" in limits
-    assert xml_source._MOST_ELEMENTS == 1_000_000
+    assert LIMITS["elements"].least == 1_000_000
     for text, value in (
-        ("1000 included files", sources._MOST_FILES),
-        ("256 MiB", sources._MOST_BYTES >> 20),
-        ("100,000 links", sources._MOST_LINKS),
-        ("10,000 copies", sources._MOST_COPIES),
-        ("50,000 elements in them", sources._MOST_COPIED),
+        ("1000 included files", LIMITS["files"].least),
+        ("256 MiB", LIMITS["included bytes"].least >> 20),
+        ("100,000 links", LIMITS["links"].least),
+        ("10,000 copies", LIMITS["copies"].least),
+        ("50,000 elements in them", LIMITS["elements in copies"].least),
     ):
         assert text in limits
         assert int(text.partition(" ")[0].replace(",", "")) == value

@@ -12,6 +12,7 @@ from oracles.bodies import attitudes, matrix
 from polhode import RigidBody, solids, validity
 from polhode.errors import InvalidInertiaError
 from scipy.optimize import linprog, nnls
+from scipy.spatial.transform import Rotation
 
 EDGES = np.array([[0.0, 1, 1], [1, 0, 1], [1, 1, 0]])
 """Possible moments are sums of these with second moments, none negative, as factors."""
@@ -52,6 +53,33 @@ class TestNearestValid:
             [1.486e-6 - excess / 3, 2e-7 + excess / 3, 8.31e-7 + excess / 3]
         )
         assert distance == pytest.approx(excess / 3**0.5)
+
+    @pytest.mark.parametrize("scale", [1e-47, 1e-15, 1.0, 1e37])
+    def test_every_program_finds_it_possible(self, scale: float) -> None:
+        """A + B >= C of the moments that NumPy and MuJoCo compute: beyond the edge, on it, and near it."""
+        mju_eig3 = pytest.importorskip("mujoco").mju_eig3
+        rng = np.random.default_rng(17)
+        second = rng.uniform(0, 1, (1000, 3))
+        thickness = rng.choice([0.0, 1e-17, 1e-16, 3e-16, 1e-15, 1e-12, -1e-16, -1e-9, -0.1, -1.0], 1000)
+        second[:, 0] = thickness
+        second[::5, 1] = thickness[::5]  # rods
+        moments = second.sum(axis=1, keepdims=True) - second
+        turns = Rotation.random(1000, rng).as_matrix()
+        turns[::7] = np.roll(np.eye(3), 1, axis=0)
+        tensors = scale * np.einsum("nij,nj,nkj->nik", turns, moments, turns)
+        found = validity.nearest_valid((tensors + np.swapaxes(tensors, 1, 2)) / 2)
+        for tensor, thick, distance in zip(found.inertia, thickness, found.distance, strict=True):
+            first, middle, last = np.linalg.eigvalsh(tensor)
+            assert first >= 0.0
+            assert first + middle >= last
+            values, axes, quaternion = np.zeros(3), np.zeros(9), np.zeros(4)
+            mju_eig3(values, axes, quaternion, tensor.ravel())
+            assert values[1] + values[2] >= values[0]
+            if abs(thick) < 1e-14:
+                assert distance <= 1e-14 * np.trace(tensor)
+        again = validity.nearest_valid(found.inertia)
+        np.testing.assert_array_equal(again.inertia, found.inertia)
+        assert not again.distance.any()
 
     def test_rows(self) -> None:
         stack = np.array([np.diag([1.0, 1, 5]), np.full((3, 3), np.nan), np.eye(3)])

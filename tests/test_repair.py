@@ -300,6 +300,7 @@ class TestUnusualSizes:
         assert code == 0
         assert ("is unusual for a part" in out) == (likely is not None)
         if likely is not None:
-            assert f"state --length-unit {likely}" in out
+            assert f"in {likely} it would be" in out
+            assert f"check that the file is in {unit}, as --length-unit says" in out
             again = run("report", str(path), "--density", "1000", "--length-unit", likely)[1]
             assert "is unusual" not in again

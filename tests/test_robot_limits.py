@@ -12,6 +12,7 @@ import pytest
 from command_line import one_line, run
 from polhode import robots
 from polhode.errors import FileFormatError
+from polhode.files.budget import LIMITS
 from polhode.files.xml_source import Edit, edited, parse_xml
 from polhode.robots.sources import read_source, read_stream
 
@@ -21,6 +22,11 @@ if TYPE_CHECKING:
 
 INERTIAL = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
 WORLD = "<mujoco>{}<worldbody>{}</worldbody></mujoco>"
+
+
+def limited(monkeypatch: pytest.MonkeyPatch, kind: str, most: int) -> None:
+    """Set a limit of the budget, whatever the size of the file."""
+    monkeypatch.setitem(LIMITS, kind, LIMITS[kind]._replace(least=most, per_byte=0.0))
 
 
 def parsed(text: str) -> robots.Robot:
@@ -170,15 +176,24 @@ class TestCopies:
     @pytest.mark.parametrize(
         ("text", "says"),
         [
-            ('<replicate count="9999">{2000}</replicate>', "line 2: more than 50000 elements"),
+            (
+                '<replicate count="9999">{2000}</replicate>',
+                "line 2: there are more than 50000 elements in copies",
+            ),
             (
                 '<replicate count="9">\n<replicate count="9">{2000}</replicate></replicate>',
-                "line 2: more than 50000 elements",
+                "line 2: there are more than 50000 elements in copies",
             ),
-            (25 * '<replicate count="2">' + "{1}" + 25 * "</replicate>", "line 2: more than 10000 copies"),
-            (12 * '<replicate count="2">' + "{100}" + 12 * "</replicate>", "more than 50000 elements"),
-            ('<replicate count="1e40">{1}</replicate>', "line 2: more than 10000 copies"),
-            (11 * '<replicate count="1000">{1}</replicate>', "line 2: more than 10000 copies"),
+            (
+                25 * '<replicate count="2">' + "{1}" + 25 * "</replicate>",
+                "line 2: there are more than 10000 copies",
+            ),
+            (
+                12 * '<replicate count="2">' + "{100}" + 12 * "</replicate>",
+                "more than 50000 elements in copies",
+            ),
+            ('<replicate count="1e40">{1}</replicate>', "line 2: there are more than 10000 copies"),
+            (11 * '<replicate count="1000">{1}</replicate>', "line 2: there are more than 10000 copies"),
         ],
     )
     def test_they_end_before_they_are_made(self, text: str, says: str) -> None:
@@ -192,10 +207,12 @@ class TestCopies:
     def test_those_of_all_bodies_count_together(self, monkeypatch: pytest.MonkeyPatch) -> None:
         ten = '<replicate count="5"><replicate count="2"><geom size="1"/></replicate></replicate>'
         text = WORLD.format("", f"<body>{ten}</body>\n" * 6)
-        monkeypatch.setattr("polhode.robots.sources._MOST_COPIED", 60)
+        limited(monkeypatch, "elements in copies", 60)
         assert len(parsed(text).links) == 6
-        monkeypatch.setattr("polhode.robots.sources._MOST_COPIED", 59)
-        with pytest.raises(FileFormatError, match="line 6: more than 59 elements"):
+        limited(monkeypatch, "elements in copies", 59)
+        with pytest.raises(
+            FileFormatError, match="line 6: there are more than 59 elements in copies; lower the count"
+        ):
             parsed(text)
 
     def test_below_the_limits_all_are_made(self) -> None:
@@ -210,12 +227,11 @@ class TestMany:
         one = "<body/>" if "mujoco" in text else "<link/>"
         source = text.format("\n" + 300 * one)
         assert len(parsed(source).links) == 300
-        monkeypatch.setattr("polhode.robots.sources._MOST_LINKS", 299)
+        limited(monkeypatch, "links", 299)
         with pytest.raises(FileFormatError, match="r: line 2: there are more than 299 links; divide"):
             parsed(source)
         monkeypatch.undo()
-        monkeypatch.setattr("polhode.files.xml_source._MOST_ELEMENTS", 300)
-        monkeypatch.setattr("polhode.files.xml_source.Budget.__init__.__defaults__", (300,))
+        limited(monkeypatch, "elements", 300)
         with pytest.raises(FileFormatError, match="r: line 2: there are more than 300 elements"):
             parsed(source)
 
@@ -227,12 +243,12 @@ class TestMany:
         (tmp_path / "m4.sdf").write_text('<sdf><model name="m"><link/></model></sdf>')
         links = robots.check(robots.read_robot(tmp_path / "m0.sdf"))
         lost = [verdict.reason for verdict in links if verdict.verdict == "unreadable"]
-        assert "is one of more than 1000 files to be read; divide the model" in lost[0]
-        monkeypatch.setattr("polhode.files.xml_source.Budget.__init__.__defaults__", (500,))
+        assert "there are more than 1000 files; divide the model" in lost[0]
+        limited(monkeypatch, "elements", 500)
         links = robots.check(robots.read_robot(tmp_path / "m0.sdf"))
         lost = [verdict.reason for verdict in links if verdict.verdict == "unreadable"]
-        assert "elements, those of included files counted" in lost[0]
-        monkeypatch.setattr("polhode.robots.sources._MOST_BYTES", 2000)
+        assert "there are more than 500 elements" in lost[0]
+        limited(monkeypatch, "included bytes", 2000)
         links = robots.check(robots.read_robot(tmp_path / "m0.sdf"))
         assert any("more than" in verdict.reason and "bytes" in verdict.reason for verdict in links)
 

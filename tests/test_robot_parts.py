@@ -208,7 +208,7 @@ class TestMuJoCoParts:
                 '<replicate count="9999"><replicate count="9999"><geom size="1"/></replicate></replicate>',
                 "more than 10000 copies",
             ),
-            ('<attach model="many" prefix="l"/>', "is one of more than 1000 files to be read"),
+            ('<attach model="many" prefix="l"/>', "there are more than 1000 files"),
         ],
     )
     def test_what_is_refused(self, tmp_path: Path, parts: str, says: str) -> None:

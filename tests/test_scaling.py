@@ -6,6 +6,7 @@ import math
 import pickle
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 from ensemble_cases import all_reductions, twisted
@@ -62,17 +63,15 @@ def test_the_table_goes_to_ten_thousand_million() -> None:
 def test_bytes_of_a_member_are_those_that_the_ensemble_tells() -> None:
     orbit = orbits.from_elements(398600.4418, eccentricity=4.25, periapsis=38011.5, since_periapsis=-2e5)
     body = RigidBody.from_principal(1.0, (0.64, 0.97, 1.0))
-    clones = flybys.clones(
-        body, orbit, 4e5, rotation_period=951040.8, precession_period=98591.7, n=CHUNK, chunk=CHUNK
-    )
+    periods: Any = {"rotation_period": 951040.8, "precession_period": 98591.7, "mode": "short-axis"}
+    clones = flybys.clones(body, orbit, 4e5, **periods, n=CHUNK, chunk=CHUNK)
     assert clones.memory.results / len(clones) == BYTES
     of_states = measured("memory of a worker that keeps states", "kB") * 1e3
     assert clones.memory.worker / CHUNK == pytest.approx(of_states, rel=0.02)
     kept = measured("memory of a worker with reductions", "MB") * 1e6
     reduced = flybys.clones(
-        body, orbit, 4e5, rotation_period=951040.8, precession_period=98591.7, n=CHUNK, chunk=CHUNK,
-        reduce=all_reductions()["modes"],
-    )  # fmt: skip
+        body, orbit, 4e5, **periods, n=CHUNK, chunk=CHUNK, reduce=all_reductions()["modes"]
+    )
     assert reduced.memory.worker == pytest.approx(kept, rel=0.1)
 
 

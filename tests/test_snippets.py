@@ -45,12 +45,19 @@ def tensor(six: Any) -> np.ndarray[Any, Any]:
 @pytest.mark.parametrize("program", AROUND)
 def test_our_reader_gives_the_same_bits(program: str) -> None:
     for body in bodies():
+        if program == "mjcf" and body.principal_moments[0] <= 1e-15:
+            continue  # refused, see TestTheEdge
         text = AROUND[program].format(forms.to_text(body, program)).encode()
         robot = parse_robot(text, name="a", folder=Path())
         inertial = robot.links[0].inertial
         assert inertial is not None
         assert inertial.mass == body.mass
         assert np.array_equal(inertial.center_of_mass, body.center_of_mass)
+        if program == "mjcf" and body.principal_moments[0] < 1e-6:  # in principal axes
+            np.testing.assert_allclose(
+                inertial.inertia, body.inertia, rtol=0, atol=1e-15 * body.principal_moments[2]
+            )
+            continue
         assert np.array_equal(inertial.inertia, body.inertia)
 
 

@@ -31,11 +31,11 @@ class TestReports:
         for key, name in (
             ("rotation_period", "rotation"),
             ("precession_period", "precession"),
-            ("flip_period", "flip"),
         ):
             assert found[key] == pytest.approx(getattr(periods, name), rel=1e-14)
             assert found["sigma"][key] == pytest.approx(getattr(periods.sigma, name), rel=1e-6)
             assert found["linear"][key] is True
+        assert "flip_period" not in found
         assert found["sigma"]["mean_precession"] == pytest.approx(periods.sigma.rates.tolist(), rel=1e-6)
         assert found["sigma"]["principal_moments"] == pytest.approx([0.002, 0.0, 0.0], abs=1e-15)
         assert found["sigma"]["omega_start"] == pytest.approx([0.0, 0.0, 0.002], abs=1e-15)

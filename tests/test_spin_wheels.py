@@ -103,7 +103,8 @@ def test_what_it_prints() -> None:
     lines = [" ".join(line.split()) for line in out.splitlines()]
     for line in (
         "mode steady L rests in the body",
-        "period in the body infinite s",
+        "one turn 6.283185 s about an axis at rest in the body",
+        "wobble 24.83647 s of small oscillations of omega in the body",
         "mean precession 1 rad/s of the body about L, but for whole turns in a period",
         "kinetic energy 1 kg m^2/s^2 half of omega.I omega: without the wheels' own",
         "|L| 2.6 kg m^2/s with the wheels",

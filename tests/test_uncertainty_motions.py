@@ -44,7 +44,10 @@ class TestPeriods:
         by_draws = rotation_period(*drawn(40_000, 0.004, 0.003, 1))
         assert periods.rotation == pytest.approx(float(rotation_period(*drawn(1, 0.0, 0.0, 1))[0]), rel=1e-12)
         assert found.rotation == pytest.approx(by_draws.std(), rel=0.015)
-        assert found.flip == pytest.approx(found.rotation / 2, rel=1e-9)
+        assert np.isnan(found.flip)  # its intermediate axis does not turn over
+        assert not found.linear.flip
+        flips: Any = body.free_motion(Uncertain((0.1, 1.0, 0.3), 0.003)).periods
+        assert flips.sigma.flip == flips.sigma.rotation / 2 > 0.0
         assert found.linear.rotation
         assert found.linear.rates.all()
 
@@ -67,11 +70,31 @@ class TestPeriods:
         assert np.isnan(still.sigma.rotation)
         assert not still.sigma.linear.rotation
 
+    def test_of_a_steady_spin_and_of_a_symmetric_body(self) -> None:
+        """What is beside them has another mode, and the periods are continuous: against their formulas."""
+        rng = np.random.default_rng(2).normal(size=(40_000, 3))
+        a, b, c = (BRICK.principal_moments + 0.004 * rng).T
+        body = BRICK.with_sigma(inertia=0.004 * np.eye(3))
+        steady = body.free_motion(Uncertain((0.0, 0.0, 1.1), (0.0, 0.0, 0.003))).periods
+        speed = 1.1 + 0.003 * np.random.default_rng(3).normal(size=40_000)
+        assert steady.sigma.turn == pytest.approx(np.std(2 * np.pi / speed), rel=0.015)
+        wobble = 2 * np.pi / speed / np.sqrt((c - a) * (c - b) / (a * b))
+        assert steady.sigma.wobble == pytest.approx(np.std(wobble), rel=0.02)
+        assert steady.sigma.linear.turn
+        assert np.isnan([steady.sigma.rotation, steady.sigma.precession, steady.sigma.flip]).all()
+        coin = RigidBody.from_principal(1.0, (1.0, 1.0, 1.5))
+        top = coin.free_motion(Uncertain((0.3, 0.0, 1.0), (0.002, 0.0, 0.003))).periods
+        x, z = (mean + sigma * n for mean, sigma, n in ((0.3, 0.002, rng[:, 0]), (1.0, 0.003, rng[:, 1])))
+        assert top.sigma.spin == pytest.approx(np.std(4 * np.pi / z), rel=0.015)
+        assert top.sigma.precession == pytest.approx(np.std(2 * np.pi / np.hypot(x, 1.5 * z)), rel=0.015)
+        assert np.isnan(top.sigma.rotation)
+
     def test_nothing_uncertain_has_no_sigma(self) -> None:
         periods = BRICK.free_motion(SPIN).periods
         assert periods.sigma is None
-        rotation, precession, flip, rates = periods
-        assert rotation == 2 * flip
+        *_, rotation, precession, flip, rates = periods
+        assert rotation == periods.rotation
+        assert np.isnan(flip)
         uncertain = BRICK.free_motion(Uncertain(SPIN, 0.01)).periods
         assert np.array_equal(rates, uncertain.rates)
         again = pickle.loads(pickle.dumps(uncertain))

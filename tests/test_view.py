@@ -56,7 +56,7 @@ def colored(picture: np.ndarray, color: str) -> int:
 class TestBodies:
     def test_a_mesh_and_its_edges(self, pyvista: Any) -> None:
         vertices, faces = cube(2.0)
-        plotter = view.body(vertices * SIDES, faces, length_unit="m")
+        plotter = view.body(vertices * SIDES, faces, length_label="m")
         drawn = plotter.actors["body"].mapper.dataset
         np.testing.assert_allclose(drawn.bounds, np.outer(SIDES, (-1.0, 1.0)).reshape(-1))
         assert drawn.volume == pytest.approx(48.0)

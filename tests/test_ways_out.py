@@ -34,9 +34,6 @@ HANDED_ON = {
     ),
     "files/cad_moments.py": Handed("ValueError", "files/cad_file.py", "{error}; export it again"),
     "files/collada.py": Handed("_FaultError", "files/collada.py", "with_way_out(fault, 'export it again')"),
-    "files/glb.py": Handed(
-        "ValueError", "files/by_trimesh.py", 'with_way_out(reason[:200], "export it again")'
-    ),
     "files/gltf.py": Handed("ValueError", "files/gltf.py", 'with_way_out(reason[:200], "export it again")'),
     "files/molecule_files.py": Handed("_FaultError", "files/molecule_files.py", "with_way_out(error, "),
     "files/plates.py": Handed("ValueError", "files/plates.py", "{error}; is it cut short?"),
@@ -56,6 +53,7 @@ HANDING_ON = (
     "{words}",
     "{problem}",
     "{hint}",
+    "{words_of(error)}",
 )
 """Ends of messages that hand on those of others, which are checked where they are made."""
 EXCEPTIONS = {

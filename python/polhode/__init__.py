@@ -1,4 +1,26 @@
-"""One body in: an inertia you can trust, and exactly how it will spin."""
+"""One body in: an inertia you can trust, and exactly how it will spin.
+
+Start here. A body comes from a shape (:mod:`polhode.solids`, ``laminae``, ``rods``), from a file
+(``RigidBody.from_file``), or from numbers (``RigidBody(mass, inertia)``):
+
+>>> from polhode import solids
+>>> brick = solids.box((3.0, 2.0, 1.0), mass=12.0)
+>>> brick.principal_moments
+array([ 5., 10., 13.])
+
+It tells its energy, its angular momentum and its motion:
+
+>>> brick.kinetic_energy((0.0, 0.0, 2.0)).total
+26.0
+>>> brick.free_motion((0.01, 1.0, 0.0)).mode
+'long-axis'
+>>> brick.simulate([0.0, 10.0], (0.01, 1.0, 0.0)).omega.shape
+(2, 3)
+
+Loads act on it while it is simulated (``help(polhode.loads)``), and every function has an example:
+``help(polhode.RigidBody)``, ``help(polhode.RigidBody.simulate)``. On the command line, ``polhode --help``
+lists the commands.
+"""
 
 from typing import TYPE_CHECKING
 

@@ -25,7 +25,7 @@ from polhode.results import (
     Sigma,
 )
 from polhode.trajectory import Trajectory
-from polhode.uncertainty.motions import PeriodsSigma
+from polhode.uncertainty.motions import FromPeriods, PeriodsSigma
 
 __all__ = [
     "FreeMotion",
@@ -177,6 +177,8 @@ class FreeMotion:
     def periods(self) -> Periods: ...
     def _periods_sigma(self) -> PeriodsSigma | None: ...
     @property
+    def _from_periods(self) -> FromPeriods | None: ...
+    @property
     def nutation(self) -> _Floats: ...
     @property
     def cones(self) -> Cones: ...
@@ -193,6 +195,7 @@ class FreeMotion:
         omega: ArrayLike,
         quaternion: ArrayLike,
         uncertain_start: tuple[Uncertain | None, Uncertain | None],
+        from_periods: FromPeriods | None = None,
     ) -> FreeMotion: ...
     def __copy__(self) -> FreeMotion: ...
     def __deepcopy__(self, memo: object, /) -> FreeMotion: ...
@@ -500,9 +503,9 @@ class RigidBody:
     def free_motion(self, omega: _Numbers, attitude: _Attitude | Uncertain | None = None) -> FreeMotion: ...
     def free_motion_from_periods(
         self,
-        rotation_period: ArrayLike,
-        precession_period: ArrayLike,
-        mode: Literal["long-axis", "short-axis"] = "long-axis",
+        rotation_period: ArrayLike | Uncertain,
+        precession_period: ArrayLike | Uncertain,
+        mode: Literal["long-axis", "short-axis"],
         sense: float = 1.0,
         phase: ArrayLike = 0.0,
         angular_momentum_direction: ArrayLike = (0.0, 0.0, 1.0),

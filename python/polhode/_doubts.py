@@ -11,6 +11,7 @@ from polhode import _core
 from polhode._from_zero import runs_from_zero
 from polhode._repr import short
 from polhode._rows import rows_of
+from polhode._variables import angles_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -206,7 +207,7 @@ def _forms(self: Trajectory) -> tuple[Floats | None, dict[tuple[int, ...], int]]
         # Its small angles are about fixed axes; those of the derivatives about the body's.
         starts = self.quaternion[..., 0, :].reshape(-1, 4)
         for k, start in enumerate(starts):
-            for axis, form in zip(np.eye(3), attitude._forms(), strict=True):
+            for axis, form in zip(np.eye(3), angles_of(attitude, stack, k), strict=True):
                 local = by_state[k][:, :, :3] @ _core.rotate(start, axis, inverse=True)
                 for words, step in form:
                     terms.append((k, columns.setdefault(tuple(words), len(columns)), local * step))

@@ -7,12 +7,21 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from polhode import _core
+from polhode._lengths import lengths
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from polhode.results import MotionSensitivity
     from polhode.trajectory import Trajectory
+
+    Floats = NDArray[np.float64]
+
+_OF_THE_MOTION = ("omega", "attitude", "position", "velocity", "about")
+"""Arguments of a start that a motion has already."""
+
+_ROUNDING = 1e-12
+"""An angular momentum that differs by less, relative to its parts, is the same."""
 
 __all__ = ["resume", "sensitivity"]
 
@@ -106,27 +115,46 @@ def sensitivity(self: Trajectory, method: Literal["series", "differences"] = "se
 
 
 def resume(self: Trajectory, t: ArrayLike, **options: Any) -> Trajectory:
-    """Go on from the last state under the same load.
+    """Go on from the last state under the same load, or under another one.
+
+    The clock of the motion goes on too: orbits without an epoch and controllers with a period count from the
+    first time of the motion, in every load and however often it is resumed.
 
     Parameters
     ----------
     t : array_like, shape (T,)
         Times as in `simulate`; the first must be the last of this motion.
     **options
-        Further arguments of :meth:`polhode.RigidBody.simulate`, such as `method` and `rtol`; if another
-        `load` is given, its states begin anew.
+        Further arguments of :meth:`polhode.RigidBody.simulate`, such as `method` and `rtol`. States of
+        another `load` go on from those of the same name and number, so that wheels keep their momentum; the
+        others begin anew. `states` sets some of them. The angular momentum of wheels, rotors and slugs must
+        not jump.
 
     Returns
     -------
     Trajectory
 
+    Raises
+    ------
+    ValueError
+        If another load, or `states`, makes the total angular momentum jump: the wheels of the motion are
+        missing in it, or it has others that turn.
+
     Examples
     --------
-    >>> from polhode import RigidBody
+    >>> from polhode import RigidBody, loads
     >>> body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
     >>> first = body.simulate([0, 1], omega=(0, 0, 1))
     >>> first.resume([1, 2]).quaternion[-1].round(6)
     array([0.      , 0.      , 0.841471, 0.540302])
+
+    A thruster fires for a second; the wheel goes on:
+
+    >>> wheel = loads.wheel((0, 0, 1), inertia=0.5, torque=0.1)
+    >>> first = body.simulate([0, 1], omega=(0, 0, 0), load=wheel)
+    >>> fires = first.resume([1, 2], load=wheel + loads.constant_torque((0, 0, 0.3)))
+    >>> fires.states["wheel"][-1].round(9), fires.angular_momentum().spin[-1].round(9)
+    (array([0.2]), array([0. , 0. , 0.3]))
     """
     start = _core.real_numbers(t, "t").reshape(-1)[:1]
     state, last = self.state(), self.t.reshape(-1)[-1:]
@@ -134,17 +162,52 @@ def resume(self: Trajectory, t: ArrayLike, **options: Any) -> Trajectory:
         raise ValueError(f"t: the motion goes on from t = {float(last[0])!r}, got {start.tolist()}")
     if np.isnan(state.omega).any():
         raise ValueError("resume: the last state is not known, since the run did not come to the last time")
-    given = state._asdict()
-    if "load" in options:
-        del given["states"]  # another load has others
-    else:
-        load = self._acting("resume", -1)
-        if load is not None:
-            options["load"] = load.anchored(float(self.t.flat[0]))
-    options.setdefault("about", self._about_word())
+    about = self._about_word()
+    for name in _OF_THE_MOTION:
+        if name in options and not (name == "about" and options[name] == about):
+            raise TypeError(
+                f"resume: {name}: the motion goes on from its own state; for another one begin anew: "
+                f"body.simulate(t, **motion.state()._asdict() | {{{name!r}: ...}})"
+            )
+    given = state._asdict() | {"about": about}
     if self.pivoted:
         del given["velocity"]
+    began = self.__dict__.get("_began", float(self.t.flat[0]))
+    is_another = "load" in options or "states" in options
+    load = options.pop("load") if "load" in options else self._acting("resume", -1)
+    if isinstance(load, _core.Load):
+        load = load.anchored(began)
+    known = load.states if isinstance(load, _core.Load) else {}
+    states = {
+        name: values
+        for name, values in (state.states or {}).items()
+        if known.get(name) == np.shape(values)[-1]
+    }
+    own = options.pop("states", None)
+    given |= {"load": load, "states": (states | dict(own) if own is not None else states) or None}
+    if is_another:
+        _check_momentum(self, start, given)
     run = self.body.simulate(t, **given | options)
+    run.__dict__["_began"] = began
     if self.uncertain_start != (None, None) or self.body._doubts() is not None:
         run.__dict__["uncertain_start"] = None  # the last state is uncertain, together with the body
     return run
+
+
+def _check_momentum(self: Trajectory, start: Floats, given: dict[str, Any]) -> None:
+    """Refuse a start under another load at which the total angular momentum would jump."""
+    first = self.body.simulate(start, **given)
+    nothing = np.zeros_like(first.omega[..., 0, :])
+    was = nothing if self.carried is None else self.carried[0][..., -1, :]
+    now = nothing if first.carried is None else first.carried[0][..., 0, :]
+    body = lengths(first.angular_momentum("body").spin[..., 0, :] - now)
+    off = now - was
+    jumps = lengths(off) > _ROUNDING * (lengths(now) + lengths(was) + body)
+    if np.any(jumps):
+        into, of = (np.broadcast_to(one, off.shape)[jumps][0].tolist() for one in (now, was))
+        raise ValueError(
+            f"load: the total angular momentum would jump at t = {float(start[0])!r}: what the body "
+            f"carries along, wheels, rotors and slugs, has {of} now and {into} under this load. Wheels of "
+            "the same name keep their state: add to the load of the motion, load=motion.load + other, name "
+            "wheels as before, and give new ones no rate; or begin another motion with simulate"
+        )

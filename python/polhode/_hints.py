@@ -1,14 +1,31 @@
-"""Other names of what the package has: each is refused with the name here."""
+"""Names and arguments that others have: each is refused with what to write here.
+
+Names of modules, attributes of classes and arguments of functions have one table each, here alone; the
+extension asks it too. A message is not a second spelling: only what it names works.
+"""
 
 from __future__ import annotations
 
+import inspect
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, Final
+from functools import wraps
+from typing import TYPE_CHECKING, Any, Final, ParamSpec, TypeVar
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable, Mapping
 
-__all__ = ["no_attribute", "no_name"]
+__all__ = [
+    "Hinting",
+    "check_kind",
+    "explain_calls",
+    "no_attribute",
+    "no_keyword",
+    "no_name",
+    "with_hints",
+]
+
+_Takes = ParamSpec("_Takes")
+_Returns = TypeVar("_Returns")
 
 _OF_MODULES: Final = {
     "polhode": {
@@ -21,6 +38,58 @@ _OF_MODULES: Final = {
         "torques": "loads is the module of torques and forces",
         "bodies": "solids, laminae and rods are the modules of shapes",
         "shapes": "solids, laminae and rods are the modules of shapes",
+    },
+    "polhode.loads": {
+        "torque": 'constant_torque((0, 0, 1), "body") is one, torque_callback(f) takes a function',
+        "force": 'constant_force((0, 0, 1), "body") is one, callback(f) takes a function',
+        "gravity": "uniform_gravity((0, 0, -9.81)) is one",
+        "weight": "uniform_gravity((0, 0, -9.81)) is one",
+        "drag": "damping(matrix, quadratic=...) is one",
+        "friction": "damping(matrix) is one; a wheel has friction=",
+        "control": "feedback(K, D, target=...) is one",
+        "pid": "feedback(K, D, target=...) has no integral term; with_states(...) takes any controller",
+        "reaction_wheel": "wheel(axis, inertia) is one",
+        "flywheel": "wheel(axis, inertia) is one",
+        "magnetorquer": "magnetic(dipole, field) is one",
+        "table": "sampled(t, torque) takes one",
+        "function": "torque_callback(f) takes one",
+    },
+    "polhode.orbits": {
+        "circular": "from_elements(mu, semi_major_axis=..., eccentricity=0.0) makes one",
+        "elements": "from_elements(mu, ...) takes them",
+        "from_state": "kepler(mu, position, velocity) takes one",
+        "from_samples": "sampled(mu, t, position) takes them",
+    },
+    "polhode.euler_angles": {
+        "from_matrix": "from_quaternion takes a quaternion, which SciPy's Rotation computes of a matrix",
+        "to_matrix": "to_quaternion(angles) is a quaternion, of which SciPy's Rotation computes a matrix",
+        "omega": "angular_velocity(angles, rates) is it",
+    },
+    "polhode.kinematics": {
+        "angular_velocity": "euler_angles.angular_velocity(angles, rates) is that of Euler angles",
+        "point_velocity": "RigidBody.point_velocity(point, omega) is it",
+        "velocity": "RigidBody.point_velocity(point, omega) is it",
+    },
+    "polhode.robots": {
+        "load": 'read_robot("robot.urdf") reads a file',
+        "read": 'read_robot("robot.urdf") reads a file',
+        "from_file": 'read_robot("robot.urdf") reads a file',
+        "fix": "fixed(robot, verdicts) makes the bytes of a better file",
+        "validate": "check(robot) is it",
+    },
+    "polhode.plot": {
+        "trajectory": "angular_velocity(trajectory) draws one, Trajectory.animate(path) moves it",
+        "omega": "angular_velocity(trajectory) draws it",
+        "energy": "invariants(trajectory) draws it",
+        "inertia_ellipsoid": "ellipsoid(body) draws it",
+    },
+    "polhode.symbolic": {
+        **dict.fromkeys(
+            ("box", "cone", "cube", "cylinder", "ellipsoid", "sphere", "disk", "rod", "ring"),
+            'shape(name) makes one, as shape("cone"); names() lists them',
+        ),
+        "inertia": 'shape("cone").inertia is the tensor of a cone',
+        "euler_equations": "torque(inertia, omega, angular_acceleration) are they",
     },
     "polhode.solids": {
         "cuboid": "box((x, y, z)) is one",
@@ -72,38 +141,245 @@ _OF_MODULES: Final = {
 }
 """What people look for in a module, and what they find instead."""
 
-_OF_MOTIONS: Final = {
-    "energy": "kinetic_energy() gives it, and its .total the sum; invariants().energy adds the potential",
-    "to_dataframe": "to_pandas() gives a DataFrame",
-    "to_df": "to_pandas() gives a DataFrame",
-    "to_csv": 'save("motion.csv") writes it',
-    "to_dict": 'vars() of it are its arrays; save("motion.json") writes them',
-    "to_dataset": "to_xarray() gives a Dataset",
-    "times": "t is it",
-    "time": "t is it",
-    "attitude": "quaternion is it, or rotation as SciPy's",
-    "quaternions": "quaternion is it",
-    "angular_velocity": "omega is it",
-    "omegas": "omega is it",
-    "y": "omega and quaternion are the states",
+_OF_CLASSES: Final = {
+    "Trajectory": {
+        "energy": "kinetic_energy() gives it, and its .total the sum; invariants().energy adds the potential",
+        "to_dataframe": "to_pandas() gives a DataFrame",
+        "to_df": "to_pandas() gives a DataFrame",
+        "to_csv": 'save("motion.csv") writes it',
+        "to_dict": 'vars() of it are its arrays; save("motion.json") writes them',
+        "to_dataset": "to_xarray() gives a Dataset",
+        "times": "t is it",
+        "time": "t is it",
+        "attitude": "quaternion is it, or rotation as SciPy's",
+        "quaternions": "quaternion is it",
+        "angular_velocity": "omega is it",
+        "omegas": "omega is it",
+        "y": "omega and quaternion are the states",
+        "load_file": "Trajectory.from_file(path) reads what save wrote",
+        "load": "Trajectory.from_file(path) reads what save wrote",
+        "read": "Trajectory.from_file(path) reads what save wrote",
+        "periods": "body.free_motion(omega).periods has them, of a body without a load",
+        "mode": "body.free_motion(omega).mode is it, of a body without a load",
+    },
+    "FreeMotion": {
+        "omega_at": "at(t).omega is it",
+        "attitude_at": "at(t).quaternion is it",
+        "evaluate": "at(t) is the motion at these times",
+        "simulate": "at(t) is the motion at these times",
+        "period": "periods has them",
+        "energy": "kinetic_energy is it",
+        "t": "at(t) is the motion at these times; the start is 0",
+    },
+    "RigidBody": {
+        "energy": "kinetic_energy(omega) gives it, and its .total the sum",
+        **dict.fromkeys(("com", "center", "centre_of_mass", "centroid", "cog"), "center_of_mass is it"),
+        "moments": "principal_moments are they",
+        **dict.fromkeys(("axes", "principal_axes"), "principal.axes are they"),
+        **dict.fromkeys(
+            ("moment_of_inertia", "inertia_tensor", "tensor", "I"),
+            "inertia is the tensor about the centre of mass, inertia_about(point) that about another",
+        ),
+        "inertia_at": "inertia_about(point) is the tensor about a point",
+        "moment": "moment_about(axis) is that about an axis",
+        **dict.fromkeys(
+            ("translate", "move", "moved", "shift", "shifted"),
+            "translated(displacement) is the moved body",
+        ),
+        **dict.fromkeys(("rotate", "turn", "turned"), "rotated(rotation) makes the turned body"),
+        **dict.fromkeys(("scale", "resize"), "scaled(length=..., mass=...) makes the scaled body"),
+        **dict.fromkeys(
+            ("spin", "motion"),
+            "free_motion(omega) is the motion in closed form, simulate(t, omega) that with loads",
+        ),
+        "m": "mass is it",
+        "volume": "a body keeps mass and moments alone: polhode report FILE prints the volume of a mesh",
+        "density": "a body keeps mass and moments alone",
+        "gyration": "radii_of_gyration are they",
+        "radius_of_gyration": "radii_of_gyration are they",
+        **dict.fromkeys(("load", "read"), "RigidBody.from_file(path) reads a file"),
+    },
 }
-"""What people look for in a motion."""
+"""What people look for in an object, and what they find instead; FreeMotion stands for all closed forms."""
+
+_OTHER_ARGUMENTS: Final = {
+    "center_of_mass": ("center", "centre", "centre_of_mass", "com", "cog", "center_of_gravity"),
+    "mass": ("m", "weight"),
+    "density": ("rho", "material"),
+    "inertia": ("I", "J", "tensor", "inertia_tensor"),
+    "moments": ("inertia", "principal_moments"),
+    "omega": ("w", "angular_velocity", "rate", "rates"),
+    "attitude": ("q", "quaternion", "orientation", "rotation"),
+    "load": ("loads", "torque", "force"),
+    "height": ("h", "length"),
+    "length": ("height", "l", "L"),
+    "radius": ("r", "R", "a"),
+    "inner_radius": ("r", "r1", "inner"),
+    "outer_radius": ("R", "r2", "outer", "radius"),
+    "size": ("sizes", "dimensions", "lengths", "sides", "edges", "shape", "extents"),
+    "side": ("a", "edge", "size", "length"),
+    "semi_axes": ("radii", "axes", "size"),
+    "vertices": ("points", "corners"),
+    "points": ("vertices", "corners"),
+    "gravity": ("g", "acceleration"),
+    "matrix": ("coefficient", "c", "D", "damping"),
+    "vector": ("torque", "force"),
+    "axis": ("direction",),
+    "position": ("r",),
+    "velocity": ("v",),
+    "t": ("time", "times"),
+}
+"""Names under which people look for an argument, by the argument."""
+
+_INSTEAD: Final = {
+    "diameter": "half of it is the radius",
+    "gravity": "it is a load: load=loads.uniform_gravity((0, 0, -9.81))",
+}
+"""Arguments that no other argument replaces as it is."""
+
+_LABELS: Final = {
+    "time_unit": "time_label",
+    "rate_unit": "rate_label",
+    "energy_unit": "energy_label",
+    "length_unit": "length_label",
+    "unit": "momentum_label",
+}
+"""Words at axes, by the names of units, as which they would have to convert numbers."""
+
+_MADE_BY: Final = {
+    ("FreeMotion", "Trajectory"): "trajectory.body.free_motion(trajectory.omega[0]) is one, without a load",
+    ("FreeMotion", "RigidBody"): "body.free_motion(omega) is one",
+    ("Trajectory", "FreeMotion"): "motion.at(t) is one",
+    ("Trajectory", "GyrostatMotion"): "motion.at(t) is one",
+    ("Trajectory", "HeavyTop"): "motion.at(t) is one",
+    ("Trajectory", "RigidBody"): "body.simulate(t, omega) is one",
+    ("Gyrostat", "RigidBody"): "body.gyrostat(momentum) is one",
+    ("Robot", "str"): 'robots.read_robot("robot.urdf") reads one',
+    ("Robot", "path"): "robots.read_robot(path) reads one",
+    ("RigidBody", "str"): "RigidBody.from_file(path) reads one",
+    ("RigidBody", "path"): "RigidBody.from_file(path) reads one",
+    ("RigidBody", "Trajectory"): "trajectory.body is its body",
+    ("RigidBody", "FreeMotion"): "motion.body is its body",
+}
+"""How something of a kind is made of what was given instead of it."""
+
+
+class Hinting(type):
+    """A class whose missing attributes are refused with what to write instead."""
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(cls, name: str) -> Any:
+            """Refuse a name of others."""
+            raise no_attribute(cls.__name__, name, dir(cls), f"type object {cls.__name__!r}")
+
+
+def _or_nearest(way_out: str | None, name: str, known: Iterable[str]) -> str:
+    if way_out is None and not name.startswith("_"):
+        near = get_close_matches(name, [one for one in known if not one.startswith("_")], 1)
+        way_out = f"did you mean {near[0]}?" if near else None
+    return f"; {way_out}" if way_out else ""
 
 
 def no_name(module: str, name: str, known: Iterable[str]) -> AttributeError:
-    """Give the error for a name that a module does not have, with what is meant by it."""
-    way_out = _OF_MODULES[module].get(name)
-    if way_out is None and not name.startswith("_"):
-        near = get_close_matches(name, list(known), 1)
-        way_out = f"did you mean {near[0]}?" if near else None
-    return AttributeError(
-        f"module {module!r} has no attribute {name!r}{f'; {way_out}' if way_out else ''}", name=name
+    """Make the error for a name that a module does not have, with what is meant by it."""
+    way_out = _or_nearest(_OF_MODULES.get(module, {}).get(name), name, known)
+    return AttributeError(f"module {module!r} has no attribute {name!r}{way_out}", name=name)
+
+
+def no_attribute(kind: str, name: str, known: Iterable[str], what: str | None = None) -> AttributeError:
+    """Make the error for an attribute that objects of a class do not have, with what is meant by it."""
+    table = _OF_CLASSES.get("FreeMotion" if kind in ("HeavyTop", "GyrostatMotion") else kind, {})
+    way_out = _or_nearest(table.get(name), name, known)
+    return AttributeError(f"{what or f'{kind!r} object'} has no attribute {name!r}{way_out}", name=name)
+
+
+def no_keyword(function: str, given: str, known: Iterable[str]) -> TypeError:
+    """Make the error for a keyword that a function does not take, with the one that is meant."""
+    known = list(known)
+    meant = [name for name, others in _OTHER_ARGUMENTS.items() if name in known and given in others]
+    meant = meant or get_close_matches(given, known, 1)
+    if _LABELS.get(given) in known:
+        way_out = f"write {_LABELS[given]}=, which is a word in the picture and converts no number"
+    elif given in _INSTEAD:
+        way_out = _INSTEAD[given]
+    else:
+        way_out = f"did you mean {meant[0]}=?" if meant else f"it takes {', '.join(known)}"
+    return TypeError(f"{function}() got an unexpected keyword argument {given!r}; {way_out}")
+
+
+def check_kind(value: object, argument: str, *kinds: str) -> None:
+    """Refuse an argument that is of another class than those named, with how one is made of it."""
+    if not {kind.__name__ for kind in type(value).__mro__}.isdisjoint(kinds):
+        return
+    got = "path" if hasattr(value, "__fspath__") else type(value).__name__
+    ways_out = [_MADE_BY[kind, got] for kind in kinds if (kind, got) in _MADE_BY]
+    raise TypeError(
+        f"{argument}: expected {' or '.join(kinds)}, got {type(value).__name__}"
+        f"{f'; {ways_out[0]}' if ways_out else ''}"
     )
 
 
-def no_attribute(name: str) -> AttributeError:
-    """Give the error for an attribute that a motion does not have."""
-    way_out = _OF_MOTIONS.get(name)
-    return AttributeError(
-        f"'Trajectory' object has no attribute {name!r}{f'; {way_out}' if way_out else ''}", name=name
-    )
+def explain_calls(names: dict[str, Any], public: Iterable[str]) -> None:
+    """Let the functions of a module say what to write instead of arguments that they do not take.
+
+    Parameters
+    ----------
+    names : dict
+        The names of the module; its functions are replaced.
+    public : iterable of str
+        The names of the functions.
+    """
+    for name in public:
+        if inspect.isroutine(names[name]):
+            explained = with_hints(names[name], name)
+            explained.__name__ = explained.__qualname__ = name
+            explained.__module__ = names["__name__"]
+            names[name] = explained
+
+
+def with_hints(function: Callable[_Takes, _Returns], name: str | None = None) -> Callable[_Takes, _Returns]:
+    """Let a function say what to write instead of arguments that it does not take."""
+
+    @wraps(function)
+    def call(*args: _Takes.args, **kwargs: _Takes.kwargs) -> _Returns:
+        try:
+            return function(*args, **kwargs)
+        except TypeError:
+            error = _wrong_arguments(function, name or function.__name__, args, kwargs)
+            if error is None:
+                raise
+        raise error
+
+    return call
+
+
+def _wrong_arguments(
+    function: Callable[..., Any], name: str, args: tuple[Any, ...], kwargs: Mapping[str, Any]
+) -> TypeError | None:
+    """Make the error for arguments that do not fit the signature; None where they fit."""
+    every = inspect.signature(function).parameters
+    parameters = {
+        key: one for key, one in every.items() if one.kind not in (one.VAR_POSITIONAL, one.VAR_KEYWORD)
+    }
+    unknown = [key for key in kwargs if key not in parameters]
+    if unknown and not any(one.kind is one.VAR_KEYWORD for one in every.values()):
+        return no_keyword(name, unknown[0], parameters)
+    places = [one.name for one in parameters.values() if one.kind is not one.KEYWORD_ONLY]
+    if len(args) > len(places) and not any(one.kind is one.VAR_POSITIONAL for one in every.values()):
+        by_name = [f"{key}=" for key in parameters if key not in places]
+        takes = f"takes {', '.join(places)}" + (f", then by name {', '.join(by_name)}" if by_name else "")
+        if places in (["size"], ["semi_axes"], ["gravity"]):
+            takes = f"takes its numbers as one argument: {name}(({', '.join(map(repr, args))}), ...)"
+        return TypeError(f"{name}() {takes}; {len(args)} arguments were given without a name")
+    twice = [key for key in places[: len(args)] if key in kwargs]
+    if twice:
+        return TypeError(f"{name}() got {twice[0]} twice: by its place and by its name; leave one out")
+    needed = [
+        one.name
+        for one in parameters.values()
+        if one.default is one.empty and one.name not in kwargs and one.name not in places[: len(args)]
+    ]
+    if needed:
+        return TypeError(f"{name}() needs {', '.join(f'{each}=' for each in needed)} too; give it")
+    return None

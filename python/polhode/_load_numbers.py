@@ -42,7 +42,8 @@ def recipes(load: _core.Load | None) -> list[Recipe]:
 def known_states(load: _core.Load | None, made: list[Recipe]) -> set[str]:
     """Name the states that can be nothing else: the wheels whose speed is given."""
     names = iter(load.states if load is not None else ())
-    own = [(recipe, next(names, "")) for recipe in made if recipe[0] in ("wheel", "slug")]
+    plain = (_unwrapped(recipe)[1] for recipe in made)
+    own = [(recipe, next(names, "")) for recipe in plain if recipe[0] in ("wheel", "slug")]
     return {name for (kind, given), name in own if kind == "wheel" and given[-1]["speed"] is not None}
 
 

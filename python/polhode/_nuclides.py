@@ -15,11 +15,21 @@ from polhode.errors import PolhodeError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["Isotope", "Masses", "isotopes", "names_of", "uncertain_masses"]
+__all__ = ["SYMBOLS", "Isotope", "Masses", "isotopes", "names_of", "shifted_mass_number", "uncertain_masses"]
 
 Masses: TypeAlias = Literal["most_common", "average"]
 
-_LABEL: Final = re.compile(r"(?P<mass_number>\d+)?(?P<symbol>[A-Za-z]{1,2})|(?P<number>\d+)")
+SYMBOLS: Final = tuple(
+    """
+    H He Li Be B C N O F Ne Na Mg Al Si P S Cl Ar K Ca Sc Ti V Cr Mn Fe Co Ni Cu Zn Ga Ge As Se Br Kr Rb Sr Y
+    Zr Nb Mo Tc Ru Rh Pd Ag Cd In Sn Sb Te I Xe Cs Ba La Ce Pr Nd Pm Sm Eu Gd Tb Dy Ho Er Tm Yb Lu Hf Ta W Re
+    Os Ir Pt Au Hg Tl Pb Bi Po At Rn Fr Ra Ac Th Pa U Np Pu Am Cm Bk Cf Es Fm Md No Lr Rf Db Sg Bh Hs Mt Ds Rg
+    Cn Nh Fl Mc Lv Ts Og
+    """.split()  # noqa: SIM905
+)
+"""Of all elements, by atomic number from 1; files are read with them where no periodictable is installed."""
+
+_LABEL: Final = re.compile(r"(?P<mass_number>[0-9]{1,9})?(?P<symbol>[A-Za-z]{1,2})|(?P<number>[0-9]{1,9})")
 _HYDROGEN: Final = {"D": 2, "T": 3}
 
 
@@ -113,6 +123,37 @@ def _isotope(table: Any, label: str, masses: Masses) -> Isotope:
     is_the_unit = (element.symbol, mass_number) == ("C", 12)  # u is a twelfth of it
     sigma = 0.0 if is_the_unit else _sigma(nuclide)
     return Isotope(f"{mass_number}{element.symbol}", float(nuclide.mass), sigma)
+
+
+def shifted_mass_number(symbol: str, difference: int) -> int:
+    """Find the mass number that differs from an element's own by so much.
+
+    Parameters
+    ----------
+    symbol : str
+    difference : int
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    PolhodeError
+        If the element's own is not clear: where its average mass, rounded, is not that of its most common
+        isotope, some programs count from the one and some from the other.
+    ModuleNotFoundError
+        If periodictable is not installed.
+    """
+    table = require("periodictable", extra="chem", purpose="reading isotope masses").elements
+    (own,) = isotopes([symbol])
+    common, average = round(own.mass), round(table.symbol(symbol).mass)
+    if common != average:
+        raise PolhodeError(
+            f"the mass difference {difference} of {symbol} may count from {common} or from {average}; "
+            "write the isotope as 'M  ISO'"
+        )
+    return common + difference
 
 
 def _sigma(of: Any) -> float | None:

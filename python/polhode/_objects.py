@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from polhode import _core
+from polhode._bonds import crossings_of
+from polhode.errors import PolhodeError
 from polhode.molecules import body_of_atoms, isotopes
 
 if TYPE_CHECKING:
@@ -54,9 +57,13 @@ def body_from_atoms(
         if conformer is not None:
             raise ValueError("conformer: only an RDKit molecule has some")
         positions = atoms.get_positions()
+        cell = _cell_of(atoms)
         was_set = hasattr(atoms, "has") and atoms.has("masses")  # by ASE's set_masses
         if was_set or not hasattr(atoms, "get_chemical_symbols"):
-            return body_of_atoms(atoms.get_masses(), positions, source="own")
+            body = body_of_atoms(atoms.get_masses(), positions, source="own")
+            if hasattr(atoms, "get_chemical_symbols"):
+                _warn_of_crossings(atoms.get_chemical_symbols(), positions, cell)
+            return body
         labels = atoms.get_chemical_symbols()
     elif hasattr(atoms, "GetAtoms") and hasattr(atoms, "GetConformer"):
         if not atoms.GetNumConformers():
@@ -64,12 +71,49 @@ def body_from_atoms(
                 "atoms: the molecule has no conformer, and so no positions; "
                 "rdkit.Chem.AllChem.EmbedMolecule makes one"
             )
+        cell = None
         labels = [f"{atom.GetIsotope() or ''}{atom.GetSymbol()}" for atom in atoms.GetAtoms()]
-        positions = atoms.GetConformer(-1 if conformer is None else conformer).GetPositions()
+        shape = atoms.GetConformer(-1 if conformer is None else conformer)
+        positions = shape.GetPositions()
+        _check_rdkit(atoms, shape)
     else:
         raise TypeError(
             f"atoms: expected ASE's Atoms or RDKit's Mol, got {type(atoms).__name__}; "
             "RigidBody.from_particles takes masses and positions"
         )
-    found = [isotope.mass for isotope in isotopes(labels, masses)]
-    return body_of_atoms(found, positions, source=masses)
+    found = isotopes(labels, masses)
+    body = body_of_atoms([isotope.mass for isotope in found], positions, source=masses)
+    _warn_of_crossings(found, positions, cell)
+    return body
+
+
+def _check_rdkit(molecule: Any, conformer: Any) -> None:
+    """Refuse a drawing, and warn of hydrogens that are counted and stand nowhere."""
+    if hasattr(conformer, "Is3D") and not conformer.Is3D() and not np.any(conformer.GetPositions()[:, 2]):
+        raise PolhodeError(
+            "atoms: the conformer is a drawing in the plane, not a geometry; make one with "
+            "rdkit.Chem.AddHs and rdkit.Chem.AllChem.EmbedMolecule. If it is one: conformer.Set3D(True)"
+        )
+    if not hasattr(molecule, "NeedsUpdatePropertyCache") or molecule.NeedsUpdatePropertyCache():
+        return  # no valences are known yet
+    if molecule.GetNumBonds() == 0 and molecule.GetNumAtoms() > 1:
+        return  # as of a molecule from XYZ, whose bonds nobody stated
+    if implicit := sum(atom.GetTotalNumHs() for atom in molecule.GetAtoms()):
+        warnings.warn(
+            f"atoms: {implicit} hydrogens have no positions, so mass and moments are without them; "
+            "rdkit.Chem.AddHs(molecule, addCoords=True) adds them",
+            stacklevel=3,
+        )
+
+
+def _cell_of(atoms: Any) -> Any:
+    """Give the vectors along which ASE's atoms repeat; None where they do not."""
+    if not (hasattr(atoms, "get_pbc") and hasattr(atoms, "get_cell") and np.any(atoms.get_pbc())):
+        return None
+    return np.asarray(atoms.get_cell())[np.asarray(atoms.get_pbc(), dtype=bool)]
+
+
+def _warn_of_crossings(labels: Any, positions: Any, cell: Any) -> None:
+    if cell is not None:
+        for note in crossings_of(labels, positions, cell)[1]:
+            warnings.warn(f"atoms: {note}", stacklevel=3)

@@ -125,7 +125,7 @@ def view(self: Trajectory, plotter: Plotter | None = None, **options: Any) -> Pl
     plotter : pyvista.Plotter, optional
         Where to show it; a new one by default.
     **options
-        `at`, `shape`, `duration`, `title` and `time_unit`, see :func:`polhode.view.motion`.
+        `at`, `shape`, `duration`, `title` and `time_label`, see :func:`polhode.view.motion`.
 
     Returns
     -------
@@ -146,7 +146,7 @@ def animate(self: Trajectory, path: str | PathLike[str], **options: Any) -> Path
         ``.html``: an interactive page that needs nothing else; ``.gif``: needs matplotlib;
         ``.mp4``: needs also the program ffmpeg, which the extra ``film`` brings.
     **options
-        `shape`, `frames`, `duration`, `title`, `time_unit`, `size`, `fps`, `labels` and `progress`, see
+        `shape`, `frames`, `duration`, `title`, `time_label`, `size`, `fps`, `labels` and `progress`, see
         :func:`polhode.animation.animate`.
 
     Returns

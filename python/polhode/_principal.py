@@ -77,7 +77,7 @@ class PrincipalAxes:
         Principal moments, ascending.
     axes : numpy.ndarray, shape (..., 3, 3)
         The axes are the **columns**, right-handed: ``inertia = axes @ diag(moments) @ axes.T`` and
-        ``v_body = axes @ v_principal``.
+        ``v_body = axes @ v_principal``. Where moments are equal, to rounding, the axes nearest to the body axes.
     top_rtol : float or numpy.ndarray, shape (..., 3)
         Tolerance of `top`: differences of moments below `top_rtol` times the largest moment count as zero. It
         is 1e-6 for most bodies. For a molecule from a file with few digits it is three numbers, one for each
@@ -152,12 +152,13 @@ class PrincipalAxes:
         return _core.ray_kappa(self.moments)
 
     def canonical(self, rtol: float = 1e-6) -> PrincipalAxes:
-        """Choose principal axes near the body axes where equal moments leave the choice open.
+        """Choose the principal axes nearest to the body axes where nearly equal moments leave the choice open.
 
         If two moments are equal, every pair of perpendicular axes in their plane is a pair of principal axes.
-        The pair chosen here has as its first axis the projection onto the plane of that body axis whose
-        projection is longest. For a spherical top, where any axes are principal axes, the body axes
-        themselves are chosen.
+        The pair chosen here has the largest sum of the cosines of the angles between the k-th principal axis
+        and the k-th body axis. For a spherical top, where any axes are principal axes, the body axes themselves
+        are chosen. `axes` are chosen in this way already where rounding alone keeps moments apart; this
+        method does it for moments that differ by more.
 
         Parameters
         ----------
@@ -172,7 +173,7 @@ class PrincipalAxes:
         Examples
         --------
         >>> from polhode import principal_axes
-        >>> principal_axes([(2.0, 0, 0), (0, 1.0, 0), (0, 0, 2.0)]).canonical().axes
+        >>> principal_axes([(2.0, 0, 0), (0, 1.0, 0), (0, 0, 2.0 + 1e-9)]).canonical().axes
         array([[ 0.,  1.,  0.],
                [ 1.,  0.,  0.],
                [ 0.,  0., -1.]])

@@ -1,10 +1,10 @@
-"""Numbers beside their standard deviations, rounded as is usual: two digits of sigma."""
+"""Numbers as they are told: beside their standard deviations with two digits of sigma, and as limits."""
 
 from __future__ import annotations
 
 import math
 
-__all__ = ["with_sigma"]
+__all__ = ["at_least", "at_most", "with_sigma"]
 
 _DIGITS = 7
 _ROUNDING = 1e-15
@@ -48,3 +48,33 @@ def with_sigma(value: float, sigma: float | None) -> str:
 
 def _rounded(value: float, last: int) -> str:
     return f"{round(value, -last) + 0.0:.{max(-last, 0)}f}"
+
+
+def at_least(number: float, digits: int = 3) -> str:
+    """Write a positive number with so many digits, rounded up: what is told as enough is enough.
+
+    Examples
+    --------
+    >>> at_least(0.12345)
+    '0.124'
+    """
+    text = f"{number:.{digits}g}"
+    if float(text) < number:
+        unit = 10.0 ** (math.floor(math.log10(number)) - digits + 1)
+        text = f"{number + unit:.{digits}g}"
+    return text
+
+
+def at_most(number: float, digits: int = 3) -> str:
+    """Write a positive number with so many digits, rounded down: what is told as allowed is allowed.
+
+    Examples
+    --------
+    >>> at_most(0.12367)
+    '0.123'
+    """
+    text = f"{number:.{digits}g}"
+    if float(text) > number:
+        unit = 10.0 ** (math.floor(math.log10(number)) - digits + 1)
+        text = f"{number - unit:.{digits}g}"
+    return text

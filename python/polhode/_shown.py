@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from polhode._hints import with_hints
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -50,6 +52,7 @@ class Shown:
         return "<page of a motion>" if self.path is None else f"<page of a motion: {self.path}>"
 
 
+@with_hints
 def show(self: Trajectory, *, height: int = _HEIGHT, **options: Any) -> Shown:
     """Show the motion of one body as an interactive page: in a notebook below the cell, else in the browser.
 
@@ -58,7 +61,7 @@ def show(self: Trajectory, *, height: int = _HEIGHT, **options: Any) -> Shown:
     height : int
         Of the frame in a notebook, in pixels.
     **options
-        `shape`, `duration`, `title` and `time_unit`, see :func:`polhode.animation.animate`.
+        `shape`, `duration`, `title` and `time_label`, see :func:`polhode.animation.animate`.
 
     Returns
     -------

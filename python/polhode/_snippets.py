@@ -3,28 +3,72 @@
 Ours are the elements of the tensor, I_xy = −∫ x y dm, about C, in the axes of the body. What each program
 means by its numbers, and where it says so, stands in ``docs/other_programs.md``. Every number is printed with
 all its digits: reading it gives the same float.
+
+Engines test I1 + I2 >= I3 without a tolerance, on moments that they compute themselves. A body on that edge,
+such as a lamina, is therefore written inside it, by less than what they round.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from polhode._core import RigidBody
+import numpy as np
+
+from polhode._core import RigidBody, principal_axes, principal_moments
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    import numpy as np
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
 
-__all__ = ["PROGRAMS", "to_text"]
+__all__ = ["LEAST_MOMENT", "PROGRAMS", "inside_edge", "mjcf_tensor", "to_text"]
+
+LEAST_MOMENT: Final = {"MJCF": 1e-15, "URDF": 1e-14}
+"""In kg m^2: up to the first (mjMINVAL, for masses in kg too) MuJoCo refuses moments of what moves; up to the
+second it refuses eigenvalues of tensors that are not in principal axes, as in every URDF."""
+# Of the trace. MuJoCo diagonalises, turns and joins tensors to 4 ε, in 24,000 random laminae.
+_CLEAR: Final = 5.0 * 2.0**-52
+_INSIDE: Final = 8.0 * 2.0**-52
+# MuJoCo leaves elements up to 1e-12 kg m^2 beside the diagonal: below this moment they would count.
+_SMALL: Final = 1e-6
+
+
+def inside_edge(inertia: Floats) -> Floats:
+    """Return a tensor that engines still find possible after they have rounded it.
+
+    On the edge I1 + I2 = I3, as of a lamina or a rod, all three moments grow alike, by no more than 6e-15 of
+    their sum, so that the axes stay. A tensor clear of the edge is returned as it is, the same object.
+    """
+    moments = np.asarray(principal_moments(inertia))
+    largest = float(moments[2])
+    if not largest > 0.0:
+        return inertia
+    first, second, _ = moments / largest
+    margin, trace = first + second - 1.0, first + second + 1.0
+    if margin >= _CLEAR * trace:
+        return inertia
+    inside: Floats = inertia + (_INSIDE * trace - margin) * largest * np.eye(3)
+    return inside
+
+
+def mjcf_tensor(inertia: Floats) -> dict[str, list[float]]:
+    """Return a tensor as attributes of ``<inertial>``: in principal axes where MuJoCo loses digits."""
+    moments = np.asarray(principal_moments(inertia))
+    xx, yy, zz, *beside = _six(inertia)
+    if not any(beside):
+        return {"diaginertia": [xx, yy, zz]}
+    if moments[0] >= _SMALL:
+        return {"fullinertia": [xx, yy, zz, *beside]}
+    principal = principal_axes(inertia)
+    x, y, z, w = (principal.quaternion + 0.0).tolist()
+    return {"quat": [w, x, y, z], "diaginertia": principal.moments.tolist()}
 
 
 class _Numbers(NamedTuple):
-    """Of one body: the elements xx yy zz xy xz yz about C and about O, the axes as rows."""
+    """Of one body: elements xx yy zz xy xz yz about C and about O, the axes as rows, the tensor about C."""
 
     mass: float
     center: list[float]
@@ -33,6 +77,7 @@ class _Numbers(NamedTuple):
     moments: list[float]
     axes: list[list[float]]
     quaternion: list[float]
+    tensor: Floats
 
 
 def to_text(body: RigidBody, program: str) -> str:
@@ -72,6 +117,13 @@ def to_text(body: RigidBody, program: str) -> str:
         raise PolhodeError(f"program: there is no form for {program!r}; give one of {', '.join(PROGRAMS)}")
     if body.shape:
         raise PolhodeError(f"body: expected one body, got a stack of shape {body.shape}; index it")
+    if program in ("mjcf", "mujoco"):
+        _check_least(body)
+    tensor = body.inertia
+    inside = inside_edge(tensor)
+    # A rod has no moment about itself, and is written so.
+    if inside is not tensor and body.principal_moments[0] > 0.0:
+        body = RigidBody(float(body.mass), inside, body.center_of_mass)
     principal = body.principal
     return _WRITERS[program](
         _Numbers(
@@ -82,6 +134,7 @@ def to_text(body: RigidBody, program: str) -> str:
             moments=principal.moments.tolist(),
             axes=(principal.axes.T + 0.0).tolist(),
             quaternion=(principal.quaternion + 0.0).tolist(),
+            tensor=body.inertia,
         )
     )
 
@@ -126,24 +179,35 @@ def _sdf(n: _Numbers) -> str:
 </inertial>"""
 
 
-def _check_definite(n: _Numbers) -> None:
-    if not n.moments[0] > 0.0:
+def _check_least(body: RigidBody) -> None:
+    """Refuse what MuJoCo refuses; a larger moment than the body has is not written in its place."""
+    least = LEAST_MOMENT["MJCF"]
+    moment, mass = float(body.principal_moments[0]), float(body.mass)
+    if not moment > least:
         raise PolhodeError(
-            f"MuJoCo takes no body with a moment of {n.moments[0]:g} about an axis; give it a thickness"
+            f"body: its smallest moment is {moment:.6g}, and MuJoCo refuses moments up to {least:g} kg m^2 "
+            "(mjMINVAL) of what moves; give it a thickness, or state it in units that make it larger"
+        )
+    if not mass > least:
+        raise PolhodeError(
+            f"body: its mass is {mass:.6g}, and MuJoCo refuses masses up to {least:g} kg (mjMINVAL) of what "
+            "moves; state it in units that make it larger"
         )
 
 
 def _mjcf(n: _Numbers) -> str:
-    _check_definite(n)
-    return f'<inertial pos="{_row(n.center)}" mass="{n.mass!r}" fullinertia="{_row(n.own)}"/>'
+    tensor = " ".join(f'{name}="{_row(values)}"' for name, values in mjcf_tensor(n.tensor).items())
+    return f'<inertial pos="{_row(n.center)}" mass="{n.mass!r}" {tensor}/>'
 
 
 def _mujoco(n: _Numbers) -> str:
-    _check_definite(n)
+    names = {"diaginertia": "inertia", "fullinertia": "fullinertia", "quat": "iquat"}
+    lines = (f"body.{names[name]} = {_list(values)}" for name, values in mjcf_tensor(n.tensor).items())
+    tensor = "\n".join(lines)
     return f"""# body: a mujoco.MjsBody, of MjSpec
 body.mass = {n.mass!r}
 body.ipos = {_list(n.center)}
-body.fullinertia = {_list(n.own)}
+{tensor}
 body.explicitinertial = True"""
 
 

@@ -28,7 +28,20 @@ class PolhodeError(ValueError):
 
 
 class InvalidInertiaError(PolhodeError):
-    """Mass properties that no real body can have."""
+    """Mass properties that no real body can have.
+
+    Attributes
+    ----------
+    way_out : str
+        The remedy at the end of the message; ``""`` where there is none.
+    """
+
+    way_out: str = ""
+
+    @property
+    def fault(self) -> str:
+        """The message without the remedy, for a caller that has another one."""
+        return str(self).removesuffix(self.way_out).rstrip("; :")
 
 
 class MeshError(PolhodeError):

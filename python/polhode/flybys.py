@@ -8,25 +8,53 @@ results.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from functools import wraps
+from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, TypeVar, cast
 
 import numpy as np
 
 from polhode import _core, distributions, loads
 from polhode._repr import short
 from polhode.ensembles.call import ensemble
+from polhode.errors import PolhodeError
+from polhode.orbits import Orbit
+from polhode.uncertainty.propagation import propagate
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike, NDArray
 
-    from polhode._core import FreeMotion, RigidBody
+    from polhode._core import FreeMotion, RigidBody, Uncertain
     from polhode._progress import Progress
     from polhode.ensembles.result import Ensemble
-    from polhode.orbits import Orbit, SampledOrbit
+    from polhode.orbits import SampledOrbit
+    from polhode.trajectory import Trajectory
 
     Floats = NDArray[np.float64]
 
 __all__ = ["Flyby", "Tumble", "clones", "flyby"]
+
+F = TypeVar("F", bound="Callable[..., Any]")
+
+ROUNDING: Final = 1e-9
+"""By so much a parabola that was made from a position and a velocity may be an ellipse."""
+
+
+def _names_modes(function: F) -> F:
+    """Let a call without `mode` say which modes there are."""
+
+    @wraps(function)
+    def called(*args: Any, **kwargs: Any) -> Any:
+        if "mode" not in kwargs:
+            raise TypeError(
+                'mode: state which of the two motions has these periods: mode="long-axis", where the angular '
+                'velocity circles the axis of the least moment, or mode="short-axis", where it circles that '
+                "of the greatest"
+            )
+        return function(*args, **kwargs)
+
+    return cast("F", called)
 
 
 class Tumble(NamedTuple):
@@ -37,7 +65,8 @@ class Tumble(NamedTuple):
     mode : numpy.ndarray of str, shape (n,)
         Mode of each clone, as in :attr:`polhode.FreeMotion.mode`; empty for a clone that failed.
     rotation_period, precession_period : numpy.ndarray, shape (n,)
-        P_ψ and P_φ.
+        P_ψ and P_φ; of a symmetric body those of its spin and of the precession of its axis. Infinite or NaN
+        where the motion has none: see :class:`polhode.Periods`.
     spin_rate : numpy.ndarray, shape (n,)
         ``2 E/|L|``: the rate of a steady spin with this energy and angular momentum, in radians per unit of
         time.
@@ -98,17 +127,19 @@ class Flyby:
         return f"Flyby({len(self.failed)} clones, {int(self.failed.sum())} failed)"
 
 
+@_names_modes
 def clones(
     body: RigidBody,
     orbit: Orbit | SampledOrbit,
     span: float,
     *,
-    rotation_period: float,
-    precession_period: float,
-    mode: Literal["long-axis", "short-axis"] = "short-axis",
+    rotation_period: float | Uncertain,
+    precession_period: float | Uncertain,
+    mode: Literal["long-axis", "short-axis"],
     sense: Literal[1, -1] = 1,
     pole: ArrayLike | None = None,
     pole_sigma: float = 0.0,
+    radius: float | None = None,
     n: int = 1000,
     seed: int = 0,
     **options: Any,
@@ -118,18 +149,23 @@ def clones(
     Parameters
     ----------
     body : RigidBody
-        One body; only the ratios of its moments matter.
+        One body; only the ratios of its moments matter. If it is uncertain, each clone has moments of its
+        own.
     orbit : Orbit or SampledOrbit
-        Orbit of the body about the planet.
+        Orbit of the body about the planet: a parabola, a hyperbola or a table of positions.
     span : float
         Duration of the flyby. It begins at the epoch of the orbit, at 0 if it has none, or at the first time
         of a table.
     rotation_period, precession_period, mode, sense
-        As for :meth:`polhode.RigidBody.free_motion_from_periods`.
+        As for :meth:`polhode.RigidBody.free_motion_from_periods`. If a period is an `Uncertain`, each clone
+        has one of its own, from a normal distribution.
     pole : array_like, shape (3,), optional
         Direction of the angular momentum in space; all directions by default.
     pole_sigma : float, optional
         Standard deviation of this direction along each of two axes perpendicular to it, in radians.
+    radius : float, optional
+        Radius of the planet: an orbit that comes nearer is refused. By default that of the orbit, if it is
+        one about an oblate planet.
     n, seed
         As of :func:`polhode.ensemble`.
     **options
@@ -139,10 +175,13 @@ def clones(
     -------
     Ensemble
         Of two times: start and end.
+
+    Raises
+    ------
+    PolhodeError
+        If the orbit is closed, or nearer to the centre of the planet than its radius; and as for
+        :meth:`polhode.RigidBody.free_motion_from_periods`.
     """
-    motion = body.free_motion_from_periods(rotation_period, precession_period, mode=mode, sense=sense)
-    if motion.shape:
-        raise ValueError(f"body and periods: expected one of each, got a stack of shape {motion.shape}")
     long, spread = _number(span, "span"), _number(pole_sigma, "pole_sigma")
     if not long > 0.0:
         raise ValueError(f"span: must be positive, got {long}")
@@ -150,11 +189,22 @@ def clones(
         raise ValueError(f"pole_sigma: must not be negative, got {spread}")
     if pole is None and spread > 0.0:
         raise TypeError("pole_sigma: it is that of a direction; give pole= too")
-    phase = distributions.uniform(0.0, float(rotation_period), name="phase")
+    _check_orbit(orbit, None if radius is None else _number(radius, "radius"))
+    motion = body.free_motion_from_periods(rotation_period, precession_period, mode, sense)
+    if motion.shape:
+        raise ValueError(f"body and periods: expected one of each, got a stack of shape {motion.shape}")
+    numbers = _numbers(motion)
+    if numbers is None:
+        known = cast("float", rotation_period)
+        phase = distributions.uniform(0.0, float(known), name="phase")
+        bodies: Any = body
+        start = distributions.made(_at, motion, phase)
+    else:
+        share = distributions.uniform(0.0, 1.0, name="phase")
+        bodies = distributions.made(_bodies, body, numbers)
+        start = distributions.made(_start, bodies, numbers, mode, sense, share)
     if pole is None:
-        attitude = distributions.made(
-            _turned, motion, phase, distributions.uniform_rotation(name="direction")
-        )
+        attitude = distributions.made(_turned, start, distributions.uniform_rotation(name="direction"))
     else:
         toward = _core.real_numbers(pole, "pole")
         if toward.shape != (3,) or not np.isfinite(toward).all() or not toward.any():
@@ -162,11 +212,11 @@ def clones(
         around = distributions.uniform(0.0, 2 * np.pi, name="azimuth")
         toward = toward / np.abs(toward).max()
         tilt = distributions.normal(np.zeros(2), sigma=spread, name="direction")
-        attitude = distributions.made(_toward, motion, phase, toward / np.linalg.norm(toward), around, tilt)
+        attitude = distributions.made(_toward, start, toward / np.linalg.norm(toward), around, tilt)
     return ensemble(
-        body,
+        bodies,
         [orbit.begins, orbit.begins + long],
-        distributions.made(_omega, motion, phase),
+        distributions.made(_omega, start),
         attitude,
         loads.gravity_gradient(orbit),
         n=n,
@@ -176,28 +226,30 @@ def clones(
     )
 
 
+@_names_modes
 def flyby(
     body: RigidBody,
     orbit: Orbit | SampledOrbit,
     span: float,
     *,
-    rotation_period: float,
-    precession_period: float,
+    rotation_period: float | Uncertain,
+    precession_period: float | Uncertain,
+    mode: Literal["long-axis", "short-axis"],
     n: int = 1000,
     seed: int = 0,
     progress: Progress = None,
     **options: Any,
 ) -> Flyby:
-    """Simulate clones of a tumbling body that pass a planet, and give their motion before and after.
+    """Simulate clones of a tumbling body that pass a planet, and compare their motion before and after.
 
     Parameters
     ----------
-    body, orbit, span, rotation_period, precession_period, n, seed
+    body, orbit, span, rotation_period, precession_period, mode, n, seed
         As of :func:`clones`.
     progress : bool or callable, optional
         As in :func:`polhode.ensemble`.
     **options
-        Further arguments of :func:`clones`: `mode`, `sense`, `pole`, `pole_sigma`, `rtol`, `client` …
+        Further arguments of :func:`clones`: `sense`, `pole`, `pole_sigma`, `radius`, `rtol`, `client` …
 
     Returns
     -------
@@ -206,7 +258,7 @@ def flyby(
     Raises
     ------
     PolhodeError
-        When all clones fail; the message is that of the first.
+        As :func:`clones`; and when all clones fail, with the message of the first.
 
     Examples
     --------
@@ -216,9 +268,8 @@ def flyby(
     ...     398600.4418, eccentricity=4.253901873, periapsis=38011.486, since_periapsis=-3 * day
     ... )
     >>> apophis = RigidBody.from_principal(1.0, (0.64, 0.97, 1.0))
-    >>> found = flybys.flyby(
-    ...     apophis, earth, 6 * day, rotation_period=264.178 * hour, precession_period=27.38547 * hour, n=500
-    ... )
+    >>> periods = {"rotation_period": 264.178 * hour, "precession_period": 27.38547 * hour}
+    >>> found = flybys.flyby(apophis, earth, 6 * day, **periods, mode="short-axis", n=500)
     >>> bool(found.spin_ratio.min() < 0.8), bool(found.spin_ratio.max() > 1.2)
     (True, True)
     """
@@ -227,37 +278,71 @@ def flyby(
             raise TypeError(
                 f"{name}: flyby tells the start and the end of all clones; flybys.clones takes it"
             )
-    many = clones(
-        body,
-        orbit,
-        span,
-        rotation_period=rotation_period,
-        precession_period=precession_period,
-        n=n,
-        seed=seed,
-        progress=progress,
-        **options,
-    )
-    found = _told(body, many.compute())
+    given: dict[str, Any] = {
+        "rotation_period": rotation_period, "precession_period": precession_period, "mode": mode,
+    }  # fmt: skip
+    many = clones(body, orbit, span, **given, n=n, seed=seed, progress=progress, **options)
+    motion = body.free_motion_from_periods(rotation_period, precession_period, mode)
+    found = _told(body, _numbers(motion), seed, many.compute())
     if found.failed.all():
         # Why tells a clone alone.
-        alone = {"rotation_period": rotation_period, "precession_period": precession_period, "seed": seed}
-        clones(body, orbit, span, n=1, on_failure="raise", **alone | options).compute()
+        clones(body, orbit, span, **given, n=1, seed=seed, on_failure="raise", **options).compute()
     return found
 
 
-def _told(body: RigidBody, states: Any) -> Flyby:
+def _check_orbit(orbit: Orbit | SampledOrbit, radius: float | None) -> None:
+    """Refuse an orbit that is no flyby."""
+    if isinstance(orbit, Orbit):
+        elements = orbit.elements
+        eccentricity = float(np.min(elements.eccentricity))
+        if eccentricity < 1.0 - ROUNDING:
+            raise PolhodeError(
+                f"orbit: its eccentricity is {eccentricity:.6g}, that of an ellipse, on which the body goes "
+                "round the planet; a flyby has 1 or more. For an ellipse call polhode.ensemble with "
+                "load=loads.gravity_gradient(orbit)"
+            )
+        radius = orbit.radius if radius is None else radius
+        least = float(np.min(elements.periapsis))
+    else:
+        least = float(np.linalg.norm(orbit.position, axis=-1).min())
+    if radius is not None and not least > float(np.max(radius)):
+        raise PolhodeError(
+            f"orbit: the least distance from the planet's centre is {least:.6g}, within its radius of "
+            f"{float(np.max(radius)):.6g}; give an orbit with a periapsis beyond it, or another radius="
+        )
+
+
+def _numbers(motion: FreeMotion) -> distributions.Normal | None:
+    """Give the distribution of three moments and two periods, or None where they are known."""
+    given = motion._from_periods
+    if given is None:
+        return None
+    one = given.row((), 0)
+
+    def five(body: RigidBody, *periods: Any) -> Floats:
+        values = iter(periods)
+        both = [next(values) if isinstance(x, _core.Uncertain) else x for x in one[:2]]
+        return np.array([*body.principal_moments, *map(float, both)])
+
+    found = propagate(five, motion.body, arguments=one.uncertain)
+    return distributions.normal(found.value, found.covariance, name="moments and periods")
+
+
+def _told(body: RigidBody, numbers: distributions.Normal | None, seed: int, states: Any) -> Flyby:
     """Tell how clones tumble at the start and at the end, from the states of their ensemble."""
     omega, quaternion = states.omega.to_numpy(), states.quaternion.to_numpy()
     failed = ~np.isfinite(omega[:, -1]).all(axis=-1)
-    before, after = (_tumble(body, omega[:, k], quaternion[:, k]) for k in (0, -1))
+    drawn = None if numbers is None else numbers.draw(len(omega), seed=seed)
+    before, after = (_tumble(body, drawn, omega[:, k], quaternion[:, k]) for k in (0, -1))
     return Flyby(body, before, after, failed)
 
 
-def _tumble(body: RigidBody, omega: Floats, quaternion: Floats) -> Tumble:
+def _tumble(body: RigidBody, drawn: Floats | None, omega: Floats, quaternion: Floats) -> Tumble:
     known: NDArray[np.bool_] = np.asarray(np.isfinite(omega).all(axis=-1))
-    motion = body.free_motion(omega[known], quaternion[known])
+    bodies = body if drawn is None else _bodies(body, drawn[known])
+    motion = bodies.free_motion(omega[known], quaternion[known])
     momentum = motion.angular_momentum
+    periods = motion.periods
 
     def spread(values: Any, fill: Any) -> Any:
         values = np.asarray(values)
@@ -265,11 +350,11 @@ def _tumble(body: RigidBody, omega: Floats, quaternion: Floats) -> Tumble:
         found[known] = values
         return found
 
-    energy = np.asarray(body.kinetic_energy(omega[known]).rotational)
+    energy = np.asarray(bodies.kinetic_energy(omega[known]).rotational)
     return Tumble(
         spread(motion.mode, ""),
-        spread(motion.periods.rotation, np.nan),
-        spread(motion.periods.precession, np.nan),
+        spread(np.where(np.isnan(periods.spin), periods.rotation, periods.spin), np.nan),
+        spread(periods.precession, np.nan),
         spread(2.0 * energy / np.linalg.norm(momentum, axis=-1), np.nan),
         spread(momentum, np.nan),
     )
@@ -282,17 +367,32 @@ def _number(given: Any, name: str) -> float:
     return float(found)
 
 
-def _omega(motion: FreeMotion, phase: Floats) -> Floats:
-    return motion.at(phase).omega
+def _bodies(body: RigidBody, numbers: Floats) -> RigidBody:
+    """Give the bodies of clones: that body with other principal moments."""
+    axes, center = body.principal.axes, body.center_of_mass
+    return _core.RigidBody.from_principal(body.mass, numbers[..., :3], axes, center)
 
 
-def _turned(motion: FreeMotion, phase: Floats, turn: Floats) -> Floats:
-    """Attitudes at phases, with L in any direction."""
-    return _product(turn, motion.at(phase).quaternion)
+def _at(motion: FreeMotion, phase: Floats) -> Trajectory:
+    return motion.at(phase)
 
 
-def _toward(motion: FreeMotion, phase: Floats, pole: Floats, around: Floats, tilt: Floats) -> Floats:
-    """Attitudes at phases, with L near a direction."""
+def _start(bodies: RigidBody, numbers: Floats, mode: Any, sense: int, share: Floats) -> FreeMotion:
+    """Give the motions of clones, each with its own moments and periods, at shares of a period."""
+    return bodies.free_motion_from_periods(numbers[..., 3], numbers[..., 4], mode, sense, share)
+
+
+def _omega(start: Trajectory | FreeMotion) -> Floats:
+    return start.omega
+
+
+def _turned(start: Trajectory | FreeMotion, turn: Floats) -> Floats:
+    """Attitudes of starts, with L in any direction."""
+    return _product(turn, start.quaternion)
+
+
+def _toward(start: Trajectory | FreeMotion, pole: Floats, around: Floats, tilt: Floats) -> Floats:
+    """Attitudes of starts, with L near a direction."""
     side = np.eye(3)[int(np.argmin(np.abs(pole)))]
     one = np.cross(pole, side) / np.linalg.norm(np.cross(pole, side))
     two = np.cross(pole, one)
@@ -308,7 +408,7 @@ def _toward(motion: FreeMotion, phase: Floats, pole: Floats, around: Floats, til
         [(tilt @ np.stack([one, two])) * share[:, None], np.cos(angle / 2)[:, None]], axis=-1
     )
     turn = _product(_product(leaning, aligned), spun)
-    return _product(turn, motion.at(phase).quaternion)
+    return _product(turn, start.quaternion)
 
 
 def _product(p: Floats, q: Floats) -> Floats:

@@ -24,13 +24,14 @@ _MOST_ORDER: Final = 100
 
 
 class LightCurve(NamedTuple):
-    """Frequencies of the light curve of a tumbling body, ``|j f_φ + m f_ψ|``, in cycles per unit of time.
+    """Frequencies of the light curve of a free body, ``|j f_φ + m f_ψ|``, in cycles per unit of time.
 
     Attributes
     ----------
     j, m : numpy.ndarray of int, shape (k,)
         Multiples of ``f_φ = 1/P_φ`` and of ``f_ψ = 1/P_ψ``.
     frequency : numpy.ndarray, shape (..., k)
+        NaN for a frequency that the motion does not have.
     """
 
     j: NDArray[np.int64]
@@ -42,6 +43,9 @@ class LightCurve(NamedTuple):
 
 
 class _Periods(NamedTuple):
+    turn: Any
+    wobble: Any
+    spin: Any
     rotation: Any
     precession: Any
     flip: Any
@@ -49,27 +53,49 @@ class _Periods(NamedTuple):
 
 
 class Periods(_Periods):
-    """The periods of a free motion, in the long-axis convention of tumbling asteroids.
+    """The periods of a free motion. Each kind of motion has its own; a period that it does not have is NaN.
 
-    The Euler angles (ZXZ) refer to axis 1, of the least moment, with L along z. Periods are in
-    the unit of time of the motion.
+    ================================================  =============================================
+    motion                                            periods
+    ================================================  =============================================
+    steady: ω is constant                             `turn`; `wobble` if the spin is stable
+    symmetric body, ω not constant                    `spin`, `precession` of the symmetry axis
+    long-axis mode, short-axis mode                   `rotation`, `precession` of axis 1; `flip`
+                                                      if the intermediate axis turns over
+    separatrix                                        `precession`; `rotation`, `flip` are infinite
+    ================================================  =============================================
+
+    An infinite period is that of something that happens once at most. In long- and short-axis mode the
+    periods are those of the long-axis convention of tumbling asteroids: the Euler angles (ZXZ) refer to axis
+    1, of the least moment, with L along z. Periods are in the unit of time of the motion.
 
     Attributes
     ----------
+    turn : float or numpy.ndarray, shape (...)
+        Of a steady rotation: the time of one turn, ``2π/|ω|``. The axis rests in the body and in space. A
+        spherical body always moves so, a symmetric body if ω is along its axis or perpendicular to it.
+    wobble : float or numpy.ndarray, shape (...)
+        Of a steady rotation that is stable: the period of small oscillations of ω in the body. NaN about the
+        intermediate axis, where the spin is unstable, and where ω stays at any place in the body.
+    spin : float or numpy.ndarray, shape (...)
+        Of a symmetric body: the time of one turn about its axis, ``2π/|ψ̇|``, relative to the plane of that
+        axis and L. After it ω is at the same place in the body.
     rotation : float or numpy.ndarray, shape (...)
-        Period P_ψ, after which the components of ω in the body repeat. In long-axis mode the body turns once
-        about its long axis in this time; in short-axis mode the long axis swings once to and fro. For a
-        steady spin about axis 1 or 3 it is the period of small oscillations about that spin. It is infinite
-        on the separatrix, for a steady spin about axis 2, and for a spherical body.
+        P_ψ, after which the components of ω in the body repeat. In long-axis mode the body turns once about
+        its long axis in this time; in short-axis mode the long axis swings once to and fro.
     precession : float or numpy.ndarray, shape (...)
-        Period P_φ: the mean time in which axis 1 goes once round L.
+        P_φ: the mean time in which axis 1 goes once round L; in a symmetric body the time of its symmetry
+        axis.
     flip : float or numpy.ndarray, shape (...)
-        Time from one turning over of the intermediate axis to the next, half of `rotation`.
+        Time from one turning over of the intermediate axis to the next, half of `rotation`. That axis turns
+        over if in between it is the principal axis nearest to L, now along L and then against it. This is so
+        if it comes within 45° of L; otherwise it swings about the plane perpendicular to L, and `flip` is
+        NaN.
     rates : numpy.ndarray, shape (..., 3)
         Mean rate, in radians per unit of time, at which each principal axis goes about L. The two axes that ω
         does not circle have the same rate. In short-axis mode the rate of axis 3 is larger than theirs by
-        2π/P_ψ; in long-axis mode the rate of axis 1 is smaller than theirs by 2π/P_ψ. NaN without angular
-        momentum.
+        2π/P_ψ; in long-axis mode the rate of axis 1 is smaller than theirs by 2π/P_ψ. NaN for an axis that
+        rests along L, and without angular momentum.
     """
 
     _motion: _core.FreeMotion | None = None
@@ -95,12 +121,13 @@ class Periods(_Periods):
 
         In that convention P_ψ is the period of the rotation about axis 3 in short-axis mode, and of the swing
         of axis 3 to and fro in long-axis mode. Its value is that of `rotation` in both conventions, and
-        ``1/P_φ(short) = 1/P_φ(long) + 1/P_ψ``.
+        ``1/P_φ(short) = 1/P_φ(long) + 1/P_ψ``. NaN where the motion has no `rotation`.
         """
-        return (2.0 * np.pi / self.rates[..., 2])[()]
+        found = 2.0 * np.pi / self.rates[..., 2]
+        return np.where(np.isnan(self.rotation), np.nan, found)[()]
 
     def light_curve(self, order: int = 2) -> LightCurve:
-        """Give the frequencies at which the brightness of the body can vary, seen from a fixed direction.
+        """Compute the frequencies at which the brightness of the body can vary, seen from a fixed direction.
 
         Parameters
         ----------
@@ -112,7 +139,8 @@ class Periods(_Periods):
         LightCurve
             One frequency for each pair (j, m) up to `order`. Since (j, m) and (−j, −m) have the same
             frequency, only one of them is listed: that with j > 0, or with j = 0 and m > 0. The pair (0, 0)
-            is the constant part and is left out.
+            is the constant part and is left out. A frequency that the motion does not have is NaN: those with
+            m ≠ 0 of a steady rotation, and all on the separatrix, where nothing repeats.
 
         Notes
         -----
@@ -120,13 +148,14 @@ class Periods(_Periods):
         angle has the period P_ψ. The rest of φ grows uniformly, by one turn in P_φ; the rest of ψ is constant
         or grows by one turn in P_ψ. The brightness is therefore a Fourier series with the frequencies ``j f_φ
         + m f_ψ``, where ``f_φ = 1/P_φ`` and ``f_ψ = 1/P_ψ`` (M. Kaasalainen, Astron. Astrophys. 376 (2001)
-        302). In the short-axis convention the frequencies are the same, with m − j in place of m.
+        302). In the short-axis convention the frequencies are the same, with m − j in place of m. For a
+        symmetric body P_φ is `precession` and P_ψ is `spin`; for a steady rotation P_φ is `turn`.
 
         Examples
         --------
         >>> from polhode import RigidBody
         >>> toutatis = RigidBody.from_principal(1.0, (1.0, 3.01307, 3.18992))
-        >>> periods = toutatis.free_motion_from_periods(5.41, 7.35).periods
+        >>> periods = toutatis.free_motion_from_periods(5.41, 7.35, mode="long-axis").periods
         >>> found = periods.light_curve(order=1)
         >>> dict(zip(zip(found.j.tolist(), found.m.tolist()), found.frequency.round(4).tolist()))
         {(0, 1): 0.1848, (1, -1): 0.0488, (1, 0): 0.1361, (1, 1): 0.3209}
@@ -136,8 +165,14 @@ class Periods(_Periods):
         pairs = [(0, m) for m in range(1, order + 1)]
         pairs += [(j, m) for j in range(1, order + 1) for m in range(-order, order + 1)]
         j, m = np.array(pairs).T
-        precession, rotation = (np.asarray(x)[..., np.newaxis] for x in (self.precession, self.rotation))
-        return LightCurve(j, m, np.abs(j / precession + m / rotation))
+        turn, spin, rotation, precession = (
+            np.asarray(x, dtype=float)[..., np.newaxis]
+            for x in (self.turn, self.spin, self.rotation, self.precession)
+        )
+        around = j / np.where(np.isnan(turn), precession, turn)
+        frequency = np.abs(around + m / np.where(np.isnan(spin), rotation, spin))
+        frequency = np.where((m == 0) & np.isfinite(turn), np.abs(around), frequency)
+        return LightCurve(j, m, np.where(np.isinf(rotation), np.nan, frequency))
 
     def __repr__(self) -> str:
         return short(self)

@@ -10,6 +10,8 @@ and slugs, but not that of a rotor, whose speed is not known. :attr:`Trajectory.
 has their states.
 """
 
+from typing import TYPE_CHECKING
+
 from polhode._core import (
     Load,
     callback,
@@ -49,3 +51,12 @@ __all__ = [
     "wheel",
     "with_states",
 ]
+
+if not TYPE_CHECKING:
+    from polhode._hints import explain_calls, no_name
+
+    explain_calls(globals(), __all__)
+
+    def __getattr__(name):
+        """Refuse a name of others with the one here."""
+        raise no_name(__name__, name, __all__)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 import numpy as np
 
 from polhode import _core
-from polhode._bonds import bonds, uncertain_positions
+from polhode._bonds import CellBond, CellCrossings, bonds, cell_crossings, uncertain_positions
 from polhode._nuclides import Isotope, Masses, isotopes, uncertain_masses
 from polhode.errors import PolhodeError
 
@@ -24,8 +24,11 @@ __all__ = [
     "ATOMIC_MASS_CONSTANT",
     "PLANCK_CONSTANT",
     "SPEED_OF_LIGHT",
+    "CellBond",
+    "CellCrossings",
     "Isotope",
     "bonds",
+    "cell_crossings",
     "inertial_defect",
     "isotopes",
     "planar_moments",
@@ -159,7 +162,7 @@ def rotational_constants_sigma(
         raise ValueError(f"sigma: expected shape (..., 3), got {deviations.shape}")
     if not (deviations >= 0.0).all():
         raise PolhodeError("sigma: expected standard deviations of 0 or more")
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         found: Floats = constants * np.hypot(deviations / inertia, _SIGMA_OF_U)
     return np.where(np.isfinite(constants), found, np.nan)
 

@@ -143,6 +143,13 @@ class Orbit(Path):
         -------
         OrbitState
             Arrays of shape (..., T..., 3): axes of the stack, axes of the times, components.
+
+        Raises
+        ------
+        PolhodeError
+            Beyond the reach of the orbit. On an ellipse the phase is known to 2**-90 of the revolutions made;
+            nothing is left of it after 2**88 revolutions, and near a parabola after fewer. About an oblate
+            attractor an orbit reaches 30 000 revolutions.
         """
         times = _core.real_numbers(t, "t")
         if self.pole is not None:
@@ -375,3 +382,12 @@ def from_elements(
     if since_periapsis is not None:
         place, speed = _core.kepler_states(mass, place, speed, number(since_periapsis, "since_periapsis"))
     return kepler(mass, place, speed, epoch, j2=j2, radius=radius, pole=pole)
+
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name):
+        """Refuse a name of others with the one here."""
+        from polhode._hints import no_name
+
+        raise no_name(__name__, name, __all__)

@@ -11,9 +11,10 @@ from polhode._core import arc, ring, rod
 __all__ = ["arc", "ring", "rod"]
 
 if not TYPE_CHECKING:
+    from polhode._hints import explain_calls, no_name
+
+    explain_calls(globals(), __all__)
 
     def __getattr__(name):
         """Refuse a name of others with the one here."""
-        from polhode._hints import no_name
-
         raise no_name(__name__, name, __all__)

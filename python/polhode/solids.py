@@ -47,9 +47,10 @@ __all__ = [
 ]
 
 if not TYPE_CHECKING:
+    from polhode._hints import explain_calls, no_name
+
+    explain_calls(globals(), __all__)
 
     def __getattr__(name):
         """Refuse a name of others with the one here."""
-        from polhode._hints import no_name
-
         raise no_name(__name__, name, __all__)

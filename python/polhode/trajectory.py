@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
@@ -10,7 +11,7 @@ import numpy as np
 
 from polhode import _acting, _angles, _carried, _core, _doubts, _going_on, _outlets, _shown
 from polhode._drift import drift
-from polhode._hints import no_attribute
+from polhode._hints import Hinting, no_attribute
 from polhode._lengths import lengths
 from polhode.events import Events
 from polhode.results import AngularMomentum, Invariants, KineticEnergy, State
@@ -29,7 +30,7 @@ __all__ = ["Trajectory"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Trajectory:
+class Trajectory(metaclass=Hinting):
     """The motion of one body or of a stack at the times asked for.
 
     Attributes
@@ -88,7 +89,7 @@ class Trajectory:
     about: Floats
     steps: NDArray[np.int64]
     evaluations: NDArray[np.int64]
-    load: _core.Load | None = None
+    load: _core.Load | None = field(default_factory=lambda: None)
     status: Any = "complete"
     events: Events = field(default_factory=Events.none)
     failures: tuple[IntegrationError | PolhodeError, ...] = ()
@@ -141,7 +142,7 @@ class Trajectory:
             elif outcome is not None and name in type(self).__dataclass_fields__:
                 value = getattr(outcome, name)
             else:
-                raise no_attribute(name)
+                raise no_attribute("Trajectory", name, dir(self))
             self.__dict__[name] = value
             return value
 
@@ -149,7 +150,7 @@ class Trajectory:
         """Give all attributes, for copy and pickle."""
         held = {
             name: self.__dict__[name]
-            for name in ("_within", "_was_loaded", "_given")
+            for name in ("_within", "_was_loaded", "_given", "_began")
             if name in self.__dict__
         }
         return held | {one.name: getattr(self, one.name) for one in fields(self)}
@@ -298,6 +299,8 @@ class Trajectory:
         if self.t.ndim == 0:  # of an exact motion, at one time
             return State(self.omega, self.quaternion, self.position, self.velocity)
         self._check_series("state")
+        if not -len(self.t) <= operator.index(index) < len(self.t):
+            raise IndexError(f"index: {index} is none of {len(self.t)} times")
         at: list[Floats] = [
             x[..., index, :] for x in (self.omega, self.quaternion, self.position, self.velocity)
         ]
@@ -324,10 +327,9 @@ class Trajectory:
         """
         from polhode.files.saved_motion import read_motion
 
-        known, was_loaded = read_motion(path)
+        known, besides = read_motion(path)
         motion = Trajectory(**known)
-        if was_loaded:
-            motion.__dict__["_was_loaded"] = True
+        motion.__dict__.update(besides)
         return motion
 
     def _bodies(self) -> _core.RigidBody:

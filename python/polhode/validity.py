@@ -23,8 +23,11 @@ def nearest_valid(inertia: ArrayLike) -> NearestValid:
     """Find the possible tensor that is nearest to a given one.
 
     The principal axes stay. The moments are replaced by the nearest three that are not negative and obey the
-    triangle inequality. A tensor that :class:`polhode.RigidBody` accepts is returned unchanged, at distance
-    zero.
+    triangle inequality. On the edge, where I1 + I2 = I3, the rounding of the elements decides whether the
+    moments that a program computes from them obey it. Therefore the same small part of the trace, 1.8e-15, is
+    added to all three moments there: MuJoCo and other programs then accept the tensor. A tensor that is possible
+    and not on the edge is returned unchanged, at distance zero; so is a diagonal one on the edge, whose moments
+    are exact.
 
     Parameters
     ----------

@@ -226,6 +226,11 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "molecules.rotational_constants_sigma": {"sigma": [0.125, 0.25, 0.125]},
     "molecules.uncertain_masses": {"labels": ["C", "D", "O"], "masses": "most_common"},
     "molecules.bonds": {"labels": ["O", "H", "H"], "positions": WATER},
+    "molecules.cell_crossings": {
+        "labels": ["O", "H", "H"],
+        "positions": WATER,
+        "cell": [[4.0, 0.0, 0.0], [0.0, 5.0, 0.0]],
+    },
     "molecules.uncertain_positions": {
         "labels": ["O", "H", "H"],
         "positions": WATER,

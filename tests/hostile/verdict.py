@@ -13,10 +13,10 @@ from polhode import _core
 
 from .spoilt import Planned
 
-ERRORS = (ValueError, TypeError, OverflowError, MemoryError, IndexError, Planned)
+ERRORS = (ValueError, TypeError, MemoryError, IndexError, Planned)
 """Every error of polhode is a ValueError."""
 
-TOLD_BY_NUMPY = ("Casting complex values", "Warning: converting a masked element", "overflow encountered")
+TOLD_BY_NUMPY = ("Casting complex values", "Warning: converting a masked element")
 """How the warnings begin by which NumPy itself tells what a scalar of another kind loses."""
 
 

@@ -115,6 +115,8 @@ def judge(made: Made) -> str:
     except verdict.ERRORS as error:
         if not isinstance(error, spoilt.Planned | MemoryError) and not str(error):
             raise verdict.Wrong("an error without a word") from error
+        if isinstance(error, UnicodeError):
+            raise verdict.Wrong("an error of the encoding, not of the argument") from error
         outcome = type(error).__name__
         result = None
     else:

@@ -67,6 +67,29 @@ COMPILED: Final = {
         {"a": "unreadable"},
         "pos is missing, where 3 finite numbers have to stand",
     ),
+    "declared without a tensor, fixed": Row(
+        mjcf('<body name="a"><inertial mass="5" pos="0 0 0"/></body>'),
+        {"a": "good"},
+        "a point mass, tied to the world",
+        refused=False,
+    ),
+    "declared without a tensor, tied to a body": Row(
+        mjcf(f'<body name="a">{HINGE}{HEAVY}<body name="b"><inertial mass="5" pos="0 0 0"/></body></body>'),
+        {"a": "good", "b": "good"},
+        "a point mass, tied to a",
+        refused=False,
+    ),
+    "declared without a tensor, moved": Row(
+        mjcf(f'<body name="a">{HINGE}<inertial mass="5" pos="0 0 0"/></body>'),
+        {"a": "placeholder"},
+        "where mass has no spread",
+        refused=True,
+    ),
+    "declared without a tensor, moved, a body tied to it": Row(
+        mjcf(f'<body name="a">{HINGE}<inertial mass="5" pos="0 0 0"/><body name="b">{HEAVY}</body></body>'),
+        {"a": "good", "b": "good"},
+        refused=False,
+    ),
     "scaled to a total": Row(
         mjcf(
             f'<body name="a">{HINGE}{GEOM}</body><body name="b">{HINGE}{HEAVY}</body>',

@@ -95,6 +95,36 @@ FORMATS: Final = {
         ),
         {"b": "good", "a": "none"},
     ),
+    "SDF, zeros with mass, tied, which libsdformat refuses": Row(
+        sdf(slink("b", weighed(5, 0.02), ROUND), slink("a", weighed(1, 0)), sjoint("b", "a", "fixed")),
+        {"b": "good", "a": "placeholder"},
+    ),
+    "SDF, a pose with commas": Row(
+        sdf(slink("a", weighed(5, 0.02).replace("<mass>", "<pose>0, 0,\t0.2, 0 0, 0,</pose><mass>"), ROUND)),
+        {"a": "impossible"},
+        "z = 0.2 m, lies outside the shape",
+    ),
+    "SDF, a pose with commas alone, of which libsdformat reads one number": Row(
+        sdf(slink("a", weighed(5, 0.02).replace("<mass>", "<pose>0,0,0,0,0,0</pose><mass>"), ROUND)),
+        {"a": "unreadable"},
+        "pose is '0,0,0,0,0,0' where 6 finite numbers have to stand",
+    ),
+    "SDF, a world of Gazebo": Row(
+        '<sdf version="1.6"><world name="w"><include><uri>model://sun</uri></include>'
+        "<include><uri>model://ground_plane</uri></include>"
+        f'<model name="m">{slink("a", weighed(5, 0.02), ROUND)}</model></world></sdf>',
+        {"a": "good"},
+    ),
+    "SDF, a model that is not there": Row(
+        '<sdf version="1.6"><world name="w"><include><uri>model://sunny</uri></include></world></sdf>',
+        {"(include of line 1)": "unreadable"},
+        "model://sunny was not found",
+    ),
+    "SDF, a static model that is not there": Row(
+        '<sdf version="1.6"><world name="w"><include><uri>model://wall</uri><static>true</static></include>'
+        "</world></sdf>",
+        {"(include of line 1)": "none"},
+    ),
     # MuJoCo fits a ball to the mesh; what it comes to is not computed, and the tensor alone is judged.
     "MJCF, a geom fitted to a mesh": Row(
         mjcf(f'<body name="a">{HINGE}{HEAVY}<geom type="sphere" mesh="m"/></body>', before=FITTED),
@@ -176,8 +206,9 @@ FORMATS: Final = {
         refused=True,
     ),
     "MJCF, zeros with mass": Row(
-        mjcf('<body name="a"><inertial pos="0 0 0" mass="5" diaginertia="0 0 0"/></body>'),
+        mjcf(f'<body name="a">{HINGE}<inertial pos="0 0 0" mass="5" diaginertia="0 0 0"/></body>'),
         {"a": "placeholder"},
+        refused=True,
     ),
     "URDF, a visual shape that is no number": Row(
         urdf(link("a", 5.0, 0.02, BALL, seen='<box size="1 1 x"/>')), {"a": "good"}

@@ -12,6 +12,12 @@ __all__ = ["ROOM"]
 # The cube of 6 kg filled has m a²/6 = 1; with its walls out by 2 % of √3, matter on them m (a²/4 + …) 2.
 GROWN: Final = 6.0 * 2.0 * (0.5 + 0.02 * math.sqrt(3.0)) ** 2
 
+
+def dense(times: float) -> str:
+    """A ball in which 5 kg have so many times 25,000 kg/m^3."""
+    return f'<sphere radius="{(5.0 / (25_000.0 * times) * 0.75 / math.pi) ** (1.0 / 3.0)!r}"/>'
+
+
 ROOM: Final = {
     "on the walls": Row(urdf(link("a", 6.0, 2.999, CUBE)), {"a": "good"}),
     "beyond the walls by what a box may be off": Row(
@@ -60,6 +66,35 @@ ROOM: Final = {
     "a point farther outside": Row(urdf(link("a", 0.1, 1e-7, BALL, at="0 0 0.107")), {"a": "impossible"}),
     "a ball without size beside a cube": Row(
         urdf(link("a", 6.0, 1.0, '<sphere radius="0"/>', CUBE)), {"a": "good"}, "as its collision shape"
+    ),
+    # 5 kg on both sides of 25,000 kg/m^3; the tensor is that of a ball of 0.1 m.
+    "a ball as dense as any matter": Row(
+        urdf(link("a", 5.0, 0.02, dense(0.9999))), {"a": "suspect"}, "times its collision shape's"
+    ),
+    "a ball denser than any matter": Row(
+        urdf(link("a", 5.0, 0.02, dense(1.0001))), {"a": "suspect"}, "2.5e+04 kg/m^3 in its shapes"
+    ),
+    "a ball denser than any matter, of its own tensor": Row(
+        urdf(link("a", 5.0, 2e-6, '<sphere radius="0.001"/>')), {"a": "suspect"}, "1.19e+09 kg/m^3"
+    ),
+    "dots of contact on a body": Row(
+        urdf(link("a", 5.0, 0.02, '<sphere radius="0.001"/>', seen=BALL)),
+        {"a": "good"},
+        "as its visual shape",
+    ),
+    "a body seen as a dot": Row(
+        urdf(link("a", 5.0, 0.02, BALL, seen='<sphere radius="0.001"/>')),
+        {"a": "good"},
+        "as its collision shape",
+    ),
+    "dots, and a mesh that is not there": Row(
+        urdf(link("a", 5.0, 0.02, '<sphere radius="0.001"/>', seen=UNREAD)), {"a": "suspect"}
+    ),
+    "a placeholder with a marker": Row(
+        urdf(link("a", 5.0, 1.0, '<sphere radius="0.001"/>')), {"a": "placeholder"}
+    ),
+    "what no body has, with a marker": Row(
+        urdf(link("a", 5.0, (1.0, 1.0, 3.0), '<sphere radius="0.001"/>')), {"a": "impossible"}
     ),
     "a ball without size alone": Row(urdf(link("a", 6.0, 2.0, '<sphere radius="0"/>')), {"a": "good"}),
     "a tenth": Row(urdf(link("a", 5.0, 0.00201, BALL)), {"a": "good"}),

@@ -24,7 +24,74 @@ TENSORS: Final = {
     "zero with little mass and shape": Row(urdf(link("a", 1e-9, 0.0, BALL)), {"a": "placeholder"}),
     "zero with mass, tied": Row(
         urdf(bare("base"), ARM, link("a", 1.0, 0.0), joint("base", "arm"), joint("arm", "a", "fixed")),
-        {"base": "none", "arm": "good", "a": "placeholder"},
+        {"base": "none", "arm": "good", "a": "good"},
+        "a point mass, tied to arm",
+        singular=False,
+    ),
+    "zero with mass, tied, by which what is tied to it is moved": Row(
+        urdf(bare("base"), link("a", 1.0, 0.0), ARM, joint("base", "a"), joint("a", "arm", "fixed")),
+        {"base": "none", "a": "good", "arm": "good"},
+        singular=False,
+    ),
+    "zero with mass, tied to the world": Row(
+        urdf(bare("world"), link("a", 1.0, 0.0), joint("world", "a", "fixed")),
+        {"world": "none", "a": "good"},
+        "a point mass, tied to the world",
+    ),
+    # A point on the axis, and two points in a line with it: no moment about it.
+    "zero with mass, tied to a frame": Row(
+        urdf(bare("base"), bare("f"), link("a", 1.0, 0.0), joint("base", "f"), joint("f", "a", "fixed")),
+        {"base": "none", "f": "none", "a": "placeholder"},
+        singular=True,
+    ),
+    "zero with mass, tied to another": Row(
+        urdf(
+            bare("base"),
+            link("a", 1.0, 0.0),
+            link("b", 2.0, 0.0),
+            joint("base", "a"),
+            joint("a", "b", "fixed", at="0 0 1"),
+        ),
+        {"base": "none", "a": "placeholder", "b": "placeholder"},
+        singular=True,
+    ),
+    "zero with mass, tied to a rod": Row(
+        urdf(
+            bare("base"),
+            link("a", 1.0, 0.0),
+            link("rod", 1.0, (1.0, 1.0, 0.0)),
+            joint("base", "a"),
+            joint("a", "rod", "fixed"),
+        ),
+        {"base": "none", "a": "placeholder", "rod": "good"},
+        singular=True,
+    ),
+    "zero with mass, moved on a body": Row(
+        urdf(ARM, link("a", 1.0, 0.0), joint("arm", "a")), {"arm": "good", "a": "placeholder"}, singular=True
+    ),
+    "less than osmium, tied": Row(
+        urdf(
+            ARM,
+            link("a", 1.0, 0.99 * OSMIUM),
+            link("b", 2.0, 0.99 * OSMIUM),
+            joint("arm", "a", "fixed"),
+            joint("arm", "b", "fixed"),
+        ),
+        {"arm": "good", "a": "good", "b": "good"},
+    ),
+    "more than osmium, one for unlike masses, tied": Row(
+        urdf(
+            ARM,
+            link("a", 1.0, 4.0 * OSMIUM),
+            link("b", 2.0, 4.0 * OSMIUM),
+            joint("arm", "a", "fixed"),
+            joint("arm", "b", "fixed"),
+        ),
+        {"arm": "good", "a": "placeholder", "b": "placeholder"},
+    ),
+    "beyond the sum of the others, tied": Row(
+        urdf(ARM, link("a", 1e-3, (1e-6, 1e-6, 3e-6)), joint("arm", "a", "fixed")),
+        {"arm": "good", "a": "impossible"},
     ),
     "the unit tensor": Row(urdf(link("a", 5.0, 1.0)), {"a": "placeholder"}, "1 1 1 is the unit tensor"),
     "the unit tensor of a cube": Row(

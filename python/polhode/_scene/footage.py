@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from polhode._rounding import at_least
 from polhode._scene.clock import pace
 from polhode._scene.sampling import COARSE, MOST, TURN, fastest, motion_times, turns
 
@@ -218,4 +219,6 @@ def _on_screen(
     if duration is None:
         return (needed if time_unit is None else pace(abs(length), needed, turned / TURN, time_unit)), []
     where = f"duration: at {RATE:g} pictures a second from one to the next"
-    return duration, _judged(turned / duration, where, f"give duration={np.ceil(needed):.6g} or more")
+    return duration, _judged(
+        turned / duration, where, f"give duration={at_least(float(np.ceil(needed)), 6)} or more"
+    )

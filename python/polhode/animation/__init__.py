@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from polhode._hints import with_hints
 from polhode._scene.footage import GIF_RATE
 from polhode._scene.scene import Scene
 from polhode.animation._page import page
@@ -25,6 +26,7 @@ __all__ = ["ANIMATION_SUFFIXES", "animate"]
 ANIMATION_SUFFIXES = (".html", ".gif", ".mp4")
 
 
+@with_hints
 def animate(
     trajectory: Trajectory | FreeMotion | HeavyTop | GyrostatMotion,
     path: str | PathLike[str],
@@ -34,7 +36,7 @@ def animate(
     frames: int | None = None,
     duration: float | None = None,
     title: str = "Motion of a rigid body",
-    time_unit: str = "s",
+    time_label: str = "s",
     size: int | tuple[int, int] | None = None,
     fps: float | None = None,
     labels: bool = True,
@@ -84,9 +86,9 @@ def animate(
         Duration on the screen, in seconds. By default a page shows the motion in real time, or slower or
         faster by a round factor, which it names. A film takes 10 seconds by default, or longer so that the
         body turns by at most 20 degrees from picture to picture.
-    title, time_unit : str, optional
-        Title and unit of time as they are shown. A page can convert ns, us, ms, s, min, h, d and yr to
-        seconds.
+    title, time_label : str, optional
+        Title, and word for the unit of the times; it converts no number. Under the words ns, us, ms, s, min,
+        h, d and yr a page knows how fast real time is.
     size : int or (int, int), optional
         Size of a film: width and height in pixels; 480 by default.
     fps : float, optional
@@ -127,7 +129,7 @@ def animate(
         duration=duration,
         shape=shape,
         title=title,
-        time_unit=time_unit,
+        time_label=time_label,
         fps=fps,
         is_page=file.suffix.lower() == ".html",
     )
@@ -138,10 +140,16 @@ def animate(
 
 
 def scene_of(
-    motion: Any, end: float | None = None, *, is_page: bool, frames: int | None = None, **options: Any
+    motion: Any,
+    end: float | None = None,
+    *,
+    is_page: bool,
+    frames: int | None = None,
+    time_label: str = "s",
+    **options: Any,
 ) -> Scene:
     """Choose the frames of a trajectory, or of a motion in closed form, for a page or a film."""
-    kind: dict[str, Any] = {"is_page": is_page, "is_film": not is_page}
+    kind: dict[str, Any] = {"is_page": is_page, "is_film": not is_page, "time_unit": time_label}
     if hasattr(motion, "t"):
         if end is not None:
             raise ValueError("end: a trajectory has its own times; leave it out")
@@ -162,7 +170,6 @@ def page_of(motion: Any, end: float | None = None, **options: Any) -> tuple[str,
         "duration": None,
         "shape": None,
         "title": "Motion of a rigid body",
-        "time_unit": "s",
     }
     scene = scene_of(motion, end, is_page=True, **(given | options))
     return page(scene), scene.notes

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from polhode._extras import require
+from polhode._rounding import at_least
 from polhode._scene.footage import GIF_RATE
 from polhode.animation._picture import Picture
 from polhode.files.writing import replacing, writing
@@ -52,9 +53,10 @@ def film(
     pixels, count = _pixels(size, file), len(scene.t)
     is_gif = file.suffix.lower() == ".gif"
     if is_gif and count > GIF_RATE * scene.duration * (1.0 + 1e-9):
+        least = at_least(count / GIF_RATE, 6)
         raise ValueError(
             f"duration: {count} pictures in {scene.duration:g} s are more than the {GIF_RATE:g} a second "
-            f"that viewers of GIFs show; give duration={count / GIF_RATE:g} or more, or fewer frames"
+            f"that viewers of GIFs show; give duration={least} or more, or fewer frames"
         )
     program = "" if is_gif else _ffmpeg(file)
     picture = Picture(scene, pixels, has_labels=labels)
@@ -122,11 +124,13 @@ def _ffmpeg(file: Path) -> str:
     try:
         carrier: Any = require("imageio_ffmpeg", extra="film", purpose=f"path: {file}")
         return str(carrier.get_ffmpeg_exe())
-    except (ModuleNotFoundError, RuntimeError):
-        raise FileNotFoundError(
-            f'path: {file} needs the program ffmpeg: pip install "polhode[film]" brings it; '
-            "a .gif or .html needs none"
-        ) from None
+    except ModuleNotFoundError:
+        way_out = 'pip install "polhode[film]" brings it'
+    except RuntimeError:  # the package is there, without the program
+        way_out = "install it"
+    raise FileNotFoundError(
+        f"path: {file} needs the program ffmpeg; {way_out}, or write a .gif or .html, which need none"
+    )
 
 
 def _pixels(size: int | tuple[int, int] | None, file: Path) -> tuple[int, int]:

@@ -12,19 +12,23 @@ from polhode._core import RigidBody
 from polhode._printed import from_printout
 from polhode.assembly.keys import COMMON, FILE, KINDS, PRINTED, check_keys, text_of
 from polhode.errors import PolhodeError
+from polhode.files.body import body_of_molecule, check_molecule_options
 from polhode.files.components import MOST_FACES, overlapping
 from polhode.files.content import is_molecule
 from polhode.files.loaded import load
 from polhode.files.mesh_solid import solid_of
+from polhode.files.reading import words_of
 from polhode.files.saved_body import read_report
 from polhode.units import metres_per
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    import numpy as np
+    from numpy.typing import NDArray
+
     from polhode.assembly.numbers import Scope
     from polhode.files.loaded import Loaded
-    from polhode.files.mesh_solid import MeshSolid
 
 __all__ = ["SAVED", "Matter", "body_of_part", "kind_of"]
 
@@ -70,12 +74,15 @@ class Matter(NamedTuple):
         Of a solid.
     notes : tuple of str
         What is to be told of its file.
+    mesh : (vertices, faces) or None
+        Its triangles in metres, where they can be compared with other parts.
     """
 
     body: RigidBody
     metres: float
     arguments: dict[str, Any] = {}  # noqa: RUF012
     notes: tuple[str, ...] = ()
+    mesh: tuple[NDArray[np.float64], NDArray[np.int64]] | None = None
 
 
 def body_of_part(kind: str, table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
@@ -90,11 +97,7 @@ def body_of_part(kind: str, table: Mapping[str, Any], scope: Scope, folder: Path
     except (ValueError, TypeError, OverflowError, OSError) as error:
         if str(error).startswith(scope.where):
             raise
-        what = (
-            f"{error.filename}: {error.strerror}; check the path"
-            if isinstance(error, OSError)
-            else _in_keys(str(error))
-        )
+        what = words_of(error) if isinstance(error, OSError) else _in_keys(str(error))
         kind_of_error = type(error) if isinstance(error, PolhodeError) else PolhodeError
         raise kind_of_error(f"{scope.where}: {what}") from error
     if made.body.shape:
@@ -215,7 +218,10 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
     if is_molecule(path):
         unit = str(table.get("length_unit", "angstrom"))
         options |= {key: table[key] for key in ("mass", "density", "weld") if key in table}
-        return Matter(RigidBody.from_file(path, length_unit=unit, **options), metres_per(unit))
+        none = {"weld": 0.0, "index_base": 1}
+        check_molecule_options(path, **{key: value != none.get(key, False) for key, value in options.items()})
+        body, notes, crossed = body_of_molecule(path, unit)
+        return Matter(body, metres_per(unit), notes=(*crossed, *notes))
     loaded = load(path, index_base=options.pop("index_base", 1))
     metres = metres_per(_unit_of(loaded, table, scope))
     if "weld" in table:
@@ -223,17 +229,15 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
     if not ({"mass", "density"}.isdisjoint(table) and _has_materials(loaded)):
         options |= _weight(table, scope, path.name)
     solid = solid_of(loaded, scale=metres, **options)
-    return Matter(solid.body, metres, notes=(*loaded.notes, *_overlaps(loaded, solid, metres, options)))
-
-
-def _overlaps(loaded: Loaded, solid: MeshSolid, metres: float, options: Mapping[str, Any]) -> list[str]:
-    """Say which components of a mesh overlap; of solids of CAD the notes of their file do."""
-    if loaded.cad is not None or not options.keys().isdisjoint(("union", "closure", "repair", "weld")):
-        return []
-    if solid.faces > MOST_FACES:
-        return []
-    lines = overlapping(loaded.mesh.vertices * metres, loaded.mesh.faces)
-    return [*lines, "union = true counts what components share once"] if lines else []
+    is_whole = options.keys().isdisjoint(("union", "closure", "repair", "weld"))
+    if loaded.cad is not None or not is_whole or solid.faces > MOST_FACES:
+        return Matter(
+            solid.body, metres, notes=loaded.notes
+        )  # of solids of CAD their file tells what overlaps
+    mesh = loaded.mesh.vertices * metres, loaded.mesh.faces
+    lines = overlapping(*mesh)
+    lines += ["union = true counts what components share once"] if lines else []
+    return Matter(solid.body, metres, notes=(*loaded.notes, *lines), mesh=mesh)
 
 
 def _has_materials(loaded: Loaded) -> bool:

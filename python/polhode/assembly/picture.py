@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from polhode._hints import with_hints
 from polhode._scene.shape import body_shape
 from polhode._scene.triangles import joined
 from polhode.assembly.matter import SAVED
@@ -38,7 +39,8 @@ _MOST: Final = 20_000
 """Triangles that are drawn of all parts together."""
 
 
-def draw(assembly: Assembly, ax: Axes3D | None = None, *, length_unit: str | None = None) -> Axes3D:
+@with_hints
+def draw(assembly: Assembly, ax: Axes3D | None = None, *, length_label: str | None = None) -> Axes3D:
     """Draw the parts where they stand; see :meth:`Assembly.plot`.
 
     A mesh is drawn as it is, or coarser where it has many triangles; a solid as it is; a part of which no
@@ -56,7 +58,7 @@ def draw(assembly: Assembly, ax: Axes3D | None = None, *, length_unit: str | Non
         colors.append(np.tile(_COLORS[color % len(_COLORS)], (len(triangles), 1)))
         corners += len(points)
     every = np.concatenate(vertices)
-    ax = draw_body(every, np.concatenate(faces), ax, length_unit=length_unit, colors=np.concatenate(colors))
+    ax = draw_body(every, np.concatenate(faces), ax, length_label=length_label, colors=np.concatenate(colors))
     reach = 0.55 * float(np.ptp(every, axis=0).max())
     if assembly.body.principal.top != "point":
         principal_axes(assembly.body, ax, length=reach)

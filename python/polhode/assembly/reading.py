@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any, Final
 from polhode.assembly.keys import COMMON, TOP, check_keys, text_of
 from polhode.assembly.matter import body_of_part, kind_of
 from polhode.assembly.numbers import Scope
+from polhode.assembly.overlaps import Form, Placed, find_overlaps, words_of
 from polhode.assembly.placing import HERE, Place, copies, place_of
 from polhode.assembly.result import Assembly, Member
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.files.reading import read_text
+from polhode.files.reading import read_text, words_of
 from polhode.uncertainty.ledger import ledger_of_bodies
 
 if TYPE_CHECKING:
@@ -39,6 +40,7 @@ class _Unit:
     metres: float = 1.0
     shape: str = ""
     arguments: dict[str, Any] = field(default_factory=dict)
+    form: Form | None = None
     children: tuple[tuple[Place, _Unit], ...] = ()
     members: int = 1
     notes: tuple[str, ...] = ()
@@ -147,9 +149,8 @@ def _tree(
             raise PolhodeError(f"{where}: part {number}: it has no name; state name")
         at = f"part {own!r}"
         _check_name(own, f"{where}: {at}")
-        if own in seen or own == name:
-            other = "there twice" if own in seen else "that of the whole"
-            raise PolhodeError(f"{where}: {at}: the name is {other}; give each part its own")
+        if own in seen:
+            raise PolhodeError(f"{where}: {at}: the name is there twice; give each part its own")
         seen.add(own)
         child = _part(own, row, folder, scope.within(at, row.get("length_unit")), known, inside)
         members += child[1].members
@@ -184,33 +185,27 @@ def _part(
         try:
             inner = _file(folder / text_of(row, "assembly", scope.where), known, inside)
         except OSError as error:
-            raise PolhodeError(
-                f"{scope.where}: {error.filename}: {error.strerror}; check the path"
-            ) from error
+            raise PolhodeError(f"{scope.where}: {words_of(error)}") from error
         one = _Unit(
             name, comment or inner.comment, children=inner.children, members=inner.members, notes=inner.notes
         )
     else:
-        body, metres, arguments, told = body_of_part(kind, row, scope, folder)
+        body, metres, arguments, told, mesh = body_of_part(kind, row, scope, folder)
         shape = text_of(row, "solid", scope.where)
+        form = Form(shape, arguments, mesh) if shape or mesh is not None else None
         mended = row.get("repair") is True and "repaired" in body.provenance.checked
         notes = (*told, *((f"{scope.where}: its mesh was repaired; polhode report lists how",) * mended))
-        one = _Unit(name, comment, body, file, metres, shape, arguments, notes=notes)
+        one = _Unit(name, comment, body, file, metres, shape, arguments, form, notes=notes)
     place, moves = place_of(row, scope), copies(row, scope)
     if len(moves) == 1:
         return place, one
-    notes = one.notes
-    if not any(key in row for key in ("step", "turn")):
-        notes += (
-            f"{scope.where}: all {len(moves)} copies are at one place; step or turn moves each from the last",
-        )
     members = one.members * len(moves) + 1
     if members > MOST_MEMBERS:
         raise PolhodeError(f"{scope.where}: more than {MOST_MEMBERS} parts, copies counted; lower count")
     group = tuple(
         (move.of(place), replace(one, name=f"{k}", notes=())) for k, move in enumerate(moves, start=1)
     )
-    return HERE, _Unit(name, comment, children=group, members=members, notes=notes)
+    return HERE, _Unit(name, comment, children=group, members=members, notes=one.notes)
 
 
 def _check_name(name: str, where: str) -> None:
@@ -225,6 +220,7 @@ def _assembled(whole: _Unit) -> Assembly:
     ids, parents, comments = [], [], []
     bodies: list[RigidBody | None] = []
     members: dict[str, Member] = {}
+    placed: list[Placed] = []
     for name, parent, place, unit in _walk(whole):
         ids.append(name)
         parents.append(parent)
@@ -233,17 +229,23 @@ def _assembled(whole: _Unit) -> Assembly:
         bodies.append(body)
         if body is not None:
             members[name] = Member(name, body, unit.shape, unit.arguments, unit.file, unit.metres, *place)
+            placed.append(Placed(name, body, place, unit.form))
+    found, unseen = find_overlaps(placed)
     return Assembly(
         name=whole.name,
         parts=tuple(members.values()),
         ledger=ledger_of_bodies(ids, parents, bodies, comments),
-        notes=whole.notes,
+        notes=(*whole.notes, *words_of(found), *unseen),
+        overlaps=tuple(found),
     )
 
 
 def _walk(whole: _Unit) -> Iterator[tuple[str, str, Place, _Unit]]:
     """Give every part and group with its full name and that of what it is in, the outer ones first."""
-    waiting = [(whole.name, "", HERE, whole)]
+    root, names = whole.name, {inner.name for _, inner in whole.children}
+    while root in names:  # a part may have the name of the whole, but not its place in the tree
+        root = f"{root} (whole)"
+    waiting = [(root, "", HERE, whole)]
     while waiting:
         name, parent, place, unit = waiting.pop()
         yield name, parent, place, unit

@@ -20,7 +20,27 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Assembly", "Member"]
+__all__ = ["Assembly", "Member", "Overlap"]
+
+
+class Overlap(NamedTuple):
+    """Two parts of an assembly that share space, so that matter counts twice.
+
+    Attributes
+    ----------
+    kind : str
+        ``"across"``; ``"inside"`` where the other lies within the one; ``"same"`` where it is the same part at
+        the same place.
+    one, other : str
+        Their names, the larger one first.
+    volume : float
+        What they share, in m^3; not a number where that was not computed.
+    """
+
+    kind: str
+    one: str
+    other: str
+    volume: float
 
 
 class Member(NamedTuple):
@@ -68,12 +88,16 @@ class Assembly:
         The tree of parts with the sums at every level, see :mod:`polhode.uncertainty.ledger`.
     notes : tuple of str
         Remarks, for example about copies at the same place.
+    overlaps : tuple of Overlap
+        Parts that share space, the largest volume first. Compared are solids and closed meshes of up to 50,000
+        triangles, not solids of CAD.
     """
 
     name: str
     parts: tuple[Member, ...]
     ledger: Ledger
     notes: tuple[str, ...] = ()
+    overlaps: tuple[Overlap, ...] = ()
 
     @cached_property
     def body(self) -> RigidBody:
@@ -101,7 +125,7 @@ class Assembly:
         ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
             Where to draw; a new figure by default.
         **options
-            `length_unit`, see :func:`polhode.plot.body`.
+            `length_label`, see :func:`polhode.plot.body`.
 
         Returns
         -------

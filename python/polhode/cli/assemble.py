@@ -109,8 +109,8 @@ def save_assembly(made: Assembly, path: Path) -> list[str]:
         return [f"saved {path}"]
     figure_module: Any = require("matplotlib.figure", extra="plot", purpose=f"--save {path}:")
     figure = figure_module.Figure(figsize=(12.0, 5.6), facecolor="white", layout="constrained")
-    made.plot(figure.add_subplot(1, 2, 1, projection="3d", computed_zorder=False), length_unit="m")
-    made.ledger.plot(figure.add_subplot(1, 2, 2), of="mass")
+    made.plot(figure.add_subplot(1, 2, 1, projection="3d", computed_zorder=False), length_label="m")
+    made.ledger.plot(figure.add_subplot(1, 2, 2), of="mass", mass_label="kg")
     save_picture(figure, path)
     notes = [f"saved {path}"]
     boxes = sum(part.file is None and not part.solid for part in made.parts)

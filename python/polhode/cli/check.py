@@ -17,7 +17,7 @@ from polhode.errors import FileFormatError, PolhodeError
 from polhode.files.reading import files_read
 from polhode.files.writing import write_bytes
 from polhode.robots.sources import read_stream
-from polhode.robots.verdict import has_own_tensor, is_without_mass
+from polhode.robots.verdict import has_own_tensor, is_without_mass, replacement
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -83,6 +83,8 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
     if options.fix is None:
         if any(verdict.better is not None for verdict in bad):
             report.notes.append("--fix FILE writes better values into a copy")
+        elif any(verdict.inside is not None for verdict in verdicts):
+            report.notes.append("--fix FILE moves tensors on the edge inside, in a copy")
         if any(verdict.verdict == "missing" and verdict.better is None for verdict in bad):
             report.notes.append(_WAY_OUT)
         return report, not bad
@@ -209,24 +211,28 @@ def _fix(
     write_bytes(path, source)
     rows, left, elsewhere = [], [], []
     for number, (link, verdict) in enumerate(zip(robot.links, verdicts, strict=True)):
-        if verdict.verdict not in failing:
-            continue
-        if verdict.better is None:
-            left.append((number, verdict))
+        better = replacement(verdict, failing)
+        if better is None:
+            if verdict.verdict in failing:
+                left.append((number, verdict))
             continue
         if link.rewrite is None:
             elsewhere.append(f"{verdict.name} ({verdict.file})")
             continue
+        if verdict.verdict not in failing:
+            origin = "its own tensor, moved inside the edge"
+        else:
+            origin = f"its {verdict.shapes} shape" if verdict.shapes else "the nearest tensor of a body"
         rows.append(
             {
                 "link": verdict.name,
-                "mass": verdict.better.mass,
+                "mass": better.mass,
                 "center_of_mass_before": link.inertial.center_of_mass if link.inertial else None,
-                "center_of_mass": verdict.better.center_of_mass,
+                "center_of_mass": better.center_of_mass,
                 "inertia_before": link.inertial.inertia if link.inertial else None,
-                "inertia": verdict.better.inertia,
-                "from": f"its {verdict.shapes} shape" if verdict.shapes else "the nearest tensor of a body",
-                "diagonal": verdict.better.inertia.diagonal(),
+                "inertia": better.inertia,
+                "from": origin,
+                "diagonal": better.inertia.diagonal(),
             }
         )
     columns = (
@@ -252,7 +258,9 @@ def _fix(
     if unread:
         report.notes.append(f"left as they are, to be corrected by hand: {', '.join(unread)}")
     if unshaped:
-        report.notes.append(f"left as they are, since their geometry tells nothing: {', '.join(unshaped)}")
+        report.notes.append(
+            f"left as they are, since nothing tells better values that engines take: {', '.join(unshaped)}"
+        )
     if elsewhere:
         report.notes.append(f"left as they are, to be fixed in their own files: {', '.join(elsewhere)}")
     return not any(verdict.verdict in failing for verdict in again)

@@ -8,9 +8,10 @@ import numpy as np
 
 from polhode import RigidBody, orbits, plot
 from polhode._extras import require
-from polhode._quantities import quantities, quantity, vector
+from polhode._quantities import amounts, quantity, vector
 from polhode.cli.cluster import client_at
 from polhode.cli.layout import Cell, Column, Field, Report, Table
+from polhode.cli.motion_options import MODES
 from polhode.cli.source import shown
 from polhode.cli.whole import any_body, check_moments_alone
 from polhode.errors import PolhodeError
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 
 __all__ = ["draw_flyby", "flyby_report"]
 
+EARTH: Final = 3.986004418e14
+EARTH_RADIUS: Final = 6.371e6
 HOUR: Final = 3600.0
 SHARES: Final = (0.05, 0.5, 0.95)
 PICTURES: Final = (".png", ".pdf", ".svg")
@@ -50,8 +53,8 @@ def flyby_report(file: Path | None, options: FlybyOptions, body: BodyOptions) ->
     report.section(
         "before",
         Field("before.mode", "mode", str(found.before.mode[0])),
-        Field("before.rotation_period", "P_psi", float(found.before.rotation_period[0]) / HOUR, "h"),
-        Field("before.precession_period", "P_phi", float(found.before.precession_period[0]) / HOUR, "h"),
+        *_before("rotation_period", "P_psi", found.before.rotation_period / HOUR),
+        *_before("precession_period", "P_phi", found.before.precession_period / HOUR),
     )
     columns = (
         Column("name", "number"),
@@ -84,8 +87,8 @@ def draw_flyby(found: Flyby, path: Path) -> None:
     figure_module: Any = require("matplotlib.figure", extra="plot", purpose="drawing")
     figure = figure_module.Figure(figsize=(11.0, 7.4), facecolor="white", layout="constrained")
     axes = figure.subplots(2, 2).ravel()
-    plot.flyby(found, "rotation_period", axes[0], time_unit="h", time_scale=HOUR)
-    plot.flyby(found, "precession_period", axes[1], time_unit="h", time_scale=HOUR)
+    plot.flyby(found, "rotation_period", axes[0], time_label="h", time_scale=HOUR)
+    plot.flyby(found, "precession_period", axes[1], time_label="h", time_scale=HOUR)
     plot.flyby(found, "spin_ratio", axes[2])
     plot.flyby(found, "pole_shift", axes[3])
     save_picture(figure, path)
@@ -105,23 +108,48 @@ def _run(
         raise PolhodeError(f"--clones: expected a positive number, got {options.clones}")
     if not options.periods:
         raise PolhodeError('--periods: state the two periods, as in "264.178 h, 27.38547 h"')
+    if options.mode is None:
+        raise PolhodeError(f"--mode: {MODES}")
+    notes: tuple[str, ...]
     if file is not None:
         loaded = any_body(file, body)
-        asteroid, notes = loaded.body, loaded.notes
+        asteroid, notes = loaded.body, tuple(loaded.notes)
     else:
         check_moments_alone(body)
         notes = ()
-        asteroid = RigidBody.from_principal(1.0, quantities(options.moments, 3, "kg m^2", "--moments"))
-    rotation, precession = quantities(options.periods, 2, "s", "--periods")
+        asteroid = RigidBody.from_principal(1.0, amounts(options.moments, 3, "kg m^2", "--moments"))
+    rotation, precession = amounts(options.periods, 2, "s", "--periods")
     span = quantity(options.span, "s", "--span")
     if not span > 0.0:
         raise PolhodeError(f"--span: expected a positive time, got {span:g}")
-    if options.eccentricity < 0.0:
-        raise PolhodeError(f"--eccentricity: expected 0 or more, got {options.eccentricity:g}")
+    if not options.eccentricity >= 0.0:
+        raise PolhodeError(f"--eccentricity: expected 1 or more, got {options.eccentricity:g}")
+    if options.eccentricity < 1.0:
+        raise PolhodeError(
+            f"--eccentricity: {options.eccentricity:g} is that of an ellipse, on which the body goes round "
+            "the planet; state 1 or more, as in --eccentricity 4.25, or for an ellipse call polhode.ensemble "
+            "in Python, with load=loads.gravity_gradient(orbit)"
+        )
+    mu = quantity(options.mu, "m^3/s^2", "--mu")
+    periapsis = quantity(options.periapsis, "m", "--periapsis")
+    radius = EARTH_RADIUS if abs(mu / EARTH - 1.0) < 1e-3 else None
+    if options.radius is not None:
+        radius = quantity(options.radius, "m", "--radius")
+    if radius is None:
+        notes = (
+            *notes,
+            "the radius of this planet is unknown here: with --radius an orbit through it is refused",
+        )
+    elif not periapsis > radius:
+        raise PolhodeError(
+            f"--periapsis: {periapsis / 1e3:.6g} km from the centre is within the planet, whose radius is "
+            f'{radius / 1e3:.6g} km; state a larger distance, as in --periapsis "38011.486 km", or another '
+            "--radius"
+        )
     orbit = orbits.from_elements(
-        quantity(options.mu, "m^3/s^2", "--mu"),
+        mu,
         eccentricity=options.eccentricity,
-        periapsis=quantity(options.periapsis, "m", "--periapsis"),
+        periapsis=periapsis,
         inclination=quantity(options.inclination, "rad", "--inclination"),
         node=quantity(options.node, "rad", "--node"),
         argument=quantity(options.argument, "rad", "--argument"),
@@ -137,12 +165,21 @@ def _run(
             mode=options.mode,
             pole=vector(options.pole, "", "--pole") if options.pole else None,
             pole_sigma=quantity(options.pole_sigma, "rad", "--pole-sigma"),
+            radius=radius,
             n=options.clones,
             seed=options.seed,
             rtol=options.rtol,
             client=client,
         )
     return found, orbit, notes
+
+
+def _before(name: str, label: str, hours: Any) -> list[Field]:
+    """Give a period before the flyby: the same for all clones, or the median and the spread of theirs."""
+    low, median, high = (float(x) for x in np.nanquantile(hours, SHARES))
+    is_same = high - low <= 1e-9 * median
+    hint = "" if is_same else f"median; 5 % to 95 %: {low:.6g} to {high:.6g}"
+    return [Field(f"before.{name}", label, median, "h", hint)]
 
 
 def _row(name: str, values: Any, unit: str) -> dict[str, Any]:

@@ -73,12 +73,16 @@ class Field:
 
 @dataclass(frozen=True)
 class Column:
-    """One column of a table: the key of its values in JSON, its heading and its unit."""
+    """One column of a table: the key of its values in JSON, its heading and its unit.
+
+    `shown` is the unit of the cells in the table where it is another one than that of the JSON.
+    """
 
     key: str
     heading: str
     unit: str = ""
     decimals: int | None = None
+    shown: str = ""
 
 
 @dataclass(frozen=True)
@@ -196,7 +200,7 @@ def _lines(item: Field) -> Iterator[str]:
 
 
 def _table_lines(table: Table) -> Iterator[str]:
-    headings = [f"{c.heading}, {c.unit}" if c.unit else c.heading for c in table.columns]
+    headings = [f"{c.heading}, {c.shown or c.unit}" if c.unit else c.heading for c in table.columns]
     texts = [[_cell(row.get(c.key), c.decimals) for c in table.columns] for row in table.rows[: table.most]]
     widths = [max(len(line[i]) for line in [headings, *texts]) for i in range(len(headings))]
     for line in [headings, *texts]:

@@ -62,6 +62,12 @@ def ledger_report(file: Path, options: LedgerOptions) -> tuple[Report, Ledger]:
         _shares(report, made, top, options)
     if made.sigma is not None and made.unstated:
         report.notes.append(f"{made.unstated} of the parts state no standard deviation and count as exact")
+    for source, numbers in made.opposite_signs.items():
+        report.notes.append(
+            f"source {source}: its parts state {', '.join(numbers)} with both signs of POIconv; what they "
+            "share is the error of the element of the tensor, so that a number of + is too small where one "
+            "of - is too large"
+        )
     report.notes.append("numbers are in the units of the table; ± is one standard deviation, to first order")
     return report, made
 

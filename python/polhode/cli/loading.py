@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from polhode._bonds import crossings_of
 from polhode._quantities import amount, has_unit, quantity
 from polhode.cli.components import components_of, has_names, overlaps_beside, weighed
 from polhode.cli.progress import reading_progress
@@ -27,7 +28,8 @@ if TYPE_CHECKING:
     from polhode.cli.options import BodyOptions, LengthUnit
     from polhode.files.loaded import Loaded
     from polhode.files.mesh import Mesh
-    from polhode.molecules import Isotope
+    from polhode.files.xyz import Molecule
+    from polhode.molecules import CellCrossings, Isotope
 
 __all__ = ["LoadedBody", "bond_sigma", "in_file_unit", "load_body", "loaded_molecule"]
 
@@ -67,6 +69,8 @@ class LoadedBody:
         Whether the file or its format says so.
     kind : str
         What was read where it is neither a mesh nor a molecule: "saved body", "assembly" or "printout".
+    crossings : CellCrossings or None
+        What crosses the cell of a molecule's file, where it has one.
     """
 
     body: RigidBody
@@ -83,6 +87,7 @@ class LoadedBody:
     length_unit: str | None = None
     states_unit: bool = False
     kind: str = ""
+    crossings: CellCrossings | None = None
 
     @property
     def moment_unit(self) -> str:
@@ -174,9 +179,11 @@ def _unusual(volume: float, unit: str | None, loaded: Loaded) -> list[str]:
     ]
     if not likely:
         return [f"a volume of {volume:.4g} m^3 is unusual for a part; check the unit of length"]
-    way_out = f"state --length-unit {likely[0]}"
+    way_out = f"check that the file is in {unit}, as --length-unit says"
     if loaded.states_unit:
         way_out = "check what exported the file, which says its unit itself"
+    elif loaded.unit == unit:
+        way_out = f"check what exported the file, since {loaded.format} is in {unit} by its standard"
     return [
         f"a volume of {volume:.4g} m^3 is unusual for a part: in {likely[0]} it would be "
         f"{stored * metres_per(likely[0]) ** 3:.4g} m^3; {way_out}"
@@ -295,9 +302,7 @@ def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
     atoms = molecule_isotopes(file, molecule)
     unit = options.length_unit or "angstrom"
     in_angstrom = metres_per(unit) / METRES["angstrom"]
-    molecule = molecule._replace(
-        positions=molecule.positions * in_angstrom, rounding=molecule.rounding * in_angstrom
-    )
+    molecule = molecule.scaled(in_angstrom)
     at = atoms_of(
         file,
         atoms,
@@ -305,25 +310,29 @@ def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
         bond_sigma=bond_sigma(options.bond_sigma, unit),
         mass_sigmas=options.mass_sigmas,
     )
-    return loaded_molecule(at, atoms, molecule.comment, notes=(*molecule.notes, *loaded.notes))
+    return loaded_molecule(at, atoms, molecule, notes=loaded.notes)
 
 
 def loaded_molecule(
     at: Atoms,
     atoms: list[Isotope],
-    comment: str,
+    molecule: Molecule,
     masses: Masses = "most_common",
     notes: tuple[str, ...] = (),
 ) -> LoadedBody:
-    """Make the body of a molecule's nuclides at their places."""
+    """Make the body of a molecule's nuclides at their places, which are in angstrom."""
+    crossings, crossed = None, list[str]()
+    if molecule.cell is not None:
+        crossings, crossed = crossings_of(atoms, molecule.positions, molecule.cell)
     return LoadedBody(
         body=at.body(atoms, masses),
         source=atoms,
         mass_unit="u",
         length="angstrom",
-        comment=comment,
-        notes=(*at.notes, *notes),
+        comment=molecule.comment,
+        notes=(*at.notes, *crossed, *molecule.notes, *notes),
         has_mass_sigmas=at.with_mass_sigmas,
+        crossings=crossings,
     )
 
 

@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING
 
 from polhode.cli.atoms import atoms_of
 from polhode.cli.constants import constant_fields, isotopologue_row, rotation_fields, straightened
-from polhode.cli.layout import Column, Field, Report, Table
+from polhode.cli.layout import Cell, Column, Field, Report, Table
 from polhode.cli.loading import LoadedBody, bond_sigma, loaded_molecule
 from polhode.cli.sigmas import Told, note_linear, told
 from polhode.cli.source import as_file, shown
 from polhode.cli.tables import FileUnits, body_fields, tensor_fields, trust_fields
 from polhode.errors import PolhodeError
 from polhode.files.body import molecule_isotopes
-from polhode.files.content import is_molecule
+from polhode.files.content import EXPECTED_CONTENT, MOLECULE_SUFFIXES, is_molecule, unread
 from polhode.files.loaded import load
+from polhode.files.unpacked import inner_suffix
 from polhode.molecules import Isotope, isotopes
 from polhode.units import METRES, metres_per
 
@@ -34,6 +35,9 @@ def molecule_report(file: Path, options: MoleculeOptions) -> Report:
     """Report on the rotation of the molecule in a file, and of isotopologues of it."""
     with as_file(file) as path:
         if not is_molecule(path):
+            suffix = inner_suffix(path)
+            if suffix not in EXPECTED_CONTENT:
+                raise unread(file, suffix, MOLECULE_SUFFIXES)
             raise PolhodeError(
                 f"{shown(file)}: a molecule is an XYZ, PDB, MOL or SDF file; polhode report reads meshes"
             )
@@ -41,14 +45,13 @@ def molecule_report(file: Path, options: MoleculeOptions) -> Report:
         molecule = read.molecule
         atoms = molecule_isotopes(path, molecule, options.masses)
     to_angstrom = metres_per(options.length_unit) / METRES["angstrom"]
-    molecule = molecule._replace(
-        positions=molecule.positions * to_angstrom, rounding=molecule.rounding * to_angstrom
-    )
+    molecule = molecule.scaled(to_angstrom)
     sigma = bond_sigma(options.bond_sigma, options.length_unit)
     at = atoms_of(file, atoms, molecule, bond_sigma=sigma, mass_sigmas=options.mass_sigmas)
-    loaded = loaded_molecule(at, atoms, molecule.comment, options.masses, (*molecule.notes, *read.notes))
+    loaded = loaded_molecule(at, atoms, molecule, options.masses, read.notes)
     report = Report()
     _head(report, file, atoms, loaded)
+    _cell(report, atoms, loaded)
     report.section("rotation", *rotation_fields(loaded, options.rtol))
     if options.isotopes:
         rows = [isotopologue_row("as above", loaded.body, options.rtol)]
@@ -83,6 +86,7 @@ def atoms_report(
     report.section("principal axes", *body_fields(loaded, FileUnits()))
     report.section("rotational constants", *constant_fields(loaded.body))
     report.section("trust", *trust_fields(loaded))
+    _cell(report, atoms, loaded)
     report.notes += [*straightened(loaded.body), *loaded.notes]
     note_linear(report)
     return report
@@ -120,6 +124,30 @@ def _head(report: Report, file: Path, atoms: list[Isotope], loaded: LoadedBody) 
             **told(body, "center_of_mass"),
         ),
     )
+
+
+def _cell(report: Report, atoms: list[Isotope], loaded: LoadedBody) -> None:
+    """Report what crosses the cell of the file, where it has one."""
+    found = loaded.crossings
+    if found is None:
+        return
+    columns = (Column("first", "atom"), Column("second", "bonded to"), Column("shift", "moved by cells"))
+    rows = [
+        {
+            "first": Cell(f"{atoms[i].name}({i + 1})", i + 1),
+            "second": Cell(f"{atoms[j].name}({j + 1})", j + 1),
+            "shift": Cell(" ".join(f"{by:+d}" if by else "0" for by in shift), list(shift)),
+        }
+        for i, j, shift in found.bonds
+    ]
+    report.section(
+        "cell",
+        Field("cell.bonds_across", "bonds across sides", len(found.bonds)),
+        Field("cell.fragments", "pieces", found.fragments, hint="as the atoms stand"),
+        Field("cell.fragments_joined", "", found.fragments_joined, hint="joined by bonds across sides"),
+    )
+    if rows:
+        report.section("", Table("cell_bonds", columns, rows, most=8))
 
 
 def _elements(atoms: list[Isotope]) -> str:

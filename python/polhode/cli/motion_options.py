@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Final, Literal, TypeAlias
 
 from cyclopts import Parameter
 
 from polhode.cli.counts import Count  # noqa: TC001  (cyclopts reads annotations)
 
-__all__ = ["EnsembleOptions", "SpinOptions"]
+__all__ = ["MODES", "EnsembleOptions", "SpinOptions"]
+
+MODES: Final = (
+    "state which of the two motions has these periods: --mode long-axis, where omega circles the axis of the "
+    "least moment, or --mode short-axis, where it circles that of the greatest"
+)
 
 Words: TypeAlias = tuple[str, ...]
 
@@ -47,9 +52,11 @@ class SpinOptions(StartOptions):
         number is rad/s. With sigmas: "0, 6.00 ± 0.05, 0.010(2)".
     periods
         Instead of --omega, the two periods of a tumbling asteroid: rotation about the long axis and mean
-        precession of that axis, as in "5.41 d, 7.35 d"; a bare number is in s.
+        precession of that axis, as in "5.41 d, 7.35 d"; a bare number is in s. With sigmas:
+        "263 ± 6 h, 27.38(7) h". --mode says which motion has them.
     mode
-        Which of the two motions has these periods.
+        Required with --periods: the motion that has them. long-axis: ω circles the axis of the least moment;
+        short-axis: that of the greatest.
     gravity
         A top: the origin of the body stays where it is and this acceleration pulls along -z, as in 9.81; a
         bare number is m/s^2. The centre of mass and the origin have to lie on the symmetry axis.
@@ -79,7 +86,7 @@ class SpinOptions(StartOptions):
     periods: Annotated[
         Words, Parameter(name="--periods", negative="", consume_multiple=True, show_default=False)
     ] = ()
-    mode: Annotated[Literal["long-axis", "short-axis"], Parameter(name="--mode")] = "long-axis"
+    mode: Annotated[Literal["long-axis", "short-axis"] | None, Parameter(name="--mode")] = None
     degrees: Annotated[bool, Parameter(name="--degrees", negative="")] = False
     axes: Annotated[Literal["file", "principal"], Parameter(name="--axes")] = "file"
     samples: Annotated[Count, Parameter(name="--samples")] = 1001

@@ -265,13 +265,18 @@ class FlybyOptions:
         Three principal moments instead of a file, as in "0.64 0.97 1"; only their ratios matter.
     periods
         The two periods before the flyby: rotation about the long axis and mean precession of that axis, as in
-        "264.178 h, 27.38547 h"; a bare number is in s.
+        "264.178 h, 27.38547 h"; a bare number is in s. With sigmas each clone has periods of its own:
+        "263 ± 6 h, 27.38(7) h".
     mode
-        Which of the two motions has these periods.
+        Required: the motion that has these periods. long-axis: ω circles the axis of the least moment;
+        short-axis: that of the greatest.
     eccentricity
-        Of the orbit past the planet: more than 1 for a flyby, 4.25 for Apophis in 2029.
+        Of the orbit past the planet, 1 or more: 4.25 for Apophis in 2029.
     periapsis
         Least distance from the planet's centre, as in "38011.486 km"; a bare number is in m.
+    radius
+        Of the planet, as in "6378 km"; an orbit that comes nearer to its centre is refused. By default that
+        of the Earth, 6371 km, if --mu is the Earth's.
     mu
         Gravitational parameter of the planet, as in "398600.4418 km^3/s^2"; a bare number is in m^3/s^2. By
         default that of the Earth.
@@ -310,9 +315,10 @@ class FlybyOptions:
     periods: Annotated[
         Words, Parameter(name="--periods", negative="", consume_multiple=True, show_default=False)
     ] = ()
-    mode: Annotated[Literal["long-axis", "short-axis"], Parameter(name="--mode")] = "long-axis"
+    mode: Annotated[Literal["long-axis", "short-axis"] | None, Parameter(name="--mode")] = None
     eccentricity: Annotated[float, Parameter(name="--eccentricity")] = 1.0
     periapsis: Annotated[str, Parameter(name="--periapsis")] = "40000 km"
+    radius: Annotated[str | None, Parameter(name="--radius")] = None
     mu: Annotated[str, Parameter(name="--mu")] = "3.986004418e14"
     inclination: Annotated[str, Parameter(name="--inclination")] = "0"
     node: Annotated[str, Parameter(name="--node")] = "0"

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-import errno
 import re
 import sys
 from contextlib import suppress
+from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from cyclopts import CycloptsError
+from cyclopts import CycloptsError, UnusedCliTokensError
 
 from polhode.cli.app import GOOD, app
 from polhode.cli.standard_output import ReaderLeft, standard_output
 from polhode.cli.text import in_options, printable
+from polhode.files.reading import words_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,7 +28,52 @@ COMMANDS: Final = (
 )  # fmt: skip
 BAD_INPUT: Final = 2
 INTERRUPTED: Final = 130
-NO_FAULT_OF_THE_PATH: Final = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EPIPE)
+OTHER_OPTIONS: Final = (
+    ("--length-unit mm", "--unit --units --lunit --length-units"),
+    ("--format json", "--json --output-format --fmt -f"),
+    ("--format table", "--table --text"),
+    ("--save FILE.csv", "--csv --export --write"),
+    ("--save FILE.png", "--plot --png --picture --figure --image --draw"),
+    ("--picture FILE.png", "--plot --png --save --figure --image --draw"),
+    ("--save FILE.html", "--animate --animation --html --movie --video --film"),
+    ("--output FILE", "--out --outfile --output-file --to --save -o"),
+    ("--save FILE", "--out --outfile --output --output-file -o"),
+    ("--output-dir FOLDER", "--out --output --save -o"),
+    ("--until TIME", "--time --times --end --tmax --t-max --t-end --duration --stop --length --T -t"),
+    ("--span TIME", "--time --until --end --tmax --duration"),
+    ("--samples NUMBER", "--steps --points --frames --num --dt --step --fps --n -n"),
+    ("--members NUMBER", "--n --clones --count --num --samples --size -n"),
+    ("--clones NUMBER", "--n --members --count --num --samples --size -n"),
+    ("--axes principal", "--axis --frame --principal --principal-axes --body"),
+    ("--degrees", "--deg --degree"),
+    ("--omega", "--rate --rates --w --angular-velocity --angular-rate --spin --gyro"),
+    ("--attitude", "--euler --euler-angles --quaternion --orientation --rotation --angles -q"),
+    ("--gravity 9.81", "-g --g --weight"),
+    ("--wheel", "--wheels --rotor --flywheel --momentum"),
+    ("--moments", "--inertia --principal-moments --moment"),
+    ("--inertia", "--tensor --inertia-tensor --moi"),
+    ("--periods", "--period"),
+    ("--com", "--cog --center-of-mass --centre --centre-of-mass --center-of-gravity"),
+    ("--density", "--rho --material --densities"),
+    ("--mass", "--weight -m"),
+    ("--weld 1e-6", "--merge --tolerance --tol --merge-vertices"),
+    ("--rtol 1e-10", "--tol --tolerance --precision --eps --accuracy"),
+    ("--closure caps", "--close --fill --cap --fill-holes --watertight"),
+    ("--orient", "--flip --fix-normals --normals --reorient"),
+    ("--repair", "--heal --mend --fix"),
+    ("--fix FILE", "--repair --correct --write --in-place -i"),
+    ("--as urdf", "--urdf --sdf --mjcf --export --program"),
+    ("--about", "--point --origin --reference"),
+    ("--expect FILE", "--compare --diff --reference"),
+    ("--packages FOLDER", "--package --package-path --package-dir --include -I"),
+    ("--isotopes", "--isotope --deuterate --isotopologue"),
+    ("--client ADDRESS", "--scheduler --cluster --dask"),
+    ("--seed NUMBER", "--random-seed --rng"),
+    ("--depth NUMBER", "--levels --level"),
+    ("--all", "--every --full"),
+    ("--index-base 0", "--zero-based --base"),
+)  # fmt: skip
+"""What to write, and the names under which people look for it; the first that a command has is meant."""
 
 
 def _version_in_full() -> None:
@@ -49,6 +95,32 @@ def overview() -> str:
     return "\n".join(lines)
 
 
+def unknown_option(arguments: list[str]) -> str | None:
+    """Find an option that the command does not have, and say which one is meant."""
+    command = next((word for word in arguments[:1] if word in COMMANDS), None)
+    if command is None:
+        return None
+    known = {name for one in app[command].assemble_argument_collection() for name in one.names}
+    known = {name for name in known if name.startswith("-")} | {*app.help_flags, *app.version_flags}
+    for word in arguments[1:]:
+        name = word.partition("=")[0]
+        if not re.fullmatch(r"--[A-Za-z][\w-]*|-[A-Za-z]", name) or name in known or Path(word).exists():
+            continue
+        meant = next(
+            (
+                there
+                for there, others in OTHER_OPTIONS
+                if there.split()[0] in known and name in others.split()
+            ),
+            next(iter(get_close_matches(name, sorted(known), 1, 0.7)), None),
+        )
+        way_out = (
+            f"did you mean {meant}?" if meant else f"choose one that it has (see polhode {command} --help)"
+        )
+        return f"{name}: {command} has no such option; {way_out}"
+    return None
+
+
 def run(arguments: list[str]) -> int:
     """Run one command and turn every foreseen error into one line and an exit code."""
     command: Callable[[], object] = partial(
@@ -62,16 +134,24 @@ def run(arguments: list[str]) -> int:
         command = partial(print, overview())
     if sorted(arguments) == ["--verbose", "--version"]:
         command = _version_in_full
+    unknown = unknown_option(arguments)
+    if unknown is not None:
+        return _fail(unknown)
     try:
         with standard_output():
             code = command()
+    except UnusedCliTokensError as error:
+        rest = " ".join(error.unused_tokens)
+        return _fail(
+            f"{rest}: more than {arguments[0]} takes; give one file, and in quotes what holds spaces "
+            f"(see polhode {arguments[0]} --help)"
+        )
     except CycloptsError as error:
         return _fail(f"{error} (see polhode --help)")
     except ReaderLeft:
         return GOOD
     except OSError as error:
-        what = f"{error.filename}: {error.strerror}" if error.filename is not None else str(error)
-        return _fail(what if error.errno in NO_FAULT_OF_THE_PATH else f"{what}; check the path")
+        return _fail(words_of(error))
     except MemoryError as error:
         return _fail(f"there is not enough memory for it ({error})")
     except (ValueError, ModuleNotFoundError) as error:

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode import RigidBody, Uncertain
-from polhode._quantities import amount, amounts, quantities, quantity, vector
+from polhode._quantities import amount, amounts, quantity, vector
+from polhode._rounding import at_most
 from polhode._scene.sampling import fastest
 from polhode.cli.layout import Field, Report
 from polhode.cli.loading import LoadedBody
+from polhode.cli.motion_options import MODES
 from polhode.cli.sigmas import note_linear, told
 from polhode.cli.source import STDIN, shown
 from polhode.cli.spin_gyrostat import GyrostatKind, momentum_inside
@@ -83,8 +85,14 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
         ),
         *kind.fields(rate, rate_unit),
     )
-    if spin.periods and isinstance(kind, FreeKind):
-        report.section("light curve, short-axis convention and frequencies", *kind.light_curve())
+    if isinstance(kind, FreeKind):
+        curve = kind.light_curve()
+        if curve:
+            is_tumbling = len(curve) > 1
+            words = "short-axis convention and frequencies" if is_tumbling else "frequencies"
+            report.section(f"light curve, {words}", *curve)
+        else:
+            report.notes.append("no frequencies of a light curve: the motion never repeats")
     report.section("conserved", *kind.constants(loaded.moment_unit))
     report.section("stability", *kind.stability())
     report.notes += _notes(loaded)
@@ -150,6 +158,10 @@ def _checked(file: Path | None, spin: SpinOptions, options: BodyOptions) -> floa
             "--wheel: the motion of a top with a wheel is not known in closed form; leave out --gravity, or "
             "integrate with RigidBody.simulate and loads.rotor in Python"
         )
+    if spin.periods and spin.mode is None:
+        raise PolhodeError(f"--mode: {MODES}")
+    if spin.mode is not None and not spin.periods:
+        raise PolhodeError("--mode: it says which motion has the periods of --periods; leave it out")
     if spin.save and spin.until is None:
         raise PolhodeError('--save: state the time of the end with --until, as in "20 s"')
     if spin.samples < 2:
@@ -171,7 +183,7 @@ def _check_end(motion: FreeMotion | HeavyTop | GyrostatMotion, until: float) -> 
         raise PolhodeError(
             f"--until: after {until:g} s at {rate:.4g} rad/s the last digit of the angular velocity turns "
             f"the body by {digit * abs(until):.2g} rad, and its attitude is not known; end before "
-            f"{1.0 / digit:.2g} s"
+            f"{at_most(1.0 / digit, 2)} s"
         )
 
 
@@ -215,7 +227,8 @@ def _attitude(spin: SpinOptions) -> Floats | None:
 def _free_motion(body: RigidBody, axes: Floats, spin: SpinOptions) -> FreeMotion:
     if not spin.periods:
         return body.free_motion(_omega(axes, spin), _attitude(spin))
-    rotation, precession = quantities(spin.periods, 2, "s", "--periods")
+    rotation, precession = amounts(spin.periods, 2, "s", "--periods")
+    assert spin.mode is not None
     return body.free_motion_from_periods(rotation, precession, mode=spin.mode)
 
 

@@ -123,9 +123,35 @@ class GyrostatKind:
         hint = "of the body about L, but for whole turns in a period"
         return [
             Field("mode", "mode", mode, hint=_MODES[mode]),
-            *period_fields("period", "period in the body", motion.period, "", {}),
+            *self._periods(),
             Field("mean_precession", "mean precession", motion.mean_precession * rate, rate_unit, hint),
         ]
+
+    def _periods(self) -> list[Field]:
+        """Tell the periods that this mode has, by the words of the glossary."""
+        motion = self._motion
+        if not np.isnan(motion.period):
+            hint = "" if np.isfinite(motion.period) else "omega never returns"
+            return period_fields("period", "period in the body", motion.period, hint, {})
+        speed = float(lengths(motion.omega))
+        if speed == 0.0:
+            return [Field("turn_period", "one turn", math.inf, "s", "the body is at rest")]
+        turn = period_fields(
+            "turn_period", "one turn", 2.0 * math.pi / speed, "about an axis at rest in the body", {}
+        )
+        along = motion.gyrostat.inertia @ motion.omega + motion.rotor
+        if not float(lengths(along)) > 0.0:
+            return turn
+        found = motion.equilibria
+        square = float(found.squared_rate[int(np.argmax(found.direction @ along))])
+        if square > 0.0:
+            hint = "of small oscillations of omega in the body"
+            return [
+                *turn,
+                *period_fields("wobble_period", "wobble", 2.0 * math.pi / math.sqrt(square), hint, {}),
+            ]
+        why = "the spin is unstable" if square < 0.0 else "the spin is neutral"
+        return [*turn, Field("wobble_period", "wobble", None, hint=why, cells=["none"])]
 
     def constants(self, moment_unit: str) -> list[Field]:
         """Give what is conserved: the energy, the angular momentum, and what of it is inside."""

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from polhode._drift import drift
 from polhode._lengths import lengths
 from polhode._scene.pivot import path_of
-from polhode.cli.layout import Column, Field, Table
+from polhode.cli.layout import Cell, Column, Field, Table
+from polhode.cli.spin_sigmas import of_shape
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 __all__ = ["FreeKind", "TopKind", "period_fields"]
+
+ROUNDING: Final = 1e-12
+"""Of the largest component of omega: less is what rounding of the axes leaves."""
 
 
 class FreeKind:
@@ -32,17 +36,86 @@ class FreeKind:
         """Tell the mode, the periods and the angles from L."""
         motion = self._motion
         angles, periods = np.rad2deg(motion.nutation), motion.periods
-
-        def told(name: str, factor: float = 1.0) -> Told:
-            found = periods.sigma
-            if found is None:
-                return {}
-            return {"sigma": factor * getattr(found, name), "linear": getattr(found.linear, name)}
-
+        of_angles = of_shape(motion)
         return [
             Field("mode", "mode", str(motion.mode)),
+            *self._periods(),
+            Field(
+                "mean_precession",
+                "mean precession",
+                periods.rates * rate,
+                rate_unit,
+                "of e1 e2 e3 about L",
+                **self._told("rates", rate),
+            ),
+            *(
+                Field(
+                    f"angle_from_L.e{k + 1}",
+                    f"e{k + 1} from L",
+                    angles[k],
+                    "deg",
+                    "least, greatest",
+                    **of_angles(f"nutation {k}"),
+                )
+                for k in range(3)
+            ),
+            Field(
+                "energy_ratio",
+                "E / E_min",
+                motion.energy_ratio,
+                hint="1 for a spin about e3",
+                **of_angles("energy_ratio"),
+            ),
+            Field("modulus", "elliptic modulus", motion.modulus, **of_angles("modulus")),
+        ]
+
+    def _told(self, name: str, factor: float = 1.0) -> Told:
+        found = self._motion.periods.sigma
+        if found is None:
+            return {}
+        return {"sigma": factor * getattr(found, name), "linear": getattr(found.linear, name)}
+
+    def _periods(self) -> list[Field]:
+        """Tell the periods that this mode has, by the words of the glossary."""
+        motion, periods, told = self._motion, self._motion.periods, self._told
+        mode = str(motion.mode)
+        if not np.isnan(periods.turn):
+            along = np.abs(motion.omega @ motion.body.principal.axes)
+            is_along = mode != "spherical" and np.count_nonzero(along > ROUNDING * along.max()) == 1
+            axis = f"e{int(np.argmax(along)) + 1}" if is_along else "an axis at rest in the body"
+            if not np.isfinite(periods.turn):
+                return [Field("turn_period", "one turn", periods.turn, "s", "the body is at rest")]
+            return [
+                *period_fields("turn_period", "one turn", periods.turn, f"about {axis}", told("turn")),
+                *self._wobble(),
+            ]
+        if mode == "symmetric":
+            axis = f"e{int(motion.cones.axis) + 1}"
+            return [
+                *period_fields(
+                    "spin_period",
+                    "spin period",
+                    periods.spin,
+                    f"about {axis}, relative to the plane of {axis} and L",
+                    told("spin"),
+                ),
+                *period_fields(
+                    "precession_period",
+                    "precession period",
+                    periods.precession,
+                    f"of {axis} about L",
+                    told("precession"),
+                ),
+            ]
+        hints = {
+            "long-axis": "P_psi, of the rotation about e1",
+            "short-axis": "P_psi, of the swing of e1 to and fro",
+            "separatrix": "P_psi: omega never returns",
+        }
+        flips = "the intermediate axis turns over" + (", once" if mode == "separatrix" else "")
+        return [
             *period_fields(
-                "rotation_period", "rotation period", periods.rotation, "P_psi, about e1", told("rotation")
+                "rotation_period", "rotation period", periods.rotation, hints[mode], told("rotation")
             ),
             *period_fields(
                 "precession_period",
@@ -51,38 +124,57 @@ class FreeKind:
                 "P_phi, mean, of e1 about L",
                 told("precession"),
             ),
-            *period_fields("flip_period", "flips every", periods.flip, "the intermediate axis", told("flip")),
-            Field(
-                "mean_precession",
-                "mean precession",
-                periods.rates * rate,
-                rate_unit,
-                "of e1 e2 e3 about L",
-                **told("rates", rate),
-            ),
             *(
-                Field(f"angle_from_L.e{k + 1}", f"e{k + 1} from L", angles[k], "deg", "least, greatest")
-                for k in range(3)
+                []
+                if np.isnan(periods.flip)
+                else period_fields("flip_period", "flips every", periods.flip, flips, told("flip"))
             ),
-            Field("energy_ratio", "E / E_min", motion.energy_ratio, hint="1 for a spin about e3"),
-            Field("modulus", "elliptic modulus", motion.modulus),
         ]
 
+    def _wobble(self) -> list[Field]:
+        motion, wobble = self._motion, self._motion.periods.wobble
+        hint = "of small oscillations of omega in the body"
+        if not np.isnan(wobble):
+            return period_fields("wobble_period", "wobble", wobble, hint, self._told("wobble"))
+        is_unstable = str(motion.mode) == "steady"
+        why = "the spin is unstable" if is_unstable else "omega rests wherever it is put in the body"
+        return [Field("wobble_period", "wobble", None, hint=why, cells=["none"])]
+
     def light_curve(self) -> list[Field | Table]:
-        """Tell the periods in the other convention, and the frequencies of the light curve."""
+        """Give the frequencies of the light curve, and periods of a tumbling body in the other convention.
+
+        Returns
+        -------
+        list of Field and Table
+            Empty for a motion that never repeats.
+        """
         periods = self._motion.periods
         found = periods.light_curve()
-        order = np.argsort(found.frequency)
-        rows = [
-            {
-                "j": int(found.j[k]),
-                "m": int(found.m[k]),
-                "frequency": 86400.0 * f,
-                "period": 1.0 / (3600.0 * f),
-            }
-            for k, f in zip(order.tolist(), found.frequency[order].tolist(), strict=True)
-            if f > 0.0
+        is_known = found.frequency > 0.0
+        if not is_known.any():
+            return []
+        # Spins of a laboratory in seconds, those of asteroids in hours; the JSON has hours.
+        is_slow = float(found.frequency[is_known].min()) < 1.0 / 3600.0
+        columns = [
+            Column("frequency", "frequency", "1/d", shown="" if is_slow else "1/s"),
+            Column("period", "period", "h", shown="" if is_slow else "s"),
         ]
+        per = (86400.0, 3600.0) if is_slow else (1.0, 1.0)
+        order = np.argsort(found.frequency)
+        rows = []
+        for k, f in zip(order.tolist(), found.frequency[order].tolist(), strict=True):
+            if f > 0.0:
+                numbers = {
+                    "frequency": (86400.0 * f, per[0] * f),
+                    "period": (1.0 / (3600.0 * f), 1.0 / (per[1] * f)),
+                }
+                cells = {name: Cell(f"{shown:.4g}", value) for name, (value, shown) in numbers.items()}
+                rows.append({"j": int(found.j[k]), "m": int(found.m[k]), **cells})
+        if not np.isnan(periods.turn):
+            return [Table("light_curve", [Column("j", "j / turn"), *columns], rows)]
+        if not np.isnan(periods.spin):
+            of_spin = [Column("j", "j / precession"), Column("m", "+ m / spin"), *columns]
+            return [Table("light_curve", of_spin, rows)]
         swings = "swinging" if self._motion.mode == "long-axis" else "rotation"
         return [
             *period_fields(
@@ -95,16 +187,7 @@ class FreeKind:
                 "mean, of e3 about L",
                 {},
             ),
-            Table(
-                "light_curve",
-                [
-                    Column("j", "j f_phi"),
-                    Column("m", "+ m f_psi"),
-                    Column("frequency", "frequency", "1/d"),
-                    Column("period", "period", "h"),
-                ],
-                rows,
-            ),
+            Table("light_curve", [Column("j", "j f_phi"), Column("m", "+ m f_psi"), *columns], rows),
         ]
 
     def constants(self, moment_unit: str) -> list[Field]:
@@ -159,7 +242,7 @@ class TopKind:
         return [
             Field("path", "path of the axis", path_of(motion)),
             Field("nutation_limits", "axis from vertical", limits, "deg", "least, greatest"),
-            *period_fields("nutation_period", "nutation period", motion.nutation_period, "", {}),
+            *self._periods(),
             Field(
                 "mean_precession", "mean precession", motion.mean_precession * rate, rate_unit, "mean of phi'"
             ),
@@ -169,6 +252,19 @@ class TopKind:
                 "sleeping_limit", "sleeping limit", motion.sleeping_limit * rate, rate_unit, "least, upright"
             ),
         ]
+
+    def _periods(self) -> list[Field]:
+        """Tell the periods that this path has, by the words of the glossary."""
+        motion = self._motion
+        period, why = motion.nutation_period, "the inclination of the axis is constant"
+        if not np.isnan(period):
+            hint = "" if np.isfinite(period) else "the axis never returns"
+            return period_fields("nutation_period", "nutation period", period, hint, {})
+        fields = [Field("nutation_period", "nutation period", None, hint=why, cells=["none"])]
+        speed = float(lengths(motion.omega))
+        if str(motion.path) != "steady" or speed == 0.0:
+            return fields
+        return [*period_fields("turn_period", "one turn", 2.0 * np.pi / speed, "about the axis", {}), *fields]
 
     def constants(self, moment_unit: str) -> list[Field]:
         """Give what is conserved: the energy and the angular momentum about the vertical."""

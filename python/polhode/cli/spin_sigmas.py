@@ -8,16 +8,19 @@ import numpy as np
 
 from polhode import _core
 from polhode.cli.layout import Field
+from polhode.uncertainty.motions import each_motion
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
-    from polhode import FreeMotion, GyrostatMotion, HeavyTop
+    from polhode import FreeMotion, GyrostatMotion, HeavyTop, RigidBody
     from polhode.cli.sigmas import Told
 
     Floats = NDArray[np.float64]
 
-__all__ = ["attitude_field", "of_end", "of_start"]
+__all__ = ["attitude_field", "of_end", "of_shape", "of_start"]
 
 
 def of_start(motion: FreeMotion | HeavyTop | GyrostatMotion, axes: Floats, rate: float) -> Told:
@@ -25,7 +28,28 @@ def of_start(motion: FreeMotion | HeavyTop | GyrostatMotion, axes: Floats, rate:
     omega = None if isinstance(motion, _core.GyrostatMotion) else motion.uncertain_start[0]
     if omega is None:
         return {}
+    if isinstance(motion, _core.FreeMotion) and motion._from_periods is not None:
+        found = each_motion(motion, lambda _body, omega: rate * omega @ axes, (3,))
+        return {"sigma": found.sigma, "linear": found.linear}
     return {"sigma": rate * _along(axes, omega.covariance), "linear": np.ones(3, dtype=bool)}
+
+
+def of_shape(motion: FreeMotion) -> Callable[[str], Told]:
+    """Compute sigmas of energy ratio, modulus and angles from L; give what looks them up, nothing if none.
+
+    The angles of axis k, ``"nutation k"``, are in degrees.
+    """
+    if motion.body.covariance is None and motion.uncertain_start[0] is None:
+        return lambda _name: {}
+
+    def numbers(body: RigidBody, omega: Any) -> Floats:
+        near = body.free_motion(omega)
+        return np.array([near.energy_ratio, near.modulus, *np.rad2deg(near.nutation).ravel()])
+
+    found = each_motion(motion, numbers, (8,))
+    places: dict[str, int | slice] = {"energy_ratio": 0, "modulus": 1}
+    places |= {f"nutation {k}": slice(2 * k + 2, 2 * k + 4) for k in range(3)}
+    return lambda name: {"sigma": found.sigma[places[name]], "linear": found.linear[places[name]]}
 
 
 def of_end(motion: FreeMotion | HeavyTop | GyrostatMotion, until: float, axes: Floats, rate: float) -> Told:

@@ -23,9 +23,7 @@ _WAYS_OUT: Final = (
     ("leave length_unit out", "leave --length-unit out"),
     ("pass density= instead", "pass --density instead"),
     ("pass allow_outside=True", "pass --allow-outside"),
-    ("pass rtol= if the table was printed to few digits", "give more digits"),
-    ("pass rtol= for a table printed to few digits", "give more digits"),
-    ("pass rtol= to take them as equal", "give equal moments"),
+    (" (validity.nearest_valid finds the nearest tensor that a body has)", ""),
     ("move the body with translated()", "correct --center"),
     ("index_base=0", "--index-base 0"),
     ("pass overwrite=True", "pass --overwrite"),
@@ -40,12 +38,18 @@ _NAMED: Final = re.compile(
 """Of arguments that are options by the same names."""
 _CLOSURE: Final = re.compile(r'\bclosure="(caps|hull)"(?=\)| takes)')
 _WELD: Final = re.compile(r"\bweld=(?=\S+ joins)")
+_RTOL: Final = (
+    (re.compile(r"\bpass rtol=\S+ if the table was printed to few digits"), "give more digits"),
+    (re.compile(r"\bpass rtol=\S+ to take them as equal"), "give equal moments"),
+)
 
 
 def in_options(message: str) -> str:
     """Replace the names of Python's arguments in a message by the options of the command line."""
     for argument, option in _WAYS_OUT:
         message = message.replace(argument, option)
+    for pattern, option in _RTOL:
+        message = pattern.sub(option, message)
     message = _NAMED.sub(lambda found: f"--{found[1].replace('_', '-')}", message)
     message = _CLOSURE.sub(r"--closure \1", message)
     return _WELD.sub("--weld ", message)

@@ -28,11 +28,11 @@ _KEYWORDS: Final = dict(
 )
 _WORDS_PER_FACET: Final = 21
 _COORDINATES: Final = tuple(7 + 4 * corner + axis for corner in range(3) for axis in (1, 2, 3))
-_FACETS_PER_BLOCK: Final = 4096
+_WORDS_PER_BLOCK: Final = 4096 * _WORDS_PER_FACET
 _LONGEST_LINE: Final = 1 << 20
 
 
-def read_ascii_stl(stream: BinaryIO, file: Path) -> NDArray[np.float64]:
+def read_ascii_stl(stream: BinaryIO, file: Path) -> tuple[NDArray[np.float64], tuple[tuple[str, int], ...]]:
     """Read the corners of every triangle of every solid in an ASCII STL file.
 
     Parameters
@@ -44,8 +44,10 @@ def read_ascii_stl(stream: BinaryIO, file: Path) -> NDArray[np.float64]:
 
     Returns
     -------
-    numpy.ndarray, shape (m, 3, 3)
+    corners : numpy.ndarray, shape (m, 3, 3)
         Triangle, corner, component.
+    groups : tuple of (str, int)
+        The name of each solid and the number of its triangles.
 
     Raises
     ------
@@ -54,8 +56,9 @@ def read_ascii_stl(stream: BinaryIO, file: Path) -> NDArray[np.float64]:
     """
     blocks: list[NDArray[np.float64]] = []
     words: list[str] = []
-    name = None
-    number = 0
+    groups: list[tuple[str, int]] = []
+    name: str | None = None
+    number = read = done = 0
     try:
         # Names of solids may be in any encoding.
         with io.TextIOWrapper(stream, encoding="utf-8", errors="surrogateescape") as lines:
@@ -63,28 +66,37 @@ def read_ascii_stl(stream: BinaryIO, file: Path) -> NDArray[np.float64]:
                 number += 1
                 if len(line) == _LONGEST_LINE:
                     raise ValueError(f"a line is longer than {_LONGEST_LINE - 1} characters")
-                first = line.split(maxsplit=1)[:1]
-                keyword = first[0].lower() if first else ""
-                if keyword in ("solid", "endsolid"):
-                    if (keyword == "solid") == (name is not None):
+                first, *rest = line.split(maxsplit=1) or [""]
+                if first.lower() in ("solid", "endsolid"):
+                    if (first.lower() == "solid") == (name is not None):
                         raise ValueError("'solid' and 'endsolid' do not alternate")
-                    name = line if keyword == "solid" else None
-                    blocks.append(_corners(words))
-                    words = []
+                    count, left = divmod(read + len(words), _WORDS_PER_FACET)
+                    if left:
+                        blocks.append(_corners(words))  # which says what is wrong with it
+                    groups.append((name or "", count - done))
+                    done = count
+                    name = _name_in(rest) if first.lower() == "solid" else None
                     continue
                 words += line.split()
-                if len(words) == _WORDS_PER_FACET * _FACETS_PER_BLOCK:
-                    blocks.append(_corners(words))
-                    words = []
-        if name is not None or words:
+                if len(words) >= _WORDS_PER_BLOCK:
+                    blocks.append(_corners(words[:_WORDS_PER_BLOCK]))
+                    words = words[_WORDS_PER_BLOCK:]
+                    read += _WORDS_PER_BLOCK
+        if name is not None or read + len(words) > _WORDS_PER_FACET * done:
             raise ValueError("the last solid has no 'endsolid'; is the file cut short?")
+        blocks.append(_corners(words))
     except ValueError as error:
         fault = with_way_out(error, "export it again")
         raise FileFormatError(f"{file}: not a whole ASCII STL file: up to line {number}: {fault}") from None
     corners = np.concatenate(blocks)
     if not len(corners):
         raise FileFormatError(f"{file}: holds no triangles; check the file")
-    return corners
+    return corners, tuple(groups)
+
+
+def _name_in(rest: list[str]) -> str:
+    """Give the name of a solid, what is no text in it left out."""
+    return " ".join("".join(letter for letter in "".join(rest) if letter.isprintable()).split())
 
 
 def _corners(words: list[str]) -> NDArray[np.float64]:

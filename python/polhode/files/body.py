@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from polhode._bonds import crossings_of
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.files.content import is_molecule
 from polhode.files.loaded import load
 from polhode.files.mesh_solid import naming_file, solid_of, warn_of_overlaps
 from polhode.molecules import ATOMIC_MASS_CONSTANT, Isotope, body_of_atoms, isotopes
-from polhode.units import metres_per
+from polhode.units import METRES, metres_per
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,7 +29,7 @@ if TYPE_CHECKING:
 
     Number = float | _core.Uncertain | SupportsSigma
 
-__all__ = ["body_from_file", "check_molecule_options", "molecule_isotopes"]
+__all__ = ["body_from_file", "body_of_molecule", "check_molecule_options", "molecule_isotopes"]
 
 
 def body_from_file(
@@ -53,8 +55,8 @@ def body_from_file(
         A mesh, a molecule or solids of CAD; :func:`load` lists the formats.
     density, mass : float or Uncertain, optional
         Exactly one of them for a mesh, neither for a molecule. CAD solids whose materials have densities need
-        neither. A mapping of names to densities gives each component of a mesh its own: by the names of the
-        groups of OBJ, or by numbers from 1, as ``polhode report`` lists them.
+        neither. A mapping of names to densities gives each component of a mesh its own: by the
+        names of its parts in the file, or by numbers from 1, as ``polhode report`` lists them.
     length_unit : str, optional
         Unit of the coordinates (see :mod:`polhode.units`). They are converted to metres, and the masses of a
         molecule to kilograms. Without it, coordinates are converted to metres if the file or its format
@@ -80,7 +82,8 @@ def body_from_file(
     -----
     UserWarning
         If solids in a CAD file overlap: the message tells the mass that counts twice. Components of a mesh
-        are not searched for overlaps; ``polhode report`` does that.
+        are not searched for overlaps; ``polhode report`` does that. If bonds or fragments of a molecule cross
+        a side of the cell in its file: the moments are then those of the pieces.
 
     Raises
     ------
@@ -93,7 +96,8 @@ def body_from_file(
     """
     for name, value in (("density", density), ("mass", mass)):
         _check_amount(name, value, path)
-    scale = 1.0 if length_unit is None else metres_per(length_unit)
+    if length_unit is not None:
+        metres_per(length_unit)
     if not is_molecule(Path(path)):
         if masses != "most_common":
             raise PolhodeError(f"masses: {os.fspath(path)} is a mesh, not a molecule; leave masses out")
@@ -138,12 +142,36 @@ def body_from_file(
         repair=repair,
         index_base=index_base != 1,
     )
+    body, _, crossed = body_of_molecule(path, length_unit, masses)
+    for note in crossed:
+        warnings.warn(f"{os.fspath(path)}: {note}", stacklevel=2)
+    return body
+
+
+def body_of_molecule(
+    path: str | os.PathLike[str], length_unit: str | None = None, masses: Masses = "most_common"
+) -> tuple[RigidBody, tuple[str, ...], list[str]]:
+    """Read the body of a molecule, with the notes of its file and words for what crosses its cell.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+    length_unit : str, optional
+        As in :func:`body_from_file`.
+    masses : {"most_common", "average"}
+    """
     molecule = load(path).molecule
-    one = 1.0 if length_unit is None else ATOMIC_MASS_CONSTANT
-    found = [isotope.mass * one for isotope in molecule_isotopes(path, molecule, masses)]
+    atoms = molecule_isotopes(path, molecule, masses)
+    metres, one = (1.0, 1.0) if length_unit is None else (metres_per(length_unit), ATOMIC_MASS_CONSTANT)
+    found = [isotope.mass * one for isotope in atoms]
     with naming_file(path), np.errstate(over="ignore"):
-        rounding = molecule.rounding * scale
-        return body_of_atoms(found, molecule.positions * scale, source=masses, rounding=rounding)
+        at = molecule.scaled(metres)
+        body = body_of_atoms(found, at.positions, source=masses, rounding=at.rounding)
+    crossed: list[str] = []
+    if at.cell is not None:
+        in_angstrom = 1.0 if length_unit is None else 1.0 / METRES["angstrom"]
+        _, crossed = crossings_of(atoms, at.positions * in_angstrom, at.cell * in_angstrom)
+    return body, molecule.notes, crossed
 
 
 def check_molecule_options(path: str | os.PathLike[str], *, prefix: str = "", **given: bool) -> None:

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from polhode.errors import FileFormatError, MeshError
+from polhode.files.budget import Budget
 from polhode.files.cad_kernel import occt
 from polhode.files.cad_moments import moments_of_faces
 from polhode.files.reading import read_bytes
 from polhode.files.step_density import densities_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -28,7 +30,9 @@ __all__ = ["CadFile", "CadPart", "box_of", "faces_of", "read_cad", "read_with_sh
 _IGES: Final = (".igs", ".iges")
 _WORST: Final = 1e-3
 """Bound of a volume, as a part of it, with which a solid is still taken."""
-_MOST_PARTS: Final = 100_000
+_WITH_EXPONENT: Final = re.compile(rb"[,;]\s*([+-]?[\d.]+[EeDd]\+?(\d+))\s*(?=[,;])")
+"""A parameter of IGES that has a positive exponent."""
+_LARGEST: Final = 308
 _UNITS: Final = {
     "millimetre": "mm", "millimeter": "mm", "mm": "mm",
     "metre": "m", "meter": "m", "m": "m",
@@ -123,9 +127,19 @@ def read_cad(path: Path) -> CadFile:
     return read_with_shapes(path)[0]
 
 
-def read_with_shapes(path: Path) -> tuple[CadFile, list[Any]]:
-    """Read the solids of a file, each with its shape of OCCT at its place; see :func:`read_cad`."""
+def read_with_shapes(
+    path: Path, limited: Callable[[Path | None], object] = bool
+) -> tuple[CadFile, list[Any]]:
+    """Read the solids of a file, each with its shape of OCCT at its place; see :func:`read_cad`.
+
+    Before OCCT reads it `limited` is called with the path, and with None when it has.
+    """
+    _check_numbers(path)
+    occt("STEPCAFControl")  # imported before the time runs
+    occt("IGESCAFControl")
+    limited(path)
     kind, names, document = _document(path)
+    limited(None)
     is_iges = kind == "IGES"
     units = {_UNITS.get(name, "m") for name in names}
     unit = units.pop() if len(units) == 1 else "m"
@@ -142,6 +156,17 @@ def read_with_shapes(path: Path) -> tuple[CadFile, list[Any]]:
     )
     parts = tuple(replace(part, density=known.get(part.density)) for part in parts)
     return CadFile(kind, unit, parts, walk.left_out, is_unread, names), walk.placed
+
+
+def _check_numbers(path: Path) -> None:
+    """Refuse an IGES file with a number beyond float64, at which OCCT does not end."""
+    if path.suffix.lower() not in _IGES:
+        return
+    for number in _WITH_EXPONENT.finditer(read_bytes(path)):
+        if len(number[2].lstrip(b"0")) > 3 or int(number[2]) > _LARGEST:
+            raise FileFormatError(
+                f"{path}: the number {number[1].decode()[:40]} is beyond float64; correct it, or export STEP"
+            )
 
 
 def _document(path: Path) -> tuple[str, tuple[str, ...], Any]:
@@ -193,7 +218,7 @@ class _Walk:
         self._tools = occt("XCAFDoc")
         self._shapes = self._tools.XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
         self._known: dict[int, tuple[Moments, int]] = {}
-        self._count = 0
+        self._budget = Budget(str(path), path.stat().st_size)
         self.left_out = 0
         self.placed: list[Any] = []
         """The shapes of the parts that were given, at their places."""
@@ -208,6 +233,7 @@ class _Walk:
         tool = self._tools.XCAFDoc_ShapeTool
         if depth > 100:
             raise FileFormatError(f"{self._path}: assemblies are nested more than 100 deep; check the file")
+        self._budget.spend("placements")
         if not tool.IsAssembly_s(label):
             yield from self._solids(label, place, above)
             return
@@ -232,9 +258,7 @@ class _Walk:
         name = name or _name(label)
         material, density = _material(label)
         for number, solid in enumerate(solids):
-            self._count += 1
-            if self._count > _MOST_PARTS:
-                raise FileFormatError(f"{self._path}: places more than {_MOST_PARTS} solids; place fewer")
+            self._budget.spend("placements")
             own = f"{name}[{number + 1}]" if len(solids) > 1 else name
             whole = place.Multiplied(solid.Location().Transformation())
             if whole.IsNegative() or abs(whole.ScaleFactor() - 1.0) > 1e-12:

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 import re
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from polhode.errors import FileFormatError
-from polhode.files.mesh import Mesh, weld
 from polhode.files.reading import with_way_out
+from polhode.files.scene import Scene
 from polhode.files.xml_source import Element, parse_xml
 
 if TYPE_CHECKING:
@@ -23,14 +23,18 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from polhode.files.budget import Budget
+    from polhode.files.mesh import Mesh
+
     Floats = NDArray[np.float64]
     Integers = NDArray[np.int64]
 
 __all__ = ["read_collada"]
 
 _DEEPEST: Final = 100
-_MOST_TRIANGLES: Final = 100_000_000
 _DIGITS: Final = re.compile(r"\s*[0-9][0-9\s]*", re.ASCII)
+_BLOCK: Final = 1 << 20
+"""Characters of which the numbers are read at once: as words they take far more memory than as numbers."""
 _FACES: Final = ("triangles", "polylist", "polygons", "trifans", "tristrips")
 
 
@@ -38,7 +42,9 @@ class _FaultError(ValueError):
     """What is wrong, without the name of the file."""
 
 
-def read_collada(source: bytes, file: Path) -> tuple[Mesh, float | None, str]:
+def read_collada(
+    source: bytes, file: Path, budget: Budget
+) -> tuple[Mesh, tuple[tuple[str, int], ...], float | None, str]:
     """Read the triangles of a COLLADA file and its unit.
 
     Parameters
@@ -46,22 +52,26 @@ def read_collada(source: bytes, file: Path) -> tuple[Mesh, float | None, str]:
     source : bytes
     file : pathlib.Path
         Its name.
+    budget : Budget
 
     Returns
     -------
     mesh : Mesh
         In the unit of the file.
+    groups : tuple of (str, int)
+        The name of each node that shows a geometry and the number of its triangles, in the order of the file.
     metres : float or None
         In one of its units; None where the file does not say, which in COLLADA means metres.
     up : str
         What it calls the axis that points up: ``"X"``, ``"Y"`` or ``"Z"``.
     """
-    root = parse_xml(source, str(file))
+    root = parse_xml(source, str(file), budget=budget)
     try:
         if _tag(root) != "COLLADA":
             raise _FaultError(f"its root is <{root.tag}>, not <COLLADA>; rename the file")
         metres = _metres(root)
-        return _Scene(root).mesh(), metres, _up(root)
+        placed = _Document(root, budget).scene()
+        return placed.mesh("COLLADA"), placed.groups, metres, _up(root)
     except _FaultError as fault:
         raise FileFormatError(f"{file}: {with_way_out(fault, 'export it again')}") from None
 
@@ -101,10 +111,18 @@ def _metres(root: Element) -> float | None:
     return metres
 
 
-class _Scene:
+class _Node(NamedTuple):
+    """A node: where it stands in the one around it, and what of it is placed."""
+
+    matrix: Floats
+    name: str
+    placed: list[Element]
+
+
+class _Document:
     """The nodes of a document, and the geometries that they place."""
 
-    def __init__(self, root: Element) -> None:
+    def __init__(self, root: Element, budget: Budget) -> None:
         self._ids: dict[str, Element] = {}
         waiting = [root]
         while waiting:
@@ -114,12 +132,14 @@ class _Scene:
                 self._ids.setdefault(name, element)
             waiting += element.children
         self._root = root
-        self._placed = 0
-        self._vertices: list[Floats] = []
-        self._faces: list[Integers] = []
+        self._budget = budget
+        self._placed = Scene(budget)
+        self._nodes: dict[int, _Node] = {}
         self._known: dict[int, tuple[Floats, Integers]] = {}
+        self._numbers: dict[int, Floats] = {}
+        self._points_of: dict[int, Floats] = {}
 
-    def mesh(self) -> Mesh:
+    def scene(self) -> Scene:
         scene = _one(self._root, "scene")
         shown = _one(scene, "instance_visual_scene") if scene is not None else None
         if shown is None:
@@ -127,11 +147,9 @@ class _Scene:
         visual = self._named(shown)
         for node in _all(visual, "node"):
             self._place(node, np.eye(4), 0)
-        if not self._faces:
+        if not self._placed.groups:
             raise _FaultError("its scene shows no triangles")
-        counts = np.cumsum([0, *(len(v) for v in self._vertices)])
-        faces = [face + start for face, start in zip(self._faces, counts, strict=False)]
-        return weld(np.concatenate(self._vertices), np.concatenate(faces), "COLLADA")
+        return self._placed
 
     def _named(self, element: Element, attribute: str = "url") -> Element:
         address = element.attributes.get(attribute, "")
@@ -145,34 +163,23 @@ class _Scene:
     def _place(self, node: Element, above: Floats, depth: int) -> None:
         if depth > _DEEPEST:
             raise _FaultError(f"{node.where}: nodes are nested more than {_DEEPEST} deep; check the file")
-        matrix = above @ _transform(node)
-        for child in node.children:
+        self._budget.spend("placements")
+        if id(node) not in self._nodes:
+            self._nodes[id(node)] = _node(node)
+        own = self._nodes[id(node)]
+        matrix = above @ own.matrix
+        for child in own.placed:
             tag = _tag(child)
             if tag == "instance_geometry":
-                self._add(self._named(child), matrix)
-            elif tag == "instance_controller":
-                raise _FaultError(
-                    f"{child.where}: a skin is bent by bones, which is not read; export the plain mesh"
-                )
+                geometry = self._named(child)
+                if id(geometry) not in self._known:
+                    self._known[id(geometry)] = self._geometry(geometry)
+                name = own.name or geometry.attributes.get("name", "")
+                self._placed.place(*self._known[id(geometry)], matrix, name)
             elif tag == "instance_node":
                 self._place(self._named(child), matrix, depth + 1)
-            elif tag == "node":
+            else:
                 self._place(child, matrix, depth + 1)
-
-    def _add(self, geometry: Element, matrix: Floats) -> None:
-        if id(geometry) not in self._known:
-            self._known[id(geometry)] = self._geometry(geometry)
-        vertices, faces = self._known[id(geometry)]
-        self._placed += len(faces)
-        if self._placed > _MOST_TRIANGLES:
-            raise _FaultError(f"its nodes place more than {_MOST_TRIANGLES} triangles; place fewer")
-        if not len(faces):
-            return
-        # A reflection turns every triangle inside out; the opposite winding turns it back.
-        is_mirrored = np.linalg.det(matrix[:3, :3]) < 0.0
-        with np.errstate(over="ignore", invalid="ignore"):
-            self._vertices.append(vertices @ matrix[:3, :3].T + matrix[:3, 3])
-        self._faces.append(faces[:, ::-1] if is_mirrored else faces)
 
     def _geometry(self, geometry: Element) -> tuple[Floats, Integers]:
         mesh = _one(geometry, "mesh")
@@ -180,35 +187,44 @@ class _Scene:
             raise _FaultError(f"{geometry.where}: a geometry without <mesh> is not read; export triangles")
         vertices: list[Floats] = []
         faces: list[Integers] = []
-        start = 0
+        starts: dict[int, int] = {}  # of the points that groups share
+        count = 0
         for group in _all(mesh, *_FACES):
             if _tag(group) not in ("triangles", "polylist", "polygons"):
                 raise _FaultError(f"{group.where}: <{_tag(group)}> is not read; export triangles")
-            points, corners = self._group(group)
+            source, points, corners = self._group(group)
             if corners.size and (corners.min() < 0 or corners.max() >= len(points)):
                 raise _FaultError(f"{group.where}: a face names a vertex that the file does not hold")
-            vertices.append(points)
-            faces.append(corners + start)
-            start += len(points)
+            if id(source) not in starts:
+                self._budget.spend("numbers", points.size)
+                starts[id(source)] = count
+                vertices.append(points)
+                count += len(points)
+            faces.append(corners + starts[id(source)])
         if not faces:
             return np.empty((0, 3)), np.empty((0, 3), dtype=np.int64)
         return np.concatenate(vertices), np.concatenate(faces)
 
-    def _group(self, group: Element) -> tuple[Floats, Integers]:
+    def _group(self, group: Element) -> tuple[Element, Floats, Integers]:
         inputs = list(_all(group, "input"))
         at = [i for i in inputs if i.attributes.get("semantic") == "VERTEX"]
         if len(at) != 1:
             raise _FaultError(f"{group.where}: has no input VERTEX; check the file")
         offsets = [_whole(i, i.attributes.get("offset", "0")) for i in inputs]
         stride, offset = max(offsets) + 1, _whole(at[0], at[0].attributes.get("offset", "0"))
-        points = self._points(self._named(at[0], "source"))
+        source = self._named(at[0], "source")
+        if id(source) not in self._points_of:
+            self._points_of[id(source)] = self._points(source)
+        points = self._points_of[id(source)]
         if _tag(group) == "polygons":
             if _one(group, "ph") is not None:
                 raise _FaultError(f"{group.where}: polygons with holes are not read; export triangles")
             texts = [p.text for p in _all(group, "p")]
             rows = [_integers(text, group)[offset::stride] for text in texts]
-            return points, _fans(
-                np.concatenate([[], *rows]).astype(np.int64), [len(row) for row in rows], group
+            return (
+                source,
+                points,
+                _fans(np.concatenate([[], *rows]).astype(np.int64), [len(row) for row in rows], group),
             )
         stored = _one(group, "p")
         flat = _integers(stored.text, group) if stored is not None else np.empty(0, dtype=np.int64)
@@ -221,12 +237,13 @@ class _Scene:
         if _tag(group) == "triangles":
             if len(corners) != 3 * count:
                 raise _FaultError(f"{group.where}: promises {count} triangles, <p> holds {len(corners) // 3}")
-            return points, corners.reshape(-1, 3)
+            return source, points, corners.reshape(-1, 3)
         counts = _one(group, "vcount")
         sizes = _integers(counts.text, group) if counts is not None else np.empty(0, dtype=np.int64)
-        if len(sizes) != count or sizes.sum() != len(corners):
+        largest = int(sizes.max(initial=0))
+        if len(sizes) != count or largest > len(corners) or sizes.sum() != len(corners):
             raise _FaultError(f"{group.where}: its counts and <p> do not fit together; is it cut short?")
-        return points, _fans(corners, sizes.tolist(), group)
+        return source, points, _fans(corners, sizes.tolist(), group)
 
     def _points(self, vertices: Element) -> Floats:
         inputs = [i for i in _all(vertices, "input") if i.attributes.get("semantic") == "POSITION"]
@@ -237,7 +254,9 @@ class _Scene:
         accessor = _one(common, "accessor") if common is not None else None
         if array is None or accessor is None:
             raise _FaultError(f"{source.where}: has no numbers or does not say how they are laid out")
-        numbers = _floats(array.text, array)
+        if id(array) not in self._numbers:
+            self._numbers[id(array)] = _floats(array.text, array)
+        numbers = self._numbers[id(array)]
         promised = _whole(array, array.attributes.get("count", str(len(numbers))))
         stride = _whole(accessor, accessor.attributes.get("stride", "1"))
         start = _whole(accessor, accessor.attributes.get("offset", "0"))
@@ -256,6 +275,19 @@ class _Scene:
                 f"{array.where}: holds {len(numbers)} numbers, not as many as it says; is it cut short?"
             )
         return numbers[start : start + stride * count].reshape(-1, stride)[:, :3]
+
+
+def _node(node: Element) -> _Node:
+    placed = []
+    for child in node.children:
+        tag = _tag(child)
+        if tag == "instance_controller":
+            raise _FaultError(
+                f"{child.where}: a skin is bent by bones, which is not read; export the plain mesh"
+            )
+        if tag in ("instance_geometry", "instance_node", "node"):
+            placed.append(child)
+    return _Node(_transform(node), node.attributes.get("name") or node.attributes.get("id", ""), placed)
 
 
 def _transform(node: Element) -> Floats:
@@ -312,10 +344,17 @@ def _fans(corners: Integers, sizes: list[int], group: Element) -> Integers:
 
 
 def _floats(text: str, element: Element) -> Floats:
+    found, start = [np.empty(0)], 0
     try:
-        return np.array(text.split(), dtype=np.float64)
+        while start < len(text):
+            end = start + _BLOCK
+            while end < len(text) and not text[end].isspace():
+                end += 1
+            found.append(np.array(text[start:end].split(), dtype=np.float64))
+            start = end
     except ValueError as error:
-        raise _FaultError(f"{element.where}: {error}") from None
+        raise _FaultError(f"{element.where}: {str(error)[:100]}") from None
+    return np.concatenate(found)
 
 
 def _integers(text: str, element: Element) -> Integers:

@@ -6,6 +6,7 @@ they share is counted twice, unless they are joined, which :mod:`polhode.files.u
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -346,10 +347,12 @@ def groups_of(path: Path) -> list[str]:
     names = {"o": "", "g": ""}
     with path.open(encoding="utf-8", errors="replace") as lines:
         for line in lines:
+            pieces = [line]
             # A backslash at the end joins a line with the next, but for comments.
-            while not line.lstrip().startswith("#") and line.rstrip().endswith("\\"):
-                line = line.rstrip()[:-1] + " " + next(lines, "")
-            words = line.split()
+            while not line.lstrip().startswith("#") and pieces[-1].rstrip().endswith("\\"):
+                pieces[-1] = pieces[-1].rstrip()[:-1]
+                pieces.append(next(lines, ""))
+            words = " ".join(pieces).split()
             if words and words[0] in names:
                 names[words[0]] = " ".join(words[1:])
             elif words and words[0] == "f":
@@ -360,6 +363,11 @@ def groups_of(path: Path) -> list[str]:
 
 def _names(found: list[str]) -> list[str]:
     """Give each part the name of its group, if that is its own, else its number."""
-    return [
-        name if name and found.count(name) == 1 else str(number) for number, name in enumerate(found, start=1)
-    ]
+    counts = Counter(found)
+    own = [name if name and counts[name] == 1 else "" for name in found]
+    named = [name or str(number) for number, name in enumerate(own, start=1)]
+    if len(set(named)) < len(named):  # a name is the number of another part
+        named = [
+            str(number) if not name or name.isdecimal() else name for number, name in enumerate(own, start=1)
+        ]
+    return named

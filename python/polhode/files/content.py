@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 import os
+import shlex
 import struct
 from contextlib import contextmanager
 from pathlib import Path
@@ -23,6 +24,7 @@ __all__ = [
     "content_format",
     "is_molecule",
     "opened",
+    "rename",
     "unread",
 ]
 
@@ -54,6 +56,37 @@ EXPECTED_CONTENT: Final = {
     ".iges": ("IGES",),
 }
 _PACKED = ".gz"
+_SUFFIXES: Final = {
+    kind: suffix
+    for suffix, kinds in reversed(EXPECTED_CONTENT.items())
+    for kind in kinds
+    if kind not in ("VTK", "a ZIP archive")
+}
+"""The usual suffix of each content that has one alone."""
+_VTK_SUFFIXES: Final = ((b"PolyData", ".vtp"), (b"UnstructuredGrid", ".vtu"))
+_FOREIGN: Final = (
+    (
+        (".cif", ".mmcif", ".mol2", ".cml", ".pdbqt", ".gjf", ".zmat"),
+        "write its atoms as .xyz, .pdb or .mol, as Open Babel does: obabel {0} -O {1}.xyz",
+    ),
+    (
+        (
+            ".sldprt", ".sldasm", ".ipt", ".iam", ".prt", ".asm", ".catpart", ".catproduct", ".x_t", ".x_b",
+            ".sat", ".f3d", ".fcstd", ".3dm", ".dwg", ".dxf", ".jt", ".brep",
+        ),
+        "export it as .step, or as a mesh such as .stl",
+    ),
+    (
+        (
+            ".fbx", ".blend", ".x3d", ".wrl", ".amf", ".usd", ".usda", ".usdc", ".usdz", ".3ds", ".max",
+            ".msh", ".inp",
+        ),
+        "export it as a mesh such as .stl, .obj or .glb",
+    ),
+    ((".nii", ".nrrd", ".mha", ".dcm", ".npy"), "RigidBody.from_voxels takes voxels as an array"),
+    ((".urdf", ".xacro", ".mjcf"), "polhode check judges the links of robots"),
+)  # fmt: skip
+"""Suffixes of others, with what to do with such a file."""
 
 _STL_HEADER = 84
 _STL_TRIANGLE = 50
@@ -92,7 +125,11 @@ def unread(file: Path, suffix: str, readable: tuple[str, ...]) -> FileFormatErro
     name = f"files named {suffix}" if suffix else "files without a suffix"
     if file.suffix.lower() == _PACKED and suffix in (".json", ".npz", ".toml"):
         return FileFormatError(f"{file}: {name} are read unpacked alone; unpack it with gunzip")
-    return FileFormatError(f"{file}: {name} are not read; use one of {', '.join(readable)}")
+    way_out = f"use one of {', '.join(readable)}"
+    for suffixes, words in _FOREIGN:
+        if suffix in suffixes:
+            way_out = words.format(shlex.quote(file.name), shlex.quote(file.stem))
+    return FileFormatError(f"{file}: {name} are not read; {way_out}")
 
 
 def content_format(head: bytes, size: int) -> tuple[str | None, bool]:
@@ -162,11 +199,13 @@ def _checked_format(file: Path, head: bytes, size: int) -> str | None:
         raise FileFormatError(f"{file}: is a robot ({robot}); polhode check judges its links")
     suffix = file.suffix.lower()
     actual, is_text = content_format(head, size)
-    expected = EXPECTED_CONTENT.get(suffix)
-    if expected is None or actual in expected:
+    expected = EXPECTED_CONTENT.get(suffix, ())
+    if actual in expected:
         return actual
     if actual is not None:
-        raise FileFormatError(f"{file}: named {suffix}, but its content is {actual}; rename it")
+        name = f"named {suffix}" if suffix else "named without a suffix"
+        way_out = rename(file, actual, head)
+        raise FileFormatError(f"{file}: {name}, but its content is {actual}; {way_out}")
     if is_text and suffix == ".stl":
         raise FileFormatError(
             f"{file}: named .stl, but it is text without an STL's words 'solid' and 'facet'; check the file"
@@ -174,6 +213,19 @@ def _checked_format(file: Path, head: bytes, size: int) -> str | None:
     if not is_text and expected == ("v/f text",):
         raise FileFormatError(f"{file}: named {suffix}, but it is not text; check the file")
     return None
+
+
+def rename(file: Path, actual: str, head: bytes) -> str:
+    """Say under which name a file of this content is read."""
+    if actual == "packed with gzip":
+        return f"rename it to {file.name}{_PACKED}"
+    if actual == "a ZIP archive":
+        return "unpack it, or rename it to end in .3mf if it is a 3MF file"
+    if actual == "VTK":
+        is_legacy = head.startswith(b"# vtk DataFile")
+        found = next((suffix for kind, suffix in _VTK_SUFFIXES if kind in head and not is_legacy), ".vtk")
+        return f"rename it to end in {found}"
+    return f"rename it to end in {_SUFFIXES[actual]}"
 
 
 def _as_text(head: bytes, *, whole: bool) -> str | None:

@@ -7,11 +7,13 @@ import io
 import json
 import math
 import zipfile
+from collections import Counter
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from polhode.errors import FileFormatError
+from polhode.files.budget import Budget, LimitError
 from polhode.files.reading import MOST_TEXT, check_ordinary, naming, read_text, with_way_out
 from polhode.files.writing import write_bytes
 
@@ -20,10 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["MOST_COMPRESSED", "counts", "numbers", "read_json", "read_npz", "write_json"]
-
-MOST_COMPRESSED: Final = 1 << 30
-"""Bytes of the largest array that is read out of a compressed file."""
+__all__ = ["counts", "numbers", "read_json", "read_npz", "write_json"]
 
 _EXACT: Final = 2**53
 """Whole numbers up to here are the same as float64."""
@@ -78,19 +77,16 @@ def read_npz(file: Path) -> dict[str, NDArray[Any]]:
     """
     check_ordinary(file)
     arrays: dict[str, NDArray[Any]] = {}
+    budget = Budget(str(file), file.stat().st_size)
     try:
         with naming(file), zipfile.ZipFile(file) as archive:
             for member in archive.infolist():
                 name = member.filename.removesuffix(".npy")
                 if name in arrays:
                     raise ValueError(f"{name[:40]!r} stands there twice; save it again")
-                if member.compress_type != zipfile.ZIP_STORED and member.file_size > MOST_COMPRESSED:
-                    raise ValueError(
-                        f"{name} is compressed from {member.file_size} bytes, and at most {MOST_COMPRESSED} "
-                        "are read of a compressed array; write it with numpy.savez"
-                    )
+                budget.spend("unpacked bytes", member.file_size)
                 arrays[name] = _array(archive.read(member))
-    except MemoryError:
+    except (MemoryError, LimitError):
         raise
     except OSError as error:
         if error.errno != errno.EINVAL:  # which is a place in the file that there is not
@@ -195,7 +191,7 @@ def _refused(word: str) -> Any:
 def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     fields = dict(pairs)
     if len(fields) < len(pairs):
-        names = [name for name, _ in pairs]
-        twice = next(name for name in names if names.count(name) > 1)
+        often = Counter(name for name, _ in pairs)
+        twice = next(name for name, _ in pairs if often[name] > 1)
         raise ValueError(f"{twice[:40]!r} stands there twice; remove one of them")
     return fields

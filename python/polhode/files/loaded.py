@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, replace
-from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, Final
 
@@ -17,6 +16,7 @@ import numpy as np
 
 from polhode import _core
 from polhode.errors import FileFormatError, PolhodeError
+from polhode.files.budget import Budget
 from polhode.files.cad_kernel import check_occt
 from polhode.files.content import EXPECTED_CONTENT, MOLECULE_SUFFIXES, Content, is_molecule, opened, unread
 from polhode.files.mesh import Mesh, check_faces, weld, weld_within
@@ -68,6 +68,9 @@ class Loaded:
         What was done to read the file, and which parts of it were not read.
     cad : CadFile or None
         The solids of a STEP or IGES file.
+    groups : tuple of (str, int)
+        The name of each part of a mesh and the number of its triangles, in the order of the faces; empty
+        where the format has no names, and for v/f text, whose names are read when they are asked for.
     """
 
     path: Path
@@ -78,6 +81,7 @@ class Loaded:
     states_unit: bool = False
     notes: tuple[str, ...] = ()
     cad: CadFile | None = None
+    groups: tuple[tuple[str, int], ...] = ()
     _molecule: Molecule | None = None
     _mesh: Mesh | None = None
 
@@ -134,7 +138,7 @@ class Loaded:
             return Mesh(*_core.read_stl(str(self.path)), self.format)
         if self.format == "PLY":
             with naming(self.path), self.path.open("rb") as stream:
-                return _by_trimesh(stream, self.path)
+                return _by_trimesh(stream, self.path, _budget(self.path))
         mesh = Mesh(*_core.read_plates(str(self.path), self.index_base), self.format)
         check_faces(mesh, str(self.path))
         return mesh
@@ -195,8 +199,9 @@ def load(path: str | os.PathLike[str], *, index_base: int = 1) -> Loaded:
     if file.suffix.lower() == ".gz" and suffix not in EXPECTED_CONTENT:
         check_ordinary(file)
         raise unread(file, suffix, _MESH_SUFFIXES)
-    with unpacked(file) as inside:
-        loaded = _load(inside, suffix, index_base)
+    budget = _budget(file)
+    with unpacked(file, budget) as inside:
+        loaded = _load(inside, suffix, index_base, budget)
         if inside is file:
             return loaded
         held = None if loaded.cad is not None or loaded._molecule is not None else loaded.mesh
@@ -204,20 +209,27 @@ def load(path: str | os.PathLike[str], *, index_base: int = 1) -> Loaded:
     return replace(loaded, path=file, is_stream=False, notes=(*loaded.notes, note), _mesh=held)
 
 
-def _load(file: Path, suffix: str, index_base: int) -> Loaded:
+def _budget(file: Path) -> Budget:
+    """Give the budget of a file, by its size as it lies on the disk."""
+    with naming(file):
+        return Budget(str(file), file.stat().st_size)
+
+
+def _load(file: Path, suffix: str, index_base: int, budget: Budget) -> Loaded:
     """Open and read a file that is not packed."""
     with opened(file) as content:
         stream = content.stream
         if suffix in MOLECULE_SUFFIXES:
-            return _load_molecule(content, file, suffix)
+            return _load_molecule(content, file, suffix, budget)
         if suffix in CAD_SUFFIXES:
             return _load_cad(file)
         if content.format == "ASCII STL":
             from polhode.files.ascii_stl import read_ascii_stl
 
-            corners = read_ascii_stl(stream, file)
+            corners, groups = read_ascii_stl(stream, file)
             faces = np.arange(corners.size // 3).reshape(-1, 3)
-            return Loaded(file, "ASCII STL", _mesh=weld(corners.reshape(-1, 3), faces, "ASCII STL"))
+            mesh = weld(corners.reshape(-1, 3), faces, "ASCII STL")
+            return Loaded(file, "ASCII STL", groups=groups, _mesh=mesh)
         if suffix == ".stl":
             # Whatever is neither text nor another known format is the compiled reader's to read or refuse.
             return Loaded(file, "binary STL", is_stream=True)
@@ -228,30 +240,41 @@ def _load(file: Path, suffix: str, index_base: int) -> Loaded:
         if suffix in _TEXT_SUFFIXES:
             return Loaded(file, "v/f text", index_base=index_base)
         if suffix == ".dae":
-            return _load_collada(stream, file)
+            return _load_collada(stream, file, budget)
         if suffix == ".3mf":
             from polhode.files.three_mf import read_three_mf
 
-            mesh, unit, is_stated = read_three_mf(stream, file)
-            return Loaded(file, mesh.format, unit=unit, states_unit=is_stated, _mesh=mesh)
+            package = read_three_mf(stream, file, budget)
+            return Loaded(
+                file,
+                "3MF",
+                unit=package.unit,
+                states_unit=package.states_unit,
+                notes=package.notes,
+                groups=package.groups,
+                _mesh=package.mesh,
+            )
         if suffix in (".vtk", ".vtu", ".vtp"):
             from polhode.files.vtk import read_vtk
 
             return Loaded(file, "VTK", _mesh=read_vtk(file))
-        if suffix == ".gltf":
-            from polhode.files.gltf import as_glb
+        if suffix in (".glb", ".gltf"):
+            from polhode.files.gltf import read_gltf
 
-            mesh = _by_trimesh(BytesIO(as_glb(stream, file)), file)
-            return Loaded(file, "glTF", unit="m", _mesh=mesh._replace(format="glTF"))
+            mesh, groups = read_gltf(stream, file, budget, is_binary=suffix == ".glb")
+            return Loaded(file, mesh.format, unit="m", groups=groups, _mesh=mesh)
         if _is_binary_ply(content, suffix):
             return Loaded(file, "PLY", is_stream=True)
-        mesh = _by_trimesh(stream, file)
-    return Loaded(file, mesh.format, unit="m" if suffix == ".glb" else None, _mesh=mesh)
+        mesh = _by_trimesh(stream, file, budget)
+    return Loaded(file, mesh.format, _mesh=mesh)
 
 
-def _load_molecule(content: Content, file: Path, suffix: str) -> Loaded:
+def _load_molecule(content: Content, file: Path, suffix: str, budget: Budget) -> Loaded:
     from polhode.files import molecule_files, xyz
 
+    for _ in content.stream:  # each line may be an atom, which takes far more memory
+        budget.spend("atoms")
+    content.stream.seek(0)
     if suffix in (".pdb", ".ent"):
         return Loaded(file, "PDB", _molecule=molecule_files.read_pdb(content.stream, file))
     if suffix in (".mol", ".sdf"):
@@ -277,30 +300,34 @@ def _load_cad(file: Path) -> Loaded:
     return Loaded(file, cad.format, unit=cad.unit, states_unit=True, notes=tuple(notes), cad=cad)
 
 
-def _load_collada(stream: BinaryIO, file: Path) -> Loaded:
+def _load_collada(stream: BinaryIO, file: Path, budget: Budget) -> Loaded:
     from polhode.files.collada import read_collada
 
-    mesh, metres, up = read_collada(whole_of(stream, file), file)
+    mesh, groups, metres, up = read_collada(whole_of(stream, file), file, budget)
     notes = []
     if up != "Z":
         notes.append(
             f"up is {up} by the file: its axes are told as they are (RViz does so; Gazebo turns them)"
         )
     if metres is None:
-        return Loaded(file, "COLLADA", unit="m", notes=tuple(notes), _mesh=mesh)
+        return Loaded(file, "COLLADA", unit="m", notes=tuple(notes), groups=groups, _mesh=mesh)
     unit = next((name for name, known in METRES.items() if abs(metres - known) <= 1e-9 * known), None)
     if unit is not None:
-        return Loaded(file, "COLLADA", unit=unit, states_unit=True, notes=tuple(notes), _mesh=mesh)
+        return Loaded(
+            file, "COLLADA", unit=unit, states_unit=True, notes=tuple(notes), groups=groups, _mesh=mesh
+        )
     note = f"the file's unit is {metres:.9g} m, which has no name here: lengths are told in m"
     mesh = mesh._replace(vertices=mesh.vertices * metres)
-    return Loaded(file, "COLLADA", unit="m", states_unit=True, notes=(*notes, note), _mesh=mesh)
+    return Loaded(
+        file, "COLLADA", unit="m", states_unit=True, notes=(*notes, note), groups=groups, _mesh=mesh
+    )
 
 
-def _by_trimesh(stream: BinaryIO, path: Path) -> Mesh:
+def _by_trimesh(stream: BinaryIO, path: Path, budget: Budget) -> Mesh:
     # Imported when a file needs it: the formats of our own readers are opened sooner.
     from polhode.files.by_trimesh import read_by_trimesh
 
-    return read_by_trimesh(stream, path, _MESH_SUFFIXES)
+    return read_by_trimesh(stream, path, _MESH_SUFFIXES, budget)
 
 
 def read_mesh(path: str | os.PathLike[str], *, index_base: int = 1, weld: float = 0.0) -> Mesh:
@@ -310,8 +337,7 @@ def read_mesh(path: str | os.PathLike[str], *, index_base: int = 1, weld: float 
     ----------
     path : str or os.PathLike
         A mesh, which may be packed with gzip (``.gz``). STL, ``v``/``f`` text and other plate models
-        (``.obj``, ``.tab``, ``.txt``), DAE and 3MF are read without any further library. PLY, OFF, GLB and
-        glTF are read by trimesh (extra ``mesh``), and VTK, VTU and VTP by PyVista (extra ``view``). (A body
+        (``.obj``, ``.tab``, ``.txt``), DAE, 3MF, GLB and glTF are read without any further library. PLY and OFF are read by trimesh (extra ``mesh``), and VTK, VTU and VTP by PyVista (extra ``view``). (A body
         from a binary PLY needs no trimesh.) The meshes of a scene are placed by their transforms and joined.
         Coordinates are those in the file; :func:`load` tells the unit, if the file states one.
     index_base : {1, 0}

@@ -2,131 +2,361 @@
 
 from __future__ import annotations
 
-from decimal import Decimal, InvalidOperation
-from typing import TYPE_CHECKING, BinaryIO, Final
+import re
+from typing import TYPE_CHECKING, BinaryIO, Final, NamedTuple
 
-from polhode.errors import FileFormatError
-from polhode.files.reading import text_of, with_way_out
-from polhode.files.xyz import Molecule, molecule_from
+import numpy as np
+
+from polhode._nuclides import SYMBOLS, shifted_mass_number
+from polhode.errors import FileFormatError, PolhodeError
+from polhode.files.reading import with_way_out
+from polhode.files.xyz import Molecule, lines_of, molecule_from, number_of, numbers_of
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from decimal import Decimal
     from pathlib import Path
+
+    from numpy.typing import NDArray
 
 __all__ = ["read_mol", "read_pdb"]
 
-_TWO_LETTERS: Final = frozenset(
-    """
-    LI BE NE NA MG AL SI CL AR CA SC TI CR MN FE NI CU ZN GA GE AS SE BR KR RB SR ZR NB MO RU RH PD AG CD SB
-    TE XE CS BA LA CE PR ND SM EU GD TB DY ER TM YB LU TA RE OS IR PT AU HG TL PB BI TH
-    """.split()  # noqa: SIM905
+_HYDROGENS: Final = {"D": 2, "T": 3}
+_ELEMENTS: Final = frozenset(symbol.upper() for symbol in (*SYMBOLS, *_HYDROGENS))
+_COLUMNS_77: Final = "write the element in columns 77 and 78"
+_AMINO_ACIDS: Final = "ALA ARG ASN ASP CYS GLN GLU GLY HIS ILE LEU LYS MET PHE PRO SER THR TRP TYR VAL"
+_NUCLEOTIDES: Final = "A C G U I DA DC DG DT DU DI"
+_BIOPOLYMER: Final = frozenset(f"{_AMINO_ACIDS} {_NUCLEOTIDES}".split())
+_LEAST_CELL: Final = 1.0
+"""Angstrom between opposite sides: files without a crystal write a cell of 1 by 1 by 1, as PDB prescribes."""
+_NO_HYDROGENS: Final = "the file holds no hydrogens: mass and moments are without them; add them first"
+_GEOMETRY: Final = (
+    "make a geometry in space with all hydrogens first, for example with Open Babel: "
+    "obabel drawing.mol -O molecule.mol -h --gen3d"
 )
-_HYDROGENS: Final = ("H", "D", "T")
 
 
 class _FaultError(ValueError):
     """What is wrong with a line, without the name of the file."""
 
 
+class _PdbAtom(NamedTuple):
+    """What decides between alternate places, and where the atom stands.
+
+    Attributes
+    ----------
+    site : tuple of str
+        Chain, number of the residue with its insertion code, segment.
+    residue, name : str
+        Of the residue and of the atom.
+    alternate : str
+        The letter of the place, blank where there is one alone.
+    occupancy : float
+    label : str
+    coordinates : list of Decimal
+    """
+
+    site: tuple[str, ...]
+    residue: str
+    name: str
+    alternate: str
+    occupancy: float
+    label: str
+    coordinates: list[Decimal]
+
+
 def read_pdb(stream: BinaryIO, file: Path) -> Molecule:
     """Read the atoms of a PDB file's first model; see :func:`polhode.files.read_xyz`.
 
-    Of alternate places the first is taken. Files from X-ray diffraction mostly hold no hydrogens: the notes
-    say so.
+    Of the alternate places of an atom the one with the highest occupancy is taken, the first of equals. Where
+    a residue is one of several at its place, it is chosen alike. Files from X-ray diffraction mostly hold no
+    hydrogens: the notes say so.
     """
-    labels: list[str] = []
-    rows: list[list[Decimal]] = []
+    atoms: list[_PdbAtom] = []
     title: list[str] = []
-    models = alternates = 0
-    for number, line in enumerate(text_of(stream, file, "a PDB file").splitlines(), start=1):
-        record = line[:6].strip()
-        if record in ("TITLE", "COMPND") and not title:
-            title.append(" ".join(line[10:].split()))
-        if record == "MODEL":
-            models += 1
-        if record not in ("ATOM", "HETATM") or models > 1:
-            continue
-        if line[16:17] not in ("", " ", "A", "1"):
-            alternates += 1
-            continue
+    cell = None
+    models = left = 0
+    is_over = False
+    for number, line in enumerate(lines_of(stream, file, "a PDB file"), start=1):
+        record = line[:6].strip().upper()
         try:
-            rows.append(_coordinates(line[30:38], line[38:46], line[46:54]))
-            labels.append(_element(line))
+            if record in ("TITLE", "COMPND") and not title:
+                title.append(" ".join(line[10:].split()))
+            elif record == "CRYST1" and cell is None:
+                cell = _crystal_cell(line)
+            elif record == "MODEL":
+                models += 1
+                is_over = is_over or models > 1
+            elif record in ("ENDMDL", "END"):
+                is_over = is_over or bool(atoms)
+            elif record.startswith(("ATOM", "HETATM")):  # a long serial number may begin in column 6
+                if is_over:
+                    left += 1
+                else:
+                    atoms.append(_pdb_atom(line))
         except _FaultError as error:
-            raise FileFormatError(f"{file}: line {number}: {error}") from None
-    if not labels:
+            fault = with_way_out(error, "correct the line")
+            raise FileFormatError(f"{file}: line {number}: {fault}") from None
+    if not atoms:
         raise FileFormatError(f"{file}: holds no ATOM and no HETATM; check the file")
+    chosen = _one_place_each(atoms)
+    labels = [atom.label for atom in chosen]
     notes = []
-    if not any(label in _HYDROGENS for label in labels):
-        notes.append("the file holds no hydrogens: mass and moments are without them; add them first")
+    if not _has_hydrogens(labels):
+        notes.append(_NO_HYDROGENS)
     if models > 1:
         notes.append(f"the first of {models} models was taken")
-    if alternates:
-        notes.append(f"{alternates} atoms at alternate places were left out; the first places were taken")
-    return molecule_from(labels, rows, " ".join(title), tuple(notes))
+    elif left:
+        notes.append(f"the first frame was taken, which ends with END or ENDMDL; {left} atoms follow it")
+    if len(chosen) < len(atoms):
+        notes.append(
+            f"{len(atoms) - len(chosen)} atoms at alternate places were left out; of each atom the place "
+            "with the highest occupancy was taken"
+        )
+    return molecule_from(labels, [atom.coordinates for atom in chosen], " ".join(title), tuple(notes), cell)
+
+
+def _pdb_atom(line: str) -> _PdbAtom:
+    if "\t" in line[:80]:
+        raise _FaultError("the line holds a tab, but PDB counts columns; write spaces")
+    coordinates = _coordinates(line[30:38], line[38:46], line[46:54])
+    alternate, occupancy = line[16:17].strip(), 1.0
+    if text := line[54:60].strip():
+        if (number := number_of(text)) is not None:
+            occupancy = float(number)
+        elif alternate:  # else it decides nothing
+            raise _FaultError(f"expected an occupancy in columns 55 to 60, got {line[54:60]!r}; correct it")
+    site = (line[21:22], line[22:27], line[72:76].strip())
+    residue = line[17:20].strip()
+    return _PdbAtom(site, residue, line[12:16].strip(), alternate, occupancy, _element(line), coordinates)
+
+
+def _one_place_each(atoms: list[_PdbAtom]) -> list[_PdbAtom]:
+    """Choose one residue of each site that has alternatives, and one place of each atom that has some."""
+    residues: dict[tuple[str, ...], _PdbAtom] = {}
+    for atom in atoms:
+        if atom.alternate and (best := residues.get(atom.site, atom)).occupancy <= atom.occupancy:
+            residues[atom.site] = atom if best.occupancy < atom.occupancy else best
+    rest = [atom for atom in atoms if not atom.alternate or residues[atom.site].residue == atom.residue]
+    has_alternatives = {(atom.site, atom.residue, atom.name) for atom in rest if atom.alternate}
+    places: dict[tuple[tuple[str, ...], str, str], _PdbAtom] = {}
+    for atom in rest:
+        key = (atom.site, atom.residue, atom.name)
+        if key in has_alternatives and (key not in places or places[key].occupancy < atom.occupancy):
+            places[key] = atom
+    chosen = {id(atom) for atom in places.values()}
+    return [
+        atom
+        for atom in rest
+        if id(atom) in chosen or (atom.site, atom.residue, atom.name) not in has_alternatives
+    ]
 
 
 def _element(line: str) -> str:
-    """Give the element of a PDB atom: columns 77-78, else the name of the atom, whose column tells."""
+    """Read the element of a PDB atom: columns 77-78, else the name of the atom, whose column tells.
+
+    A symbol of two letters begins in column 13, one of a single letter in column 14: ``"CA  "`` is calcium
+    and ``" CA "`` an alpha carbon. A name of four letters has no column to choose.
+    """
     stated = line[76:78].strip()
     if stated.isalpha():
+        if stated.upper() not in _ELEMENTS:
+            raise _FaultError(f"columns 77 and 78 hold {stated!r}, which is no element; {_COLUMNS_77}")
         return stated.capitalize()
-    name = line[12:16]
-    letters = name[:2].strip().lstrip("0123456789")
-    if name[:1].upper() == "H" and len(name.strip()) == 4:  # a hydrogen whose name takes all four columns
-        return "H"
-    if name[:1].isalpha() and name[:2].upper() in _TWO_LETTERS and not name[2:].strip().isalpha():
-        return name[:2].capitalize()
-    first = (letters or name.strip().lstrip("0123456789"))[:1]
-    if not first.isalpha():
-        raise _FaultError(f"the atom {name.strip()!r} names no element; write it in columns 77 and 78")
-    return first.upper()
+    field = f"{line[12:16]:4}".upper()
+    name, residue = field.strip(), line[17:20].strip().upper()
+    if not field[:1].isalpha():
+        first = name.lstrip("0123456789")[:1]
+        if len(name) == 2 and name == residue and name in _ELEMENTS:
+            raise _FaultError(
+                f"the name {field!r} is {first} by its column and {name.capitalize()} by its residue; "
+                f"{_COLUMNS_77}"
+            )
+    elif not field[1].isalpha() or (len(name) == 4 and field[0] in "HD"):
+        # The latter are hydrogens whose names take all four columns.
+        first = field[0]
+    elif field[:2] not in _ELEMENTS:
+        raise _FaultError(f"the name {field!r} begins with no element of two letters; {_COLUMNS_77}")
+    else:
+        is_one_letter = field[0] in _ELEMENTS and (
+            len(name) == 4 or field[2].isalpha() or (field[0] == "H" and residue in _BIOPOLYMER)
+        )
+        if is_one_letter:
+            raise _FaultError(
+                f"the name {field!r} of residue {residue!r} may be {field[:2].capitalize()} or {field[0]}; "
+                f"{_COLUMNS_77}"
+            )
+        first = field[:2]
+    if first not in _ELEMENTS:
+        raise _FaultError(f"the atom {name!r} names no element; {_COLUMNS_77}")
+    return first.capitalize()
+
+
+def _crystal_cell(line: str) -> NDArray[np.float64] | None:
+    """Read the cell's three vectors: a along x, b in the x-y plane. None where the cell stands for none."""
+    numbers = numbers_of(line[start:end].strip() for start, end in _CRYST1)
+    if numbers is None:
+        raise _FaultError(
+            f"expected three lengths and three angles of a cell, got {line[6:54]!r}; correct them"
+        )
+    a, b, c, *angles = map(float, numbers)
+    # Right angles exactly: the cosine of 90 degrees is not zero in floating point.
+    cosines = [0.0 if angle == 90.0 else float(np.cos(np.deg2rad(angle))) for angle in angles]
+    alpha, beta, gamma = cosines
+    sine = float(np.sqrt(max(1.0 - gamma**2, 0.0)))
+    if not (min(a, b, c) > 0.0 and sine > 0.0):
+        return None
+    across = (alpha - beta * gamma) / sine
+    height = 1.0 - beta**2 - across**2
+    if not height > 0.0:
+        return None
+    cell = np.array(
+        [[a, 0.0, 0.0], [b * gamma, b * sine, 0.0], [c * beta, c * across, c * float(np.sqrt(height))]]
+    )
+    return cell if 1.0 / np.linalg.norm(np.linalg.inv(cell), axis=0).max() > _LEAST_CELL else None
+
+
+_CRYST1: Final = ((6, 15), (15, 24), (24, 33), (33, 40), (40, 47), (47, 54))
 
 
 def read_mol(stream: BinaryIO, file: Path) -> Molecule:
     """Read the atoms of an MDL file with one molecule; see :func:`polhode.files.read_xyz`."""
-    text = text_of(stream, file, "a MOL or SDF file")
-    records = text.split("$$$$")
-    if any(record.strip() for record in records[1:]):
+    lines = lines_of(stream, file, "a MOL or SDF file")
+    end = next((number for number, line in enumerate(lines) if line.startswith("$$$$")), len(lines))
+    if any(line.strip() for line in lines[end + 1 :]):
         raise FileFormatError(f"{file}: holds more than one molecule; keep one a file")
-    lines = records[0].splitlines()
+    lines = lines[:end]
+    notes: list[str] = []
     try:
         if len(lines) < 4:
             raise _FaultError("it has fewer than four lines; is it cut short?")
-        labels, rows = _of_v3000(lines) if "V3000" in lines[3] else _of_v2000(lines)
+        if "V3000" in lines[3]:
+            labels, rows = _of_v3000(lines)
+        else:
+            labels, rows = _of_v2000(lines, notes)
+        is_flat = all(row[2] == 0 for row in rows)
+        if lines[1][20:22].upper() == "2D":
+            if is_flat:
+                raise _FaultError(
+                    "line 2 says 2D: a drawing, not a geometry, and mostly without its hydrogens; "
+                    f"{_GEOMETRY}"
+                )
+            notes.append("line 2 says 2D, but z differs from zero: taken as a geometry in space")
     except _FaultError as error:
         raise FileFormatError(f"{file}: {with_way_out(error, 'export it again')}") from None
-    notes = []
-    if not any(label.lstrip("0123456789") in _HYDROGENS for label in labels):
-        notes.append("the file holds no hydrogens: mass and moments are without them; add them first")
-    if len(rows) > 1 and all(row[2] == 0 for row in rows):
+    if not _has_hydrogens(labels):
+        notes.append(_NO_HYDROGENS)
+    if len(rows) > 1 and is_flat:
         notes.append("all z are zero: a drawing in the plane has no bond lengths of its own; check the file")
     return molecule_from(labels, rows, lines[0].strip(), tuple(notes))
 
 
-def _of_v2000(lines: list[str]) -> tuple[list[str], list[list[Decimal]]]:
-    count_text = lines[3][:3].strip()
-    if not count_text.isdecimal() or int(count_text) == 0:
+def _of_v2000(lines: list[str], notes: list[str]) -> tuple[list[str], list[list[Decimal]]]:
+    count = _whole_number(lines[3][:3])
+    if count is None or count == 0:
         raise _FaultError(f"line 4: expected the number of atoms, got {lines[3][:40]!r}")
-    count = int(count_text)
-    if len(lines) < 4 + count or not any(line.startswith("M  END") for line in lines):
+    bonds, lists = (_whole_number(lines[3][start : start + 3]) or 0 for start in (3, 6))
+    if len(lines) < 4 + count or not any(line.startswith("M  END") for line in lines[4 + count :]):
         raise _FaultError(f"line 4 promises {count} atoms, or 'M  END' is missing; is it cut short?")
-    labels, rows = [], []
+    symbols, rows, differences = [], [], []
     for number, line in enumerate(lines[4 : 4 + count], start=5):
-        try:
+        with _Line(number):
+            if "\t" in line:
+                raise _FaultError("the line holds a tab, but V2000 counts columns; write spaces")
             rows.append(_coordinates(line[:10], line[10:20], line[20:30]))
-        except _FaultError as error:
-            raise _FaultError(f"line {number}: {error}") from None
-        labels.append(line[31:34].strip())
-    for number, line in enumerate(lines, start=1):
-        if line.startswith("M  ISO"):
-            words = line[9:].split()
-            for atom, isotope in zip(words[::2], words[1::2], strict=False):
-                if not (atom.isdecimal() and isotope.isdecimal() and 1 <= int(atom) <= count):
-                    raise _FaultError(
-                        f"line {number}: {line[:40]!r} names no atom of the file; correct the line"
-                    )
-                labels[int(atom) - 1] = f"{int(isotope)}{labels[int(atom) - 1].lstrip('0123456789')}"
-    return labels, rows
+            symbols.append(_symbol(line[31:34].strip()))
+            differences.append(_mass_difference(line[34:36]))
+    if lists:
+        raise _FaultError(f"line 4: {_LIST}")
+    stated: dict[int, int] = {}
+    has_isotopes = False
+    place = 4 + count + bonds
+    while place < len(lines) and not (line := lines[place]).startswith("M  END"):
+        place += 1
+        with _Line(place):
+            if line.startswith(("A  ", "G  ")):  # the next line is a text
+                if place < len(lines) and (atom := _whole_number(line[3:6])) and atom <= count:
+                    shown = lines[place].strip()[:40]
+                    notes.append(f"atom {atom} is shown as {shown!r}: it counts as {symbols[atom - 1]}")
+                place += 1
+            elif line.startswith("S  SKP"):
+                place += _whole_number(line[6:9]) or 0
+            elif line.startswith(("M  ALS", "M  RGP")):
+                raise _FaultError(_LIST)
+            elif line.startswith("M  ISO"):
+                has_isotopes = True
+                stated.update(_isotope_line(line, count))
+    masses = [
+        _mass_number(number, symbol, difference, stated.get(number), has_isotopes)
+        for number, (symbol, difference) in enumerate(zip(symbols, differences, strict=True), start=1)
+    ]
+    return [_label(symbol, mass) for symbol, mass in zip(symbols, masses, strict=True)], rows
+
+
+class _Line:
+    """Let a fault name the line."""
+
+    def __init__(self, number: int) -> None:
+        self.number = number
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, _: object, error: BaseException | None, __: object) -> None:
+        if isinstance(error, _FaultError):
+            raise _FaultError(f"line {self.number}: {error}") from None
+
+
+def _isotope_line(line: str, count: int) -> Iterable[tuple[int, int]]:
+    """Read the atoms of ``M  ISO`` and their mass numbers; 0 stands for the element as it is in nature."""
+    words = line[9:].split()
+    numbers = [_whole_number(word) for word in words]
+    promised = _whole_number(line[6:9])
+    if promised is None or len(words) != 2 * promised or None in numbers:
+        raise _FaultError(
+            f"expected 'M  ISO', a count and as many pairs, got {line[:40]!r}; correct the line"
+        )
+    pairs = [(atom or 0, isotope or 0) for atom, isotope in zip(numbers[::2], numbers[1::2], strict=True)]
+    if not all(1 <= atom <= count for atom, _ in pairs):
+        raise _FaultError(f"{line[:40]!r} names no atom of the file; correct the line")
+    return pairs
+
+
+def _mass_difference(text: str) -> int:
+    match = re.fullmatch(r"[+-]?[0-9]", text.strip() or "0")
+    difference = int(match[0]) if match else 99
+    if not -3 <= difference <= 4:
+        raise _FaultError(
+            f"expected a mass difference from -3 to 4 behind the symbol, got {text!r}; "
+            "write isotopes as 'M  ISO'"
+        )
+    return difference
+
+
+def _mass_number(number: int, symbol: str, difference: int, stated: int | None, has_isotopes: bool) -> int:
+    """Find the mass number of an atom of V2000, 0 where no isotope is named.
+
+    ``M  ISO`` lines supersede the differences of all atoms by the standard. Programs keep those of the atoms
+    that no such line names, so that this case is refused.
+    """
+    if difference == 0 or stated is not None:
+        return stated or 0
+    if has_isotopes:
+        raise _FaultError(
+            f"line {4 + number}: the mass difference {difference} of {symbol} is not repeated in 'M  ISO', "
+            "which replaces it by the standard; write the isotope there, or 0 as the difference"
+        )
+    if symbol in _HYDROGENS:
+        raise _FaultError(
+            f"line {4 + number}: {symbol} has a mass difference too; write H, or 0 as the difference"
+        )
+    try:
+        return shifted_mass_number(symbol, difference)
+    except PolhodeError as error:
+        raise _FaultError(f"line {4 + number}: {error}") from None
+
+
+_ATOM: Final = re.compile(r'(?:"(?:[^"]|"")*"|\([^)]*\)|\[[^\]]*\]|[^\s"(\[])+')
 
 
 def _of_v3000(lines: list[str]) -> tuple[list[str], list[list[Decimal]]]:
@@ -134,30 +364,94 @@ def _of_v3000(lines: list[str]) -> tuple[list[str], list[list[Decimal]]]:
     labels: list[str] = []
     rows: list[list[Decimal]] = []
     promised = -1
-    for number, line in enumerate(lines, start=1):
+    for number, line in _joined(lines):
         words = line.split()
-        if words[:3] == ["M", "V30", "COUNTS"] and len(words) > 3 and words[3].isdecimal():
-            promised = int(words[3])
-        elif words[:4] == ["M", "V30", "BEGIN", "ATOM"]:
+        if words[:1] == ["COUNTS"] and len(words) > 1 and (count := _whole_number(words[1])) is not None:
+            promised = count
+        elif words[:2] == ["BEGIN", "ATOM"]:
             inside = True
-        elif words[:4] == ["M", "V30", "END", "ATOM"]:
+        elif words[:2] == ["END", "ATOM"]:
             inside = False
         elif inside:
-            if len(words) < 7 or line.rstrip().endswith("-"):
-                raise _FaultError(f"line {number}: expected 'M V30 index symbol x y z', got {line[:60]!r}")
-            mass = next((word[5:] for word in words[7:] if word.startswith("MASS=")), "")
-            rows.append(_coordinates(*words[4:7]))
-            labels.append(f"{mass}{words[3]}")
+            with _Line(number):
+                words = _ATOM.findall(line)
+                if len(words) < 6:
+                    raise _FaultError(f"expected 'M  V30 index symbol x y z map', got {line[:60]!r}")
+                rows.append(_coordinates(*words[2:5]))
+                symbol, mass = _symbol(words[1].strip('"')), 0
+                for word in words[6:]:
+                    key, _, value = word.partition("=")
+                    if key.upper() == "MASS":
+                        mass = _stated_mass(value)
+                    if key.upper() in ("RGROUPS", "CLASS"):
+                        raise _FaultError(_LIST)
+                labels.append(_label(symbol, mass))
     if inside or not labels or len(labels) != promised:
         raise _FaultError(f"it promises {promised} atoms and holds {len(labels)}; is it cut short?")
+    if not any(line.startswith("M  END") for line in lines):
+        raise _FaultError("'M  END' is missing; is it cut short?")
     return labels, rows
 
 
+def _joined(lines: list[str]) -> Iterable[tuple[int, str]]:
+    """Read the lines of V3000 without ``M  V30``; one that ends with a hyphen goes on in the next."""
+    number, text = 0, ""
+    for place, line in enumerate(lines, start=1):
+        match = re.fullmatch(r"M\s+V30\s(.*)", line)
+        if match is None:
+            continue
+        number = number or place
+        text += match[1].rstrip()
+        if text.endswith("-"):
+            text = text[:-1]
+        else:
+            yield number, text
+            number, text = 0, ""
+    if text:
+        yield number, text
+
+
+def _stated_mass(value: str) -> int:
+    match = re.fullmatch(r"([0-9]+)(?:\.0*)?", value)
+    if match is None or len(match[1]) > 3:
+        raise _FaultError(f"expected MASS= and the mass number of an isotope, got {value[:20]!r}")
+    return int(match[1])
+
+
+_LIST: Final = (
+    "an atom stands for a list of elements, a group or any atom, which has no mass; write its atoms there"
+)
+
+
+def _symbol(text: str) -> str:
+    if text.upper() not in _ELEMENTS:
+        raise _FaultError(
+            f"{text[:20]!r} is no element: it may stand for a list, a group or any atom; "
+            "write its atoms there"
+        )
+    return text.capitalize()
+
+
+def _label(symbol: str, mass: int) -> str:
+    """Join symbol and mass number, 0 where none is stated; that of D and T must be their own, if any."""
+    if symbol in _HYDROGENS and mass:
+        if mass != _HYDROGENS[symbol]:
+            raise _FaultError(f"{symbol} has the mass number {mass}; write H with it")
+        return symbol
+    return f"{mass}{symbol}" if mass else symbol
+
+
+def _has_hydrogens(labels: Iterable[str]) -> bool:
+    return any(label.lstrip("0123456789") in ("H", *_HYDROGENS) for label in labels)
+
+
+def _whole_number(text: str) -> int | None:
+    text = text.strip()
+    return int(text) if re.fullmatch("[0-9]{1,9}", text) else None
+
+
 def _coordinates(*texts: str) -> list[Decimal]:
-    try:
-        numbers = [Decimal(text.strip()) for text in texts]
-    except InvalidOperation:
-        numbers = []
-    if len(numbers) != 3 or not all(number.is_finite() for number in numbers):
+    numbers = numbers_of(text.strip() for text in texts)
+    if numbers is None:
         raise _FaultError(f"expected three coordinates, got {' '.join(texts)[:60]!r}")
     return numbers

@@ -28,7 +28,7 @@ OVERLAPPING = "components of several densities overlap: take what they share out
 
 
 def named_parts(loaded: Loaded, scale: float, weld: float) -> list[Part]:
-    """Take the mesh of a file apart, its components by the names of the groups of OBJ, else by numbers.
+    """Take the mesh of a file apart, its components by the names that the file gives them, else by numbers.
 
     Parameters
     ----------
@@ -40,7 +40,8 @@ def named_parts(loaded: Loaded, scale: float, weld: float) -> list[Part]:
     """
     mesh = weld_within(loaded.mesh, weld) if weld != 0.0 else loaded.mesh
     vertices = mesh.vertices * scale
-    parts = parts_of(vertices, mesh.faces)
+    groups = [name for name, count in loaded.groups for _ in range(count)]
+    parts = parts_of(vertices, mesh.faces, groups)
     if len(parts) > 1 and inner_suffix(loaded.path) == ".obj":
         with unpacked(loaded.path) as inside:
             groups = groups_of(inside)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 from contextlib import contextmanager
@@ -25,6 +26,7 @@ __all__ = [
     "text_of",
     "whole_of",
     "with_way_out",
+    "words_of",
 ]
 
 MOST_TEXT: Final = 1 << 30
@@ -78,6 +80,34 @@ def check_ordinary(path: str | os.PathLike[str]) -> None:
         if is_that(mode):
             raise FileFormatError(f"{os.fspath(path)}: {words}")
     note_read(path)
+
+
+_OF_THE_PATH: Final = (errno.ENOENT, errno.ENOTDIR, errno.ENAMETOOLONG, errno.ELOOP)
+_RIGHTS: Final = (errno.EACCES, errno.EPERM, errno.EROFS)
+
+
+def words_of(error: OSError) -> str:
+    """Say what the system refused, and what to do where the path is the fault.
+
+    Parameters
+    ----------
+    error : OSError
+        Of the system, or raised here with a remedy of its own.
+
+    Returns
+    -------
+    str
+    """
+    if error.filename is None or error.errno is None:
+        return str(error)
+    what = f"{error.filename}: {error.strerror}"
+    if error.strerror != os.strerror(error.errno):
+        return what
+    if error.errno in _OF_THE_PATH:
+        return f"{what}; check the path"
+    if error.errno in _RIGHTS:
+        return f"{what}; check who may read or write there"
+    return f"{what}; name a file in it" if error.errno == errno.EISDIR else what
 
 
 @contextmanager

@@ -49,13 +49,21 @@ _COLUMNS: Final[dict[str, str | tuple[str, ...]]] = {
 }
 _EULER: Final = ("phi", "theta", "psi")
 _COUNTS: Final = ("steps", "evaluations")
-_ENDS: Final = ("complete", "stopped", "failed")
+_ENDS: Final = ("complete", "event", "stopped", "failed", "not run")
 _OFF_UNITY: Final = 1e-6
 _FIELDS: Final = ("about", *_STATES, *_COUNTS, "status", "pivoted")
 _LOADED: Final = "loaded"
+_BEGAN: Final = "began"
 _STATES_OF_LOAD: Final = "states"
 _CARRIED: Final = ("carried_momentum", "carried_energy")
-_ARRAYS: Final = (*_FIELDS, _LOADED, *_CARRIED, *BODY_ARRAYS, *(f"body_{name}" for name in BODY_FIELDS))
+_ARRAYS: Final = (
+    *_FIELDS,
+    _LOADED,
+    _BEGAN,
+    *_CARRIED,
+    *BODY_ARRAYS,
+    *(f"body_{name}" for name in BODY_FIELDS),
+)
 
 TRAJECTORY_SCHEMA: dict[str, object] = {
     "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -68,6 +76,7 @@ TRAJECTORY_SCHEMA: dict[str, object] = {
         "about": array_schema("the point of reference in the body, shape (..., 3)"),
         "pivoted": {"description": "whether that point is fixed in space", "type": "boolean"},
         "loaded": {"description": "whether a load acted, which the file does not hold", "type": "boolean"},
+        "began": {"description": "when a motion that goes on from another one began", "type": "number"},
         "t": array_schema(
             "times, shape (T,); of a closed form any shape, which stands for (T,) in those below"
         ),
@@ -134,7 +143,7 @@ def save_trajectory_json(trajectory: Trajectory, path: Path) -> None:
     fields["body"] = in_json(body_fields(trajectory.body), path)
     fields |= {name: getattr(trajectory, name) for name in _FIELDS}
     fields[_LOADED] = trajectory._is_loaded()
-    fields |= _carried_of(trajectory)
+    fields |= _carried_of(trajectory) | _began_of(trajectory)
     if trajectory.states:
         fields[_STATES_OF_LOAD] = in_json(trajectory.states, path)
     write_json(path, in_json(fields, path))
@@ -150,7 +159,7 @@ def save_trajectory_npz(trajectory: Trajectory, path: Path) -> None:
     """
     arrays = {name: getattr(trajectory, name) for name in _FIELDS}
     arrays[_LOADED] = np.array(trajectory._is_loaded())
-    arrays |= _carried_of(trajectory)
+    arrays |= _carried_of(trajectory) | _began_of(trajectory)
     arrays |= {f"{_STATES_OF_LOAD}_{name}": values for name, values in trajectory.states.items()}
     arrays |= {name: getattr(trajectory.body, name) for name in BODY_ARRAYS}
     arrays |= {f"body_{name}": value for name, value in body_fields(trajectory.body).items()}
@@ -161,8 +170,13 @@ def _carried_of(trajectory: Trajectory) -> dict[str, Any]:
     return {} if trajectory.carried is None else dict(zip(_CARRIED, trajectory.carried, strict=True))
 
 
-def read_motion(path: str | PathLike[str]) -> tuple[dict[str, Any], bool]:
-    """Read the attributes of a :class:`polhode.Trajectory` by name, and whether it had a load.
+def _began_of(trajectory: Trajectory) -> dict[str, Any]:
+    held = trajectory.__dict__.get("_began")
+    return {} if held is None else {_BEGAN: np.array(held)}
+
+
+def read_motion(path: str | PathLike[str]) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Read the attributes of a :class:`polhode.Trajectory` by name, and what it knows besides.
 
     Parameters
     ----------
@@ -173,7 +187,7 @@ def read_motion(path: str | PathLike[str]) -> tuple[dict[str, Any], bool]:
     fields = read_record(
         file,
         _FORMAT,
-        (*_FIELDS, _LOADED, _STATES_OF_LOAD, *_CARRIED, "body"),
+        (*_FIELDS, _LOADED, _BEGAN, _STATES_OF_LOAD, *_CARRIED, "body"),
         _ARRAYS,
         (f"{_STATES_OF_LOAD}_",),
     )
@@ -199,7 +213,6 @@ def read_motion(path: str | PathLike[str]) -> tuple[dict[str, Any], bool]:
     for name, shape in expected.items():
         if states[name].shape != shape:
             raise FileFormatError(f"{file}: {name} has shape {states[name].shape}, expected {shape}")
-    _check_unit(states["quaternion"], file)
     none = np.zeros(stack, dtype=np.int64)
     given = {name: counts(fields.get(name, none), name, file, stack) for name in _COUNTS}
     leading = (*stack, *t.shape)
@@ -209,10 +222,24 @@ def read_motion(path: str | PathLike[str]) -> tuple[dict[str, Any], bool]:
         "status": _status(fields, file, stack),
         "pivoted": _flag(fields, "pivoted", file),
     }
+    along = {name: states[name] for name, width in _STATES.items() if width}
+    along |= {f"{_STATES_OF_LOAD} {name}": values for name, values in ended["states"].items()}
+    if ended["carried"] is not None:
+        along |= {_CARRIED[0]: ended["carried"][0], _CARRIED[1]: ended["carried"][1][..., np.newaxis]}
+    _check_known(along, np.broadcast_to(ended["status"], stack), t, file)
+    _check_unit(states["quaternion"], file)
+    if given["steps"].any() or np.any(np.asarray(ended["status"]) != "complete"):
+        _check_order(t, file)
     was_loaded = _flag(fields, _LOADED, file)
     if was_loaded and body._doubts() is not None:
         ended["uncertain_start"] = None  # what the body's doubts do to the motion the load decides, too
-    return {"body": body, **states, **given, **ended}, was_loaded
+    known: dict[str, Any] = {"_was_loaded": True} if was_loaded else {}
+    if _BEGAN in fields:
+        began = numbers(fields[_BEGAN], _BEGAN, file)
+        if began.ndim:
+            raise FileFormatError(f"{file}: {_BEGAN} has shape {began.shape}, expected one number")
+        known["_began"] = float(began)
+    return {"body": body, **states, **given, **ended}, known
 
 
 def _stack(shape: tuple[int, ...], bodies: tuple[int, ...], axes_of_time: int) -> tuple[int, ...]:
@@ -280,6 +307,46 @@ def _flag(fields: dict[str, Any], name: str, file: Path) -> bool:
         found = f"{held.dtype} of shape {held.shape}" if isinstance(held, np.ndarray) else repr(held)[:60]
         raise FileFormatError(f"{file}: {name} is {found}, expected true or false")
     return held
+
+
+def _check_known(along: dict[str, NDArray[Any]], status: NDArray[Any], t: NDArray[Any], file: Path) -> None:
+    """Refuse states that are not numbers, but for those after the end of a run that came to no last time."""
+    all_known = np.ones((*status.shape, t.size), dtype=bool)
+    for name, values in along.items():
+        flat = values.reshape(*status.shape, t.size, values.shape[-1])
+        known = np.isfinite(flat).all(axis=-1)
+        # Of a run that ended early: numbers at its first times, and not one after them, of any kind.
+        is_bad = np.where((status == "complete")[..., np.newaxis], ~known, np.isinf(flat).any(axis=-1))
+        is_bad |= ~known & np.isfinite(flat).any(axis=-1)
+        is_bad[..., 1:] |= known[..., 1:] & ~known[..., :-1]
+        if name != next(iter(along)):
+            is_bad |= known != all_known
+        all_known = known
+        if is_bad.any():
+            *row, index = (int(place[0]) for place in np.nonzero(is_bad))
+            body = f" of body {tuple(row)}" if row else ""
+            found, when = flat[(*row, index)].tolist(), float(t.reshape(-1)[index])
+            raise FileFormatError(
+                f"{file}: {name}{body} is {found} at t = {when!r}, where the status "
+                f"{str(status[tuple(row)])!r} says otherwise: states must be numbers until the run ended; "
+                "the file was altered or cut after it was written, so save the motion again"
+            )
+
+
+def _check_order(t: NDArray[Any], file: Path) -> None:
+    """Refuse times that no integration went through."""
+    gaps = np.diff(t) if t.ndim == 1 else np.zeros(1)
+    is_bad = ~((gaps > 0.0) if t.size and t[-1] > t[0] else (gaps < 0.0))
+    if is_bad.any():
+        where = (
+            f"t[{np.flatnonzero(is_bad)[0] + 1}] does not follow the time before it"
+            if t.ndim == 1
+            else (f"t has the shape {t.shape}")
+        )
+        raise FileFormatError(
+            f"{file}: {where}: the times of a run in steps ascend, or descend, strictly; "
+            "the file was altered after it was written, so save the motion again"
+        )
 
 
 def _check_unit(quaternion: NDArray[np.float64], file: Path) -> None:

@@ -7,13 +7,16 @@ entities of the text. Where that does not succeed there is no density, rather th
 from __future__ import annotations
 
 import re
-from typing import Final
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 __all__ = ["densities_of"]
 
-_ENTITY: Final = re.compile(r"#(\d+)\s*=\s*((?:'[^']*'|[^';])*);")
+_ENTITY: Final = re.compile(r"\s*#(\d+)\s*=(.*)", re.DOTALL)
 _MEASURE: Final = re.compile(
-    r"MEASURE_REPRESENTATION_ITEM\s*\(\s*'[^']*density[^']*'\s*,\s*\w+\s*\(\s*([-+.\dEe]+)\s*\)\s*,\s*#(\d+)",
+    r"MEASURE_REPRESENTATION_ITEM\s*\(\s*'([^']*)'\s*,\s*\w+\s*\(\s*([-+.\dEe]+)\s*\)\s*,\s*#(\d+)",
     re.IGNORECASE,
 )
 _ELEMENT: Final = re.compile(r"DERIVED_UNIT_ELEMENT\s*\(\s*#(\d+)\s*,\s*([-+.\dEe]+)\s*\)", re.IGNORECASE)
@@ -32,10 +35,10 @@ def densities_of(text: str) -> list[float] | None:
     text : str
         The whole file.
     """
-    measures = _MEASURE.findall(text)
+    measures = [found[1:] for found in _MEASURE.findall(text) if "density" in found[0].lower()]
     if not measures:
         return []
-    entities = dict(_ENTITY.findall(text))
+    entities = dict(_entities(text))
     found = set()
     for value, unit in measures:
         scale = _unit(unit, entities)
@@ -43,6 +46,18 @@ def densities_of(text: str) -> list[float] | None:
             return None
         found.add(float(value) * scale)
     return sorted(found)
+
+
+def _entities(text: str) -> Iterator[tuple[str, str]]:
+    """Give the number of each entity and what it is; a semicolon within quotes ends none."""
+    pieces: list[str] = []
+    for place, piece in enumerate(text.split("'")):
+        first, *others = piece.split(";") if place % 2 == 0 else (piece,)
+        pieces.append(first)
+        for other in others:
+            if (found := _ENTITY.fullmatch("'".join(pieces))) is not None:
+                yield found[1], found[2]
+            pieces = [other]
 
 
 def _unit(number: str, entities: dict[str, str]) -> float | None:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     Integers = NDArray[np.int64]
     Surface = tuple[Floats, Integers]
 
-__all__ = ["has_union", "is_closed", "shared_volume", "united"]
+__all__ = ["difference", "has_union", "is_closed", "shared_volume", "united"]
 
 
 def has_union() -> bool:
@@ -62,6 +62,22 @@ def united(parts: Sequence[Surface], name: str) -> Mesh:
     whole = library.Manifold.batch_boolean([_manifold(each) for each in moved], library.OpType.Add)
     vertices, faces = _surface(whole)
     return Mesh(vertices + middle, faces, name)
+
+
+def difference(one: Surface, others: Sequence[Surface]) -> Surface:
+    """Give what is left of a closed surface without what others, all wound outward, enclose.
+
+    Raises
+    ------
+    MeshError
+        Where manifold3d does not take one of them for a solid.
+    """
+    middle, moved = _centred([one, *others])
+    whole = _manifold(moved[0])
+    for each in moved[1:]:
+        whole -= _manifold(each)
+    vertices, faces = _surface(whole)
+    return vertices + middle, faces
 
 
 def _library() -> Any:

@@ -1,4 +1,4 @@
-"""Files that are packed with gzip, unpacked to a stated size."""
+"""Files that are packed with gzip, unpacked within a budget."""
 
 from __future__ import annotations
 
@@ -10,16 +10,15 @@ from tempfile import TemporaryDirectory
 from typing import IO, TYPE_CHECKING, Final
 
 from polhode.errors import FileFormatError, PolhodeError
+from polhode.files.budget import Budget
 from polhode.files.reading import check_ordinary, naming
 from polhode.files.writing import writing
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["MOST_UNPACKED", "inner_suffix", "unpacked"]
+__all__ = ["inner_suffix", "unpacked"]
 
-MOST_UNPACKED: Final = 1 << 32
-"""Bytes that a packed file may unpack to."""
 _BLOCK: Final = 1 << 20
 
 
@@ -30,19 +29,19 @@ def inner_suffix(path: Path) -> str:
 
 
 @contextmanager
-def unpacked(path: Path, most: int = MOST_UNPACKED) -> Iterator[Path]:
+def unpacked(path: Path, budget: Budget | None = None) -> Iterator[Path]:
     """Give the file itself, or where it is packed with gzip what it holds, in a folder that is then removed.
 
     Parameters
     ----------
     path : pathlib.Path
-    most : int
-        Bytes.
+    budget : Budget, optional
+        Its own by default.
 
     Raises
     ------
     FileFormatError
-        If it unpacks to more, or is no whole gzip file.
+        If it unpacks to more than the budget, or is no whole gzip file.
     """
     if path.suffix.lower() != ".gz":
         yield path
@@ -51,7 +50,7 @@ def unpacked(path: Path, most: int = MOST_UNPACKED) -> Iterator[Path]:
     with TemporaryDirectory() as folder:
         inside = Path(folder, path.stem)
         with naming(path), writing(inside) as copy:
-            _unpack(path, copy, most)
+            _unpack(path, copy, budget or Budget(str(path), path.stat().st_size))
         try:
             yield inside
         except PolhodeError as error:
@@ -59,14 +58,13 @@ def unpacked(path: Path, most: int = MOST_UNPACKED) -> Iterator[Path]:
             raise
 
 
-def _unpack(path: Path, copy: IO[bytes], most: int) -> None:
+def _unpack(path: Path, copy: IO[bytes], budget: Budget) -> None:
     size = 0
     try:
         with gzip.open(path, "rb") as packed:
             while block := packed.read(_BLOCK):
                 size += len(block)
-                if size > most:
-                    raise FileFormatError(f"{path}: unpacks to more than {most} bytes; unpack it with gunzip")
+                budget.spend("unpacked bytes", len(block))
                 copy.write(block)
     except (EOFError, zlib.error, gzip.BadGzipFile) as error:
         raise FileFormatError(f"{path}: not a whole gzip file: {error}; is it cut short?") from None

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from xml.parsers import expat
 
 from polhode.errors import FileFormatError
+from polhode.files.budget import Budget
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 __all__ = [
-    "Budget",
     "Edit",
     "Element",
     "blanks_of",
@@ -38,14 +38,6 @@ _DECLARATION: Final = re.compile(rb"(?:\xef\xbb\xbf)?(<\?xml\s[^<>]*\?>)")
 _BAD_TOKEN: Final = expat.errors.codes[expat.errors.XML_ERROR_INVALID_TOKEN]
 _BAD_DECLARATION: Final = expat.errors.codes[expat.errors.XML_ERROR_XML_DECL]
 _DEEPEST: Final = 200
-_MOST_ELEMENTS: Final = 1_000_000
-
-
-@dataclass
-class Budget:
-    """How many elements a document and the files it includes may still have, so that there is an end."""
-
-    elements: int = _MOST_ELEMENTS
 
 
 @dataclass(eq=False, slots=True)
@@ -165,7 +157,7 @@ def parse_xml(
     above : int
         How deep what includes the file stands.
     budget : Budget, optional
-        Is spent by its elements; each document has its own by default.
+        Its elements are counted there; each document has its own by default.
     remarks : dict, optional
         Gets what is passed over though XML forbids it: a comment that holds two hyphens, a declaration that
         is not well-formed. Without it such a document is refused.
@@ -184,8 +176,8 @@ def parse_xml(
     if source.startswith((b"\xff\xfe", b"\xfe\xff")) or b"\0" in source[:4]:
         raise FileFormatError(f"{name}: is in UTF-16; save it as UTF-8")
     source = _declared_late(source)
-    spent = budget if budget is not None else Budget()
-    allowed = spent.elements
+    spent = budget if budget is not None else Budget(name, len(source))
+    made = 0
     parser = expat.ParserCreate()
     parser.buffer_text = True
     root: list[Element] = []
@@ -193,17 +185,14 @@ def parse_xml(
     texts: list[list[str]] = []  # of the open elements, joined when they end: each character is copied once
 
     def start(tag: str, attributes: dict[str, str]) -> None:
+        nonlocal made
         at, line, depth = parser.CurrentByteIndex, parser.CurrentLineNumber, above + len(stack) + 1
         if depth > _DEEPEST:
             raise FileFormatError(
                 f"{name}: line {line}: elements are nested more than {_DEEPEST} deep; check the file"
             )
-        spent.elements -= 1
-        if spent.elements < 0:
-            raise FileFormatError(
-                f"{name}: line {line}: there are more than {_MOST_ELEMENTS} elements, those of included "
-                "files counted; divide the file"
-            )
+        made += 1
+        spent.spend("elements", where=f"{name}: line {line}")
         match = _START_TAG.match(source, at)
         inside = match.end() if match else at
         element = Element(tag, attributes, line, at, inside, file=file, depth=depth)
@@ -240,7 +229,7 @@ def parse_xml(
     except expat.ExpatError as error:
         reason = expat.ErrorString(error.code)
         if remarks is not None and (loose := _loosened(source, error.code))[1]:
-            spent.elements = allowed
+            spent.spend("elements", -made)
             told = f"{file}: {loose[1]}" if file else loose[1]
             remarks[f"{told}: XML forbids it, so that xacro refuses it; simulators pass over it"] = None
             return parse_xml(loose[0], name, file=file, above=above, budget=spent, remarks=remarks)

@@ -10,6 +10,8 @@ dashes.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polhode._scene.style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, OUTLINE_COLOR
 from polhode.plot._bodies import body, principal_axes
 from polhode.plot._cones import cones
@@ -41,3 +43,11 @@ __all__ = [
     "portraits",
     "principal_axes",
 ]
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name):
+        """Refuse a name of others with the one here."""
+        from polhode._hints import no_name
+
+        raise no_name(__name__, name, __all__)

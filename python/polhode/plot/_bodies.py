@@ -8,10 +8,11 @@ import numpy as np
 
 from polhode import _core
 from polhode._extras import require
+from polhode._hints import with_hints
 from polhode._scene.style import AXIS_COLORS, OUTLINE_COLOR
 from polhode._scene.triangles import cut, unit_normals
 from polhode.plot._style import axes_3d, show_around
-from polhode.plot._surfaces import toward_viewer
+from polhode.plot._surfaces import toward_viewer, translucent
 
 if TYPE_CHECKING:
     from mpl_toolkits.mplot3d.axes3d import Axes3D
@@ -29,13 +30,14 @@ _FEATURE_ANGLE: Final = np.deg2rad(40.0)
 _PIECES: Final = 24
 
 
+@with_hints
 def body(
     vertices: ArrayLike,
     faces: ArrayLike,
     ax: Axes3D | None = None,
     *,
     opacity: float = 1.0,
-    length_unit: str | None = None,
+    length_label: str | None = None,
     colors: ArrayLike | None = None,
 ) -> Axes3D:
     """Draw a mesh as a shaded body with its edges.
@@ -50,8 +52,9 @@ def body(
         Where to draw; a new figure by default.
     opacity : float
         Opacity of the surface, from 0 to 1.
-    length_unit : str, optional
-        Name of the unit of the coordinates; without it the coordinate axes are not drawn.
+    length_label : str, optional
+        Word for the unit of the coordinates at their axes; without it the axes are not drawn. It converts no
+        number.
     colors : array_like, shape (m, 3), optional
         Red, green and blue of each triangle, from 0 to 1; a pale blue by default.
 
@@ -80,8 +83,8 @@ def body(
         facecolors=np.concatenate([shades, np.tile(OUTLINE_COLOR, (len(outline), 1))]),
         edgecolors=np.concatenate([shades, np.tile(OUTLINE_COLOR, (len(outline), 1))]),
         linewidths=0.7,
-        alpha=opacity,
     )
+    translucent(surface, opacity)
     surface.set_zorder(2)
 
     def depth(z: Floats, axis: int) -> Floats:
@@ -94,7 +97,7 @@ def body(
     # outlines would be broken lines, no more.
     surface._zsortfunc = depth
     ax.add_collection3d(surface)
-    _frame(ax, points, length_unit)
+    _frame(ax, points, length_label)
     return ax
 
 
@@ -157,13 +160,13 @@ def _outline(points: Floats, faces: NDArray[np.int64], normals: Floats, size: fl
     return segments
 
 
-def _frame(ax: Axes3D, points: Floats, length_unit: str | None) -> None:
+def _frame(ax: Axes3D, points: Floats, length_label: str | None) -> None:
     low, high = points.min(axis=0), points.max(axis=0)
     middle, half = (low + high) / 2, (high - low).max() / 2 or 1.0
     show_around(ax, middle, half)
     ax.set_box_aspect((1.0, 1.0, 1.0))
-    if length_unit is None:
+    if length_label is None:
         ax.set_axis_off()
     else:
         for name in "xyz":
-            getattr(ax, f"set_{name}label")(f"{name} ({length_unit})")
+            getattr(ax, f"set_{name}label")(f"{name} ({length_label})")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode import _core
+from polhode._hints import with_hints
 from polhode._scene.ellipsoid import inertia_semi_axes, principal_circles
 from polhode._scene.sampling import drawn_times, once_round
 from polhode._scene.shape import check_one
@@ -76,7 +77,7 @@ def ellipsoid(
     mpl_toolkits.mplot3d.axes3d.Axes3D
     """
     check_one(body.shape, "body")
-    new = ax is None
+    new = ax is None or not ax.has_data()
     ax = axes_3d(ax)
     middle = _core.real_numbers(body.center_of_mass if center is None else center, "center")
     semi_axes = inertia_semi_axes(body.principal.moments)
@@ -93,13 +94,14 @@ def ellipsoid(
     return ax
 
 
+@with_hints
 def polhodes(
     body: RigidBody,
     ax: Axes3D | None = None,
     *,
     count: int = 4,
     energy: float = 0.5,
-    rate_unit: str = "rad/s",
+    rate_label: str = "rad/s",
 ) -> Axes3D:
     """Draw polhodes of a body: the curves of ω on the ellipsoid ω·I ω = 2T of one kinetic energy.
 
@@ -117,8 +119,8 @@ def polhodes(
         Number of polhodes about each end of each of the two axes.
     energy : float
         T, in the units of the body.
-    rate_unit : str
-        Unit of ω, for the labels.
+    rate_label : str
+        Word for the unit of ω; it converts no number.
 
     Returns
     -------
@@ -160,17 +162,18 @@ def polhodes(
                 ha="center", va="center", fontsize=13, zorder=6)  # fmt: skip
     lengths = ", ".join(f"{a:.3g}" for a in semi_axes)
     ax.text2D(
-        0.5, 0.03, f"semi-axes {lengths} {rate_unit}", transform=ax.transAxes, ha="center", in_layout=False
+        0.5, 0.03, f"semi-axes {lengths} {rate_label}", transform=ax.transAxes, ha="center", in_layout=False
     )
     plain_frame(ax, 3 * [-reach], 3 * [reach])
     return ax
 
 
+@with_hints
 def polhode(
     motion: FreeMotion | GyrostatMotion,
     ax: Axes3D | None = None,
     *,
-    rate_unit: str = "rad/s",
+    rate_label: str = "rad/s",
 ) -> Axes3D:
     """Draw the polhode of a motion: the path of ω in the body, on the ellipsoid ω·I ω = 2T of its energy.
 
@@ -183,8 +186,8 @@ def polhode(
         Motion of one body without zero moments.
     ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
         Where to draw; a new figure by default.
-    rate_unit : str
-        Unit of ω, for the label.
+    rate_label : str
+        Word for the unit of ω; it converts no number.
 
     Returns
     -------
@@ -221,19 +224,20 @@ def polhode(
         ax.text(*(1.12 * tip), rf"$\omega_{k + 1}$", color=color, ha="center", va="center",
                 fontsize=13, zorder=6, alpha=1.0 if tip @ viewer >= 0.0 else 0.4)  # fmt: skip
     sizes = np.linalg.norm(path, axis=1)
-    words = f"|ω| from {sizes.min():.3g} to {sizes.max():.3g} {rate_unit}"
+    words = f"|ω| from {sizes.min():.3g} to {sizes.max():.3g} {rate_label}"
     ax.text2D(0.5, 0.03, words, transform=ax.transAxes, ha="center", in_layout=False)
     reach = 1.1 * semi_axes.max()
     plain_frame(ax, 3 * [-reach], 3 * [reach])
     return ax
 
 
+@with_hints
 def poinsot(
     motion: FreeMotion,
     t: ArrayLike,
     ax: Axes3D | None = None,
     *,
-    rate_unit: str = "rad/s",
+    rate_label: str = "rad/s",
 ) -> Axes3D:
     """Draw Poinsot's construction: the ellipsoid that rolls on a fixed plane, polhode and herpolhode.
 
@@ -246,8 +250,8 @@ def poinsot(
         its position at the last time.
     ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
         Where to draw; a new figure by default. L is drawn upward.
-    rate_unit : str
-        Unit of ω, for the label.
+    rate_label : str
+        Word for the unit of ω; it converts no number.
 
     Returns
     -------
@@ -279,7 +283,7 @@ def poinsot(
     arrow(ax, np.array([0.0, 0.0, height]), MOMENTUM_COLOR, "L")
     ax.text2D(
         0.5, 0.02,
-        f"polhode (vermilion) rolls on herpolhode (blue);\nplane at 2T/L = {found.distance:.4g} {rate_unit}",
+        f"polhode (vermilion) rolls on herpolhode (blue);\nplane at 2T/L = {found.distance:.4g} {rate_label}",
         transform=ax.transAxes, ha="center", in_layout=False,
     )  # fmt: skip
     side = max(reach, float(found.semi_axes.max()))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from polhode._rounding import at_most
 from polhode._scene.doubt import angle_covariance, axis_scatter
 from polhode._scene.ellipsoid import principal_circles
 from polhode._scene.style import AXIS_COLORS
@@ -56,13 +57,16 @@ def error_ellipses(
     ellipses, loose = _ellipses(covariance, radius)
     is_linear = np.asarray(sigma.linear.axes)
     legend: list[Any] = []
+    if ellipses:
+        widest = max(ellipses, key=lambda k: ellipses[k][0][1])
+        angle = float(ellipses[widest][0][1])
+        if enlarged * angle >= 0.5 * np.pi:
+            raise ValueError(
+                f"enlarged: {enlarged:g} times the {np.rad2deg(angle):.3g}° of axis {widest + 1} is no "
+                f"ellipse; give less than {at_most(0.5 * np.pi / angle)}"
+            )
     for k, (half, vectors) in ellipses.items():
         color, others = AXIS_COLORS[k], [(k + 1) % 3, (k + 2) % 3]
-        if enlarged * half[1] >= 0.5 * np.pi:
-            raise ValueError(
-                f"enlarged: {enlarged:g} times the {np.rad2deg(half[1]):.3g}° of axis {k + 1} is no ellipse; "
-                f"give less than {0.5 * np.pi / half[1]:.3g}"
-            )
         dash = "-" if is_linear[others].all() else "--"
         # Offsets of the tip along the two other axes, and the directions to them on the unit sphere.
         offsets = (enlarged * half * np.stack([np.cos(_AROUND), np.sin(_AROUND)], axis=-1)) @ vectors.T
@@ -77,12 +81,11 @@ def error_ellipses(
         (line,) = ax.plot([], [], [], color=color, linestyle=dash, label=f"$e_{k + 1}$: ± {size}{doubt}")
         legend.append(line)
     legend += _free_axes(ax, body, semi_axes, center, loose)
-    times = "" if enlarged == 1.0 else f", drawn {enlarged:g} times as large"
+    times = "" if enlarged == 1.0 else f",\ndrawn {enlarged:g} times as large"
     title = f"where the axes point with {100.0 * coverage:.4g} %{times}"
-    ax.legend(
-        handles=legend, title=title, loc="upper center", bbox_to_anchor=(0.5, 0.14), frameon=False,
-        fontsize="small", title_fontsize="small",
-    )  # fmt: skip
+    fonts = {"fontsize": "small", "title_fontsize": "small"}
+    drawn = ax.legend(handles=legend, title=title, loc="lower center", frameon=False, **fonts)
+    drawn.set_in_layout(False)
 
 
 def _ellipses(

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
 
 from polhode import _core
 from polhode._drift import changes
+from polhode._hints import with_hints
 from polhode._lengths import lengths
 from polhode._scene.sampling import drawn_times
 from polhode._scene.shape import check_one
 from polhode._scene.style import AXIS_COLORS, AXIS_DASHES
 from polhode.plot import _bands
-from polhode.plot._style import axes_2d, tidy
+from polhode.plot._style import axes_2d, columns_that_fit, in_lines, matplotlib, room, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,6 +27,13 @@ if TYPE_CHECKING:
 
 __all__ = ["angular_momentum", "angular_velocity", "euler_angles", "invariants"]
 
+_TURN: Final = 360.0
+_EPSILON: Final = float(np.finfo(float).eps)
+_ROUNDING: Final = 64.0 * _EPSILON
+"""Relative changes of conserved quantities up to this are no drift."""
+_SHOWN: Final = 1e-12
+"""The least change at which a picture of drift may end, so that rounding does not fill it."""
+
 
 def _until(motion: FreeMotion | HeavyTop | GyrostatMotion, end: float | None) -> Trajectory:
     """Give as many states of one motion in closed form as its curves need."""
@@ -37,6 +45,7 @@ def _until(motion: FreeMotion | HeavyTop | GyrostatMotion, end: float | None) ->
     return motion.at(drawn_times(motion, [0.0, end]))
 
 
+@with_hints
 def angular_velocity(
     trajectory: Trajectory | FreeMotion | HeavyTop | GyrostatMotion,
     ax: Axes | None = None,
@@ -44,7 +53,7 @@ def angular_velocity(
     end: float | None = None,
     frame: Literal["body", "principal"] = "body",
     degrees: bool = False,
-    time_unit: str = "s",
+    time_label: str = "s",
     coverage: float | None = 0.95,
 ) -> Axes:
     """Draw the components of the angular velocity over time.
@@ -61,8 +70,8 @@ def angular_velocity(
         Components along the body's axes or along its principal axes (ascending moments).
     degrees : bool
         Degrees instead of radians.
-    time_unit : str
-        Name of the unit of time, for the labels.
+    time_label : str
+        Word for the unit of the times; it converts no number.
     coverage : float or None
         If the body or the start have sigmas, a band is drawn about each curve. At any one time the component
         is inside the band with this probability, to first order: 0.95 for 1.96 standard deviations. If
@@ -96,16 +105,17 @@ def angular_velocity(
         half = np.rad2deg(half) if isinstance(half, np.ndarray) else half
     _components(ax, trajectory, omega, labels, half)
     note = _bands.name_band(ax, trajectory.t, half, coverage, float(np.nanmax(lengths(omega), initial=0.0)))
-    return _over_time(ax, time_unit, f"angular velocity ({'deg' if degrees else 'rad'}/{time_unit})", *note)
+    return _over_time(ax, time_label, f"angular velocity ({'deg' if degrees else 'rad'}/{time_label})", *note)
 
 
+@with_hints
 def angular_momentum(
     trajectory: Trajectory,
     ax: Axes | None = None,
     *,
     frame: Literal["space", "body"] = "space",
-    unit: str = "kg m²/s",
-    time_unit: str = "s",
+    momentum_label: str = "kg m²/s",
+    time_label: str = "s",
     coverage: float | None = 0.95,
 ) -> Axes:
     """Draw the components of the spin angular momentum over time.
@@ -118,8 +128,8 @@ def angular_momentum(
         Where to draw; a new figure by default.
     frame : {"space", "body"}
         The frame whose axes the components refer to.
-    unit, time_unit : str
-        Name of the unit, for the labels.
+    momentum_label, time_label : str
+        Words for the units of the momentum and of the times; they convert no number.
     coverage : float or None
         Probability of the bands, as for :func:`angular_velocity`. Correlations of the tensor with the motion
         are included.
@@ -134,16 +144,17 @@ def angular_momentum(
     half = _bands.of_spin(trajectory, frame, coverage)
     _components(ax, trajectory, spin, [rf"$L_{i}$" for i in "xyz"], half)
     note = _bands.name_band(ax, trajectory.t, half, coverage, float(np.nanmax(lengths(spin), initial=0.0)))
-    return _over_time(ax, time_unit, f"angular momentum in {frame} ({unit})", *note)
+    return _over_time(ax, time_label, f"angular momentum in {frame} ({momentum_label})", *note)
 
 
+@with_hints
 def euler_angles(
     trajectory: Trajectory,
     ax: Axes | None = None,
     *,
     sequence: str = "ZXZ",
     unwrap: bool = False,
-    time_unit: str = "s",
+    time_label: str = "s",
     coverage: float | None = 0.95,
 ) -> Axes:
     """Draw the Euler angles over time, in degrees; where they are not defined there is a gap.
@@ -157,10 +168,11 @@ def euler_angles(
     sequence : str
         As in :mod:`polhode.euler_angles`.
     unwrap : bool
-        Whether the first and third angle are counted on over many turns. Otherwise the line is broken where
-        an angle jumps by a turn.
-    time_unit : str
-        Name of the unit, for the labels.
+        Whether the first and third angle are counted on over many turns. Otherwise each of them is drawn from
+        -180° to 180°, or from 0° to 360° where this saves half of the breaks. Where it leaves this turn,
+        the line goes to the edge and on from the other edge.
+    time_label : str
+        Word for the unit of the times; it converts no number.
     coverage : float or None
         Probability of the bands, as for :func:`angular_velocity`. The first and third angle are not defined
         at some values of the second. They have no band where the band of the second angle contains such a
@@ -173,18 +185,19 @@ def euler_angles(
     trajectory._check_series("euler_angles")
     ax = axes_2d(ax)
     angles = np.rad2deg(trajectory.euler_angles(sequence, "nan", unwrap=unwrap))
-    if not unwrap:
-        jumps = np.abs(np.diff(angles, axis=-2)) > 180.0
-        angles[..., 1:, :][jumps] = np.nan
+    lowest = None if unwrap else {i: _lowest(angles[..., i]) for i in (0, 2)}
     names = [r"$\varphi$", r"$\theta$", r"$\psi$"]
     half = _bands.of_euler_angles(trajectory, sequence, coverage)
     half = np.rad2deg(half) if isinstance(half, np.ndarray) else half
-    _components(ax, trajectory, angles, names, half)
+    _components(ax, trajectory, angles, names, half, lowest)
+    if not unwrap:
+        ax.yaxis.set_major_locator(matplotlib("ticker").MultipleLocator(90.0))
     note = _bands.name_band(ax, trajectory.t, half, coverage, 90.0)
-    return _over_time(ax, time_unit, f"Euler angles {sequence} (degrees)", *note)
+    return _over_time(ax, time_label, f"Euler angles {sequence} (degrees)", *note)
 
 
-def invariants(trajectory: Trajectory, ax: Axes | None = None, *, time_unit: str = "s") -> Axes:
+@with_hints
+def invariants(trajectory: Trajectory, ax: Axes | None = None, *, time_label: str = "s") -> Axes:
     """Draw how far energy and angular momentum have drifted from their values at the start.
 
     Parameters
@@ -193,14 +206,15 @@ def invariants(trajectory: Trajectory, ax: Axes | None = None, *, time_unit: str
         The motion; of a stack, every body is drawn.
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default.
-    time_unit : str
-        Name of the unit, for the labels.
+    time_label : str
+        Word for the unit of the times; it converts no number.
 
     Returns
     -------
     matplotlib.axes.Axes
-        Axes with the changes relative to the largest value of the motion, on a logarithmic scale. A change of
-        exactly zero is drawn at half the rounding error of float64.
+        Axes with the changes relative to the largest value of the motion, on a logarithmic scale. Changes in
+        the grey band, up to 64 times the rounding error of float64, are no drift; the legend says so where
+        all are. A change of exactly zero is drawn at half the rounding error.
 
     Raises
     ------
@@ -219,36 +233,51 @@ def invariants(trajectory: Trajectory, ax: Axes | None = None, *, time_unit: str
         (kept.energy, None if kept.energy is None else np.abs(kept.energy), "energy", 0),
         (kept.angular_momentum, size, "angular momentum", 1),
     ]
+    greatest = 0.0
     for values, scale, name, number in shown:
         if values is None or scale is None:
             continue
         change, largest = changes(values, scale)
         change = change / np.where(largest > 0.0, largest, 1.0)[..., np.newaxis]
-        curves = np.maximum(change, 0.5 * np.finfo(float).eps).reshape(-1, len(trajectory))
+        greatest = max(greatest, float(np.nanmax(change, initial=0.0)))
+        curves = np.maximum(change, 0.5 * _EPSILON).reshape(-1, len(trajectory))
         for row, curve in enumerate(curves):
             ax.plot(
                 trajectory.t, curve, color=AXIS_COLORS[number], linestyle=AXIS_DASHES[1 - number],
-                label=name if row == 0 else None,
+                linewidth=1.0, label=name if row == 0 else None,
             )  # fmt: skip
+    ax.axhspan(0.25 * _EPSILON, _ROUNDING, color="0.93", zorder=0.5, label="rounding of float64")
     ax.set_yscale("log")
-    return _over_time(ax, time_unit, "relative change since the start")
+    ax.set_ylim(0.25 * _EPSILON, max(3.0 * greatest, _SHOWN))
+    note = "no drift: all changes are rounding" if greatest <= _ROUNDING else None
+    return _over_time(ax, time_label, "relative change since the start", note)
 
 
 def _components(
-    ax: Axes, trajectory: Trajectory, vectors: Floats, labels: list[str], half: Floats | str | None
+    ax: Axes,
+    trajectory: Trajectory,
+    vectors: Floats,
+    labels: list[str],
+    half: Floats | str | None,
+    lowest: dict[int, float] | None = None,
 ) -> None:
-    """Draw three components over time, of every body of a stack, with half the widths of their bands."""
+    """Draw three components over time, of every body of a stack, with half the widths of their bands.
+
+    `lowest` holds the numbers of components that are angles of a whole turn, and where the turn begins.
+    """
     curves = vectors.reshape(-1, len(trajectory), 3)
-    if isinstance(half, np.ndarray):
-        for curve, widths in zip(curves, half.reshape(curves.shape), strict=True):
-            for i in range(3):
-                _bands.draw_band(ax, trajectory.t, curve[:, i], widths[:, i], i)
+    halves = half.reshape(curves.shape) if isinstance(half, np.ndarray) else None
     opacity = 1.0 if len(curves) == 1 else 0.5
     for number, curve in enumerate(curves):
         for i in range(3):
+            columns = [trajectory.t, curve[:, i], *([] if halves is None else [halves[number, :, i]])]
+            if lowest is not None and i in lowest:
+                columns = _cut(columns, lowest[i])
+            if halves is not None:
+                _bands.draw_band(ax, columns[0], columns[1], columns[2], i)
             ax.plot(
-                trajectory.t,
-                curve[:, i],
+                columns[0],
+                columns[1],
                 color=AXIS_COLORS[i],
                 linestyle=AXIS_DASHES[i],
                 alpha=opacity,
@@ -256,12 +285,44 @@ def _components(
             )
 
 
-def _over_time(ax: Axes, time_unit: str, quantity: str, note: str | None = None, columns: int = 3) -> Axes:
-    ax.set_xlabel(f"time ({time_unit})")
-    ax.set_ylabel(quantity)
+def _lowest(angles: Floats) -> float:
+    """Choose where the turn of an angle begins: at −180°, or at 0° where this saves half of the breaks."""
+    breaks = [
+        int((np.abs(np.diff(one, axis=-1)) > 0.5 * _TURN).sum())
+        for one in (angles, np.where(angles < 0.0, angles + _TURN, angles))
+    ]
+    return 0.0 if breaks[0] >= max(1, 2 * breaks[1]) else -0.5 * _TURN
+
+
+def _cut(columns: list[Floats], lowest: float) -> list[Floats]:
+    """Bring an angle into its turn; where it leaves it, its curve goes to the edge and on from the other one.
+
+    The columns are times, the angle, and what else goes with it.
+    """
+    angle = columns[1] if lowest < 0.0 else np.where(columns[1] < 0.0, columns[1] + _TURN, columns[1])
+    step = np.diff(angle)
+    k = np.flatnonzero(np.abs(step) > 0.5 * _TURN)
+    is_up = step[k] < 0.0
+    edge = np.where(is_up, lowest + _TURN, lowest)
+    way = step[k] + np.where(is_up, _TURN, -_TURN)
+    part = np.divide(edge - angle[k], way, out=np.zeros_like(way), where=way != 0.0)
+    found = []
+    for n, values in enumerate([columns[0], angle, *columns[2:]]):
+        at = values[k] + part * (values[k + 1] - values[k])
+        ends = (at, at, at)
+        if n == 1:
+            ends = (edge, np.full_like(at, np.nan), 2.0 * lowest + _TURN - edge)
+        found.append(np.insert(values, np.repeat(k + 1, 3), np.stack(ends, axis=-1).ravel()))
+    return found
+
+
+def _over_time(ax: Axes, time_label: str, quantity: str, note: str | None = None, columns: int = 3) -> Axes:
+    ax.set_xlabel(f"time ({time_label})")
+    ax.set_ylabel(in_lines(ax, quantity))
     tidy(ax)
+    names = [str(name) for name in ax.get_legend_handles_labels()[1]]
     ax.legend(
-        loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2, ncols=columns, frameon=False,
-        title=note, title_fontsize="small",
+        loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2, frameon=False, columnspacing=1.2,
+        ncols=columns_that_fit(0.85 * room(ax)[0], names, 10.0, columns), title=note, title_fontsize="small",
     )  # fmt: skip
     return ax

@@ -13,7 +13,7 @@ from polhode._scene.sampling import once_round
 from polhode._scene.shape import check_one
 from polhode._scene.style import AXIS_COLORS, AXIS_DASHES, MOMENTUM_COLOR
 from polhode._scene.surface import energy_level, separatrix
-from polhode.plot._style import axes_3d, matplotlib
+from polhode.plot._style import axes_3d, columns_that_fit, matplotlib, room
 from polhode.plot._surfaces import curve_on, plain_frame, solid_ellipsoid, toward_viewer
 
 if TYPE_CHECKING:
@@ -162,8 +162,8 @@ def portraits(
         shown.update(kinds)
         words = f"|h| = {factor * size / momentum:.3g} |L|: {len(kinds)} equilibria"
         ax.text2D(0.5, 0.02, words, transform=ax.transAxes, ha="center", fontsize=10)
-    handles = [_mark(kind) for kind in _LOOKS if kind in shown]
-    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), frameon=False)
+    width = 72.0 * float(figure.get_figwidth())
+    figure.legend(loc="outside lower center", **_legend([k for k in _LOOKS if k in shown], width))
     return np.asarray(row[0])
 
 
@@ -265,8 +265,20 @@ def _marks(ax: Axes3D, points: Floats, kinds: list[str], labels: bool) -> None:
             zorder=7 if near else 3,
         )  # fmt: skip
     if labels:
-        present = [_mark(kind) for kind in _LOOKS if kind in kinds]
-        ax.legend(handles=present, loc="lower center", ncols=len(present), frameon=False, fontsize=9)
+        legend = ax.legend(loc="lower center", **_legend([k for k in _LOOKS if k in kinds], room(ax)[0]))
+        legend.set_in_layout(False)
+
+
+def _legend(kinds: list[str], width: float) -> dict[str, Any]:
+    """Return what a legend of marks is made of, in as many columns as so many points have room for."""
+    columns = columns_that_fit(width, [_LOOKS[kind][2] for kind in kinds], 9.0, len(kinds))
+    return {
+        "handles": [_mark(kind) for kind in kinds],
+        "ncols": columns,
+        "frameon": False,
+        "fontsize": 9,
+        "columnspacing": 1.2,
+    }
 
 
 def _mark(kind: str) -> Any:
@@ -292,10 +304,17 @@ def _names(ax: Axes3D, inside: Floats) -> None:
         if meets[k]:  # beyond the line of h, which is thicker and longer than that of an axis
             words, beyond, across = f"$L_{name}$, $h$", 1.44, float(axis @ to_the_right)
             side = "left" if across > 0.3 else "right" if across < -0.3 else "center"
-        ax.text(*(beyond * axis), words, color="0.15", ha=side, va="center", fontsize=11, zorder=8)
+        faint = 1.0 if axis @ viewer >= -0.2 else 0.4
+        ax.text(
+            *(beyond * axis), words, color="0.15", ha=side, va="center", fontsize=11, zorder=8, alpha=faint
+        )
     if size > 0.0:
         order = 6 if unit @ viewer >= 0.0 else 1
         ax.plot(*np.stack([unit, 1.3 * unit], axis=-1), color="0.0", linewidth=2.4, zorder=order)
         ax.plot(*unit[:, np.newaxis], linestyle="none", marker="o", markersize=3.5, color="0.0", zorder=order)
         if not meets.any():
-            ax.text(*(1.42 * unit), "$h$", color="0.0", ha="center", va="center", fontsize=12, zorder=8)
+            # Beside its line where that points at the viewer.
+            beside = 0.2 * to_the_right * max(0.0, float(unit @ viewer))
+            ax.text(
+                *(1.42 * unit + beside), "$h$", color="0.0", ha="center", va="center", fontsize=12, zorder=8
+            )

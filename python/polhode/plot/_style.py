@@ -2,24 +2,36 @@
 
 from __future__ import annotations
 
+import itertools
 from os import PathLike
-from typing import TYPE_CHECKING, Any, TypeVar, cast
+from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 from polhode._extras import require
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from matplotlib.axes import Axes
     from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 __all__ = [
     "axes_2d",
     "axes_3d",
+    "columns_that_fit",
+    "in_lines",
     "matplotlib",
+    "room",
     "show_around",
+    "text_size",
     "tidy",
 ]
 
 _Given = TypeVar("_Given")
+
+_FRAME: Final = 56.0
+"""Points that labels, numbers and margins take of the height of a picture over time."""
+_ENTRY: Final = 4.2
+"""What a legend adds to a text for its line and the room to the next entry, in sizes of its font."""
 
 
 def matplotlib(module: str) -> Any:
@@ -59,6 +71,44 @@ def tidy(ax: Axes) -> Axes:
     for side in ("top", "right"):
         ax.spines[side].set_visible(False)
     return ax
+
+
+def room(ax: Axes) -> tuple[float, float]:
+    """Return width and height of the part of a figure in which axes stand, in points."""
+    part = ax.get_subplotspec()
+    figure: Any = ax.figure
+    box = ax.get_position() if part is None else part.get_position(figure)
+    inches = 72.0 / figure.dpi
+    return box.width * figure.bbox.width * inches, box.height * figure.bbox.height * inches
+
+
+def text_size(text: str, size: float, *, parse_math: bool = True) -> tuple[float, float]:
+    """Compute width and height of a text of one or more lines, in points, for a font of this size."""
+    font = matplotlib("font_manager").FontProperties(size=size)
+    measure = matplotlib("textpath").text_to_path.get_text_width_height_descent
+    lines = text.split("\n")
+    widths = [measure(line, font, parse_math and "$" in line)[0] if line else 0.0 for line in lines]
+    return max(widths), 1.2 * size * len(lines)
+
+
+def columns_that_fit(width: float, labels: Sequence[str], size: float, most: int) -> int:
+    """Return how many columns a legend may have, so that it is no wider than this number of points."""
+    widths = [text_size(label, size)[0] + _ENTRY * size for label in labels]
+    for columns in range(min(most, len(labels)), 1, -1):
+        rows, longer = divmod(len(labels), columns)
+        starts = [k * rows + min(k, longer) for k in range(columns + 1)]
+        if sum(max(widths[a:b]) for a, b in itertools.pairwise(starts)) <= width:
+            return columns
+    return 1
+
+
+def in_lines(ax: Axes, label: str) -> str:
+    """Break the label of a vertical axis in two where it is longer than the axis."""
+    if text_size(label, 10.0)[0] <= room(ax)[1] - _FRAME:
+        return label
+    ends = [k for k, letter in enumerate(label) if letter == " "]
+    middle = min(ends, key=lambda k: abs(2 * k - len(label)), default=0)
+    return f"{label[:middle]}\n{label[middle + 1 :]}" if middle else label
 
 
 def show_around(ax: Axes3D, middle: Any, half: float) -> None:

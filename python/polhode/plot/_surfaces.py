@@ -24,6 +24,7 @@ __all__ = [
     "solid_ellipsoid",
     "to_upright",
     "toward_viewer",
+    "translucent",
 ]
 
 _SURFACE: Final = np.array([0.79, 0.84, 0.91])
@@ -46,10 +47,29 @@ def solid_ellipsoid(ax: Axes3D, semi_axes: Floats, axes: Floats, center: Floats,
     light = toward_viewer(ax) + np.array([0.0, 0.0, 0.7])
     brightness = 0.84 + 0.2 * (normals @ (light / np.linalg.norm(light)))
     colors = np.clip(brightness[..., np.newaxis] * _SURFACE, 0.0, 1.0)
-    ax.plot_surface(
-        *np.moveaxis(points, -1, 0), facecolors=colors, shade=False, alpha=opacity, linewidth=0,
-        antialiased=False, zorder=2, rcount=121, ccount=121,
+    surface = ax.plot_surface(
+        *np.moveaxis(points, -1, 0), facecolors=colors, shade=False, linewidth=0, antialiased=False, zorder=2,
+        rcount=121, ccount=121,
     )  # fmt: skip
+    translucent(surface, opacity)
+
+
+def translucent(surface: Any, opacity: float) -> None:
+    """Let what is behind a surface of many pieces be seen through it.
+
+    The pieces are drawn opaque, and their picture is made translucent as a whole. Pieces that are translucent
+    one by one cover each other along their edges, which is seen as a grid.
+    """
+    if opacity >= 1.0:
+        return
+
+    def thinned(picture: Floats, _dpi: float) -> tuple[Floats, int, int]:
+        thin = picture.copy()
+        thin[..., 3] = np.minimum(thin[..., 3], opacity)  # matplotlib may filter twice
+        return thin, 0, 0
+
+    surface.set_agg_filter(thinned)
+    surface.set_rasterized(True)  # formats of lines, such as SVG, know no filters
 
 
 def curve_on(ax: Axes3D, points: Floats, normals: Floats, color: str, **style: Any) -> None:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from polhode._hints import with_hints
 from polhode._scene.sampling import axis_times, drawn_times
 from polhode._scene.shape import check_one
 from polhode._scene.style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR
@@ -26,7 +27,8 @@ __all__ = ["effective_potential", "nutation"]
 _SAMPLES = 721
 
 
-def effective_potential(top: HeavyTop, ax: Axes | None = None, *, energy_unit: str = "J") -> Axes:
+@with_hints
+def effective_potential(top: HeavyTop, ax: Axes | None = None, *, energy_label: str = "J") -> Axes:
     """Draw the effective potential V(θ) of a heavy top, and the constant ``I_t θ̇²/2 + V(θ)`` of its motion.
 
     Parameters
@@ -35,8 +37,8 @@ def effective_potential(top: HeavyTop, ax: Axes | None = None, *, energy_unit: s
         One top.
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default.
-    energy_unit : str
-        Name of the unit, for the labels.
+    energy_label : str
+        Word for the unit of the body's energies at the axis; it converts no number.
 
     Returns
     -------
@@ -69,7 +71,7 @@ def effective_potential(top: HeavyTop, ax: Axes | None = None, *, energy_unit: s
     )  # fmt: skip
     ax.set_ylim(bottom - 0.2 * room, level + room)
     ax.set_xlabel("inclination (degrees)")
-    ax.set_ylabel(f"effective potential ({energy_unit})")
+    ax.set_ylabel(f"effective potential ({energy_label})")
     tidy(ax)
     shown = np.rad2deg(inclination[potential <= level + room])
     ax.set_xlim(max(0.0, shown.min() - 2.0), min(180.0, shown.max() + 2.0))
@@ -107,7 +109,7 @@ def nutation(top: HeavyTop, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
         / arm
         @ to_upright(-top.gravity / weight).T
     )
-    solid_ellipsoid(ax, np.ones(3), np.eye(3), np.zeros(3), 0.35)
+    solid_ellipsoid(ax, np.ones(3), np.eye(3), np.zeros(3), 0.6)
     around = np.linspace(0.0, 2.0 * np.pi, 181)
     for limit in top.nutation_limits:
         circle = np.stack(

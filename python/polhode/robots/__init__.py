@@ -14,16 +14,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from polhode.errors import FileFormatError
-from polhode.files.content import content_format
+from polhode._hints import check_kind
+from polhode.errors import FileFormatError, PolhodeError
+from polhode.files.content import EXPECTED_CONTENT, content_format, rename
 from polhode.files.xml_source import Edit, Element, edited, parse_xml
 from polhode.robots import mjcf, sdf, urdf
 from polhode.robots.addresses import Addresses, own_root
 from polhode.robots.geometry import GeometryReader
 from polhode.robots.model import Inertial, Joint, Link, Place, Robot, Shape
+from polhode.robots.room import MARKER
 from polhode.robots.sdf_include import check_version
 from polhode.robots.sources import Sources, read_source
-from polhode.robots.verdict import FAILURES, Verdict, judge
+from polhode.robots.verdict import FAILURES, Verdict, judge, replacement
 from polhode.robots.words import shortened
 
 if TYPE_CHECKING:
@@ -134,7 +136,11 @@ def parse_robot(
         raise FileFormatError(f"{name}: the file is empty; check the file")
     body_format, _ = content_format(source[:4096], len(source))
     if body_format is not None:
-        way_out = "unpack it with gunzip" if "gzip" in body_format else "polhode report reads it"
+        way_out = "polhode report reads it"
+        if "gzip" in body_format:
+            way_out = "unpack it with gunzip"
+        elif body_format not in EXPECTED_CONTENT.get(Path(name).suffix.lower(), ()):
+            way_out = f"{rename(Path(name), body_format, source[:4096])}, and {way_out}"
         raise FileFormatError(f"{name}: is {body_format}, not a robot; {way_out}")
     home = Path(folder)
     addresses = Addresses(home, [Path(package) for package in packages], allow_outside=allow_outside)
@@ -217,6 +223,7 @@ def check(
     >>> verdict.verdict
     'impossible'
     """
+    check_kind(robot, "robot", "Robot")
     declared = [Path(package) for package in (*packages, *robot.roots)]
     addresses = Addresses(robot.folder, declared, allow_outside=allow_outside)
     if density is not None and mass is not None:
@@ -224,11 +231,20 @@ def check(
     for name, value in (("density", density), ("mass", mass)):
         if value is not None and not 0.0 < value < np.inf:
             raise ValueError(f"{name}: expected a finite number above 0, got {value!r}")
+    if density is not None and density > MARKER:
+        raise PolhodeError(
+            f"density: {density:.6g} kg/m^3, and no matter has more than {MARKER:g}; state the one of the "
+            "material"
+        )
     return judge(robot, GeometryReader(robot.folder, addresses), density, mass)
 
 
 def fixed(robot: Robot, verdicts: Sequence[Verdict], words: Collection[str] = FAILURES) -> bytes:
-    """Write better values into the links that fail the test.
+    """Write better values into the links that fail the test, or whose tensor is on the edge of the possible.
+
+    What is written is a body's also after rounding: no engine finds I1 + I2 < I3 there. It is never computed
+    from shapes in which the mass would be denser than 25,000 kg/m^3. In URDF and MJCF no moment is so small
+    that MuJoCo refuses it. What is left as it is has a note that says why.
 
     Parameters
     ----------
@@ -253,10 +269,12 @@ def fixed(robot: Robot, verdicts: Sequence[Verdict], words: Collection[str] = FA
     >>> print(robots.fixed(robot, robots.check(robot)).decode().splitlines()[1])
     <inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial>
     """
+    check_kind(robot, "robot", "Robot")
     edits: list[Edit] = []
     for link, verdict in zip(robot.links, verdicts, strict=True):
-        if verdict.verdict in words and verdict.better is not None and link.rewrite is not None:
-            edits += link.rewrite(robot.source, verdict.better)
+        better = replacement(verdict, words)
+        if better is not None and link.rewrite is not None:
+            edits += link.rewrite(robot.source, better)
     return edited(robot.source, edits)
 
 
@@ -268,3 +286,12 @@ def _walk(element: Element) -> list[str]:
         tags.append(item.tag)
         waiting += item.children
     return tags
+
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name):
+        """Refuse a name of others with the one here."""
+        from polhode._hints import no_name
+
+        raise no_name(__name__, name, __all__)

@@ -14,6 +14,7 @@ from polhode.files.loaded import load
 from polhode.files.mesh import Mesh, used_vertices
 from polhode.robots.facets import sagitta
 from polhode.robots.mjcf_meshes import legacy_solid
+from polhode.robots.room import MARKER
 from polhode.robots.words import quoted, shortened
 from polhode.units import metres_per
 
@@ -59,11 +60,14 @@ class Geometry:
         Which shapes it is made of: ``"collision"`` or, where they do not serve, ``"visual"``.
     low, high : numpy.ndarray, shape (3,), or None
         Opposite corners of the box along the axes of the link around all shapes of both roles that could be
-        read; None where there is none.
+        read; None where there is none, or where all that were read are markers.
     unread : int
         How many shapes could not be read, so that the box is a part of what it should be.
     notes : tuple of str
         What could not be told, and how a mesh was read.
+    marker : float or None
+        Density in kg/m^3 that the declared mass would have in the shapes, where that is beyond 25,000 for
+        each role that has a volume: they are markers, and say nothing of the inertia.
     """
 
     body: RigidBody | None
@@ -73,6 +77,7 @@ class Geometry:
     high: Floats | None
     unread: int
     notes: tuple[str, ...]
+    marker: float | None = None
 
 
 class _Read(NamedTuple):
@@ -109,11 +114,12 @@ class GeometryReader:
                 notes.setdefault(f"a {shape.kind} of size 0 is no shape; it is left out", shape.where)
         link = replace(link, shapes=tuple(shape for shape in link.shapes if not _is_nothing(shape)))
         boxes = [self._box(shape, folder, notes) for shape in link.shapes]
-        body, volume, role = self._whole(link, folder, notes)
+        mass = link.inertial.mass if link.inertial is not None else 0.0
+        body, volume, role, marker = self._whole(link, folder, notes, mass)
         told = tuple(f"{where}: {note}" if where else note for note, where in notes.items())
         known = [box for box in boxes if box is not None]
-        if not known:
-            return Geometry(body, volume, role, None, None, len(boxes), told)
+        if not known or marker is not None:
+            return Geometry(body, volume, role, None, None, len(boxes) - len(known), told, marker)
         low = np.min([box[0] for box in known], axis=0)
         high = np.max([box[1] for box in known], axis=0)
         if not (np.isfinite(low).all() and np.isfinite(high).all()):
@@ -145,9 +151,15 @@ class GeometryReader:
                     largest = max(largest, _OF_PRIMITIVES * float(np.linalg.norm(box[1] - box[0])))
         return largest
 
-    def _whole(self, link: Link, folder: Path, notes: dict[str, str]) -> tuple[RigidBody | None, float, str]:
-        """Add the shapes of one role: those of collisions if they have volumes, else the visual ones."""
-        role = ""
+    def _whole(
+        self, link: Link, folder: Path, notes: dict[str, str], mass: float = 0.0
+    ) -> tuple[RigidBody | None, float, str, float | None]:
+        """Add the shapes of one role: those of collisions if they have volumes, else the visual ones.
+
+        Shapes in which the mass would be denser than any matter are passed over; the last number is the
+        least such density, where no others are left.
+        """
+        role, marker = "", np.inf
         for role in ("collision", "visual"):
             # What the file itself gives no mass is none of the matter.
             shapes = [s for s in link.shapes if s.role == role and (s.density if s.mass is None else s.mass)]
@@ -155,11 +167,15 @@ class GeometryReader:
                 bodies = [self._body(shape, folder, notes) for shape in shapes]
                 parts = [part for part in bodies if part is not None]
                 if parts and len(parts) == len(bodies):
-                    whole = sum((part for part, _ in parts[1:]), start=parts[0][0])
-                    return whole, sum(volume for _, volume in parts), role
+                    volume = sum(each for _, each in parts)
+                    if mass > MARKER * volume:
+                        notes.setdefault(_marker(role, mass, volume), shapes[0].where)
+                        marker = min(marker, mass / volume)
+                        continue
+                    return sum((part for part, _ in parts[1:]), start=parts[0][0]), volume, role, None
             except PolhodeError as error:
                 notes.setdefault(f"the {role} shapes make no body: {error}", shapes[0].where)
-        return None, 0.0, role
+        return None, 0.0, role, marker if np.isfinite(marker) else None
 
     def _body(self, shape: Shape, folder: Path, notes: dict[str, str]) -> tuple[RigidBody, float] | None:
         """Give the body of a shape where it stands, and its volume."""
@@ -303,6 +319,13 @@ def _counted(name: str, legacy: RigidBody, solid: RigidBody | None) -> tuple[Rig
     return (
         legacy,
         f'mesh {name}: {by}, counts {times:.3g} times its volume; inertia="exact" there counts it once',
+    )
+
+
+def _marker(role: str, mass: float, volume: float) -> str:
+    return (
+        f"{mass:.6g} kg in its {role} shapes would be {mass / volume:.3g} kg/m^3, and no matter has more "
+        f"than {MARKER:g}: they are taken for markers and not used; correct the mass if they are the link"
     )
 
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from polhode import euler_angles
+from polhode._snippets import mjcf_tensor
 from polhode.errors import FileFormatError
 from polhode.files.xml_source import Edit, Element, remove_attribute, set_attribute
 from polhode.robots.edits import attribute, first_child, number_text
@@ -311,7 +312,8 @@ class _Reader:
             xx, yy, zz, xy, xz, yz = numbers(element, attributes["fullinertia"], 6, "fullinertia")
             tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
         else:
-            tensor = np.diag(numbers(element, attributes.get("diaginertia"), 3, "diaginertia"))
+            # A point mass without it, which MuJoCo takes where no joint moves the body.
+            tensor = np.diag(numbers(element, attributes.get("diaginertia", "0 0 0"), 3, "diaginertia"))
         return Inertial(float(mass), place.position, place.rotation @ tensor @ place.rotation.T)
 
     def _shape(self, member: Member, *, weighs: bool) -> Shape:
@@ -379,19 +381,16 @@ def _turning_z_to(axis: Any) -> Any:
 
 
 def _rewrite(body: Element, declared: Element | None, source: bytes, new: Inertial) -> list[Edit]:
-    """Write mass properties with the axes of the body."""
-    tensor = new.inertia
-    elements = [*np.diag(tensor), tensor[0, 1], tensor[0, 2], tensor[1, 2]]
-    is_diagonal = not any(elements[3:])
-    name, values = ("diaginertia", elements[:3]) if is_diagonal else ("fullinertia", elements)
+    """Write mass properties with the axes of the body, or of the tensor where it is small."""
+    tensor = {name: number_text(values) for name, values in mjcf_tensor(new.inertia).items()}
     position = number_text(new.center_of_mass)
     if declared is None:
-        text = f'<inertial pos="{position}" mass="{new.mass!r}" {name}="{number_text(values)}"/>'
-        return [first_child(source, body, text)]
-    gone = {"diaginertia", "fullinertia", *_ORIENTATIONS} - {name}
+        texts = " ".join(f'{name}="{text}"' for name, text in tensor.items())
+        return [first_child(source, body, f'<inertial pos="{position}" mass="{new.mass!r}" {texts}/>')]
+    gone = {"diaginertia", "fullinertia", *_ORIENTATIONS} - set(tensor)
     removed = [remove_attribute(source, declared, each) for each in sorted(gone)]
     edits = [edit for edit in removed if edit is not None]
-    edits.append(set_attribute(source, declared, name, number_text(values)))
+    edits += [set_attribute(source, declared, name, text) for name, text in tensor.items()]
     edits += attribute(source, declared, "pos", position)
     edits += attribute(source, declared, "mass", repr(new.mass))
     return edits

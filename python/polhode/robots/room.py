@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 __all__ = [
     "FAR",
     "LEAST",
+    "MARKER",
     "MOST",
     "Finding",
     "beyond_room",
@@ -36,6 +37,8 @@ LEAST: Final = 0.1
 """Ten times less than the shape's own is a heavy core, or another unit."""
 FAR: Final = 1000.0
 """No shape that could not be read explains more: it would be 30 times larger than those that were."""
+MARKER: Final = 25_000.0
+"""In kg/m^3: shapes of a link that would be denser than this are markers, such as dots of contact."""
 # The densest matter, osmium, in kg/m^3.
 _DENSEST: Final = 22_590.0
 # No shape is taken to be farther off than this, of the diagonal of all.

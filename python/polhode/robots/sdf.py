@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from contextlib import suppress
 from dataclasses import replace
@@ -32,6 +33,7 @@ _SETS = {
     "mass": "without <mass> the format sets 1 kg",
     "inertia": "without <inertia> the format sets the unit tensor",
 }
+_COMMA = re.compile(r",(?=\s|$)")
 _DEFAULT = {"ixx": "1", "iyy": "1", "izz": "1", "ixy": "0", "ixz": "0", "iyz": "0"}
 _SIZES = {
     "box": (("size", 3),),
@@ -166,13 +168,18 @@ def _pose(element: Element | None) -> Place:
             f"{element.where}: a pose relative to {frame} is not followed; give it in the link"
         )
     if element.attributes.get("rotation_format", "euler_rpy") == "quat_xyzw":
-        values = numbers(element, element.text, 7, "pose")
+        values = numbers(element, _without_commas(element.text), 7, "pose")
         turn = unit(element, values[3:])
         return Place(np.stack([rotate(turn, axis) for axis in np.eye(3)], axis=-1), values[:3])
-    values = numbers(element, element.text, 6, "pose")
+    values = numbers(element, _without_commas(element.text), 6, "pose")
     in_degrees = element.attributes.get("degrees", "false").lower() in ("true", "1")
     angles = np.deg2rad(values[3:]) if in_degrees else values[3:]
     return Place(roll_pitch_yaw(angles), values[:3])
+
+
+def _without_commas(text: str) -> str:
+    """Take the commas off the numbers of a pose, as libsdformat does; it reads ``0,0`` as one number."""
+    return _COMMA.sub("", text)
 
 
 def _value(parent: Element, name: str, count: int, default: str | None = None) -> tuple[float, ...]:

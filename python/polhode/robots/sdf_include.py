@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 __all__ = ["check_version", "included", "is_true", "text_of"]
 
+# What nearly every world of Gazebo includes, from its own folders: lights, and a static plane.
+_WITHOUT_LINKS: Final = frozenset({"sun", "ground_plane"})
 _ROOTS: Final = frozenset({"sdf", "robot", "gazebo", "world", "model"})
 
 
@@ -52,8 +54,12 @@ def included(include: Element, sources: Sources, scope: Scope, read_links: Reade
             raise FileFormatError(f"{include.where}: {found}, not <sdf> or <robot>; check the file")
         check_version(root, f"{include.where}: {shortened(uri)}")
     except FileFormatError as error:
+        if uri.removeprefix("model://").strip("/") in _WITHOUT_LINKS:
+            sources.notes[f"{shortened(uri)} is not judged: Gazebo's own, of which nothing moves"] = None
+            return
         name = sources.name(scope.prefix, f"(include of {include.where})", include)
-        yield Link(name, include.line, None, str(error), file=include.file)
+        is_static = scope.is_static or is_true(include, "static")
+        yield Link(name, include.line, None, str(error), file=include.file, is_static=is_static)
         return
     with sources.inside(path, uri, include):
         model = next(root.descendants("model"), root)

@@ -12,8 +12,9 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Final
 
 from polhode.errors import FileFormatError
+from polhode.files.budget import LIMITS, Budget, LimitError
 from polhode.files.reading import note_read
-from polhode.files.xml_source import Budget, Element, parse_xml
+from polhode.files.xml_source import Element, parse_xml
 from polhode.robots.words import shortened
 
 if TYPE_CHECKING:
@@ -26,16 +27,8 @@ if TYPE_CHECKING:
 
 __all__ = ["LimitError", "Sources", "read_source", "read_stream"]
 
-_MOST_BYTES: Final = 1 << 28
-_MOST_FILES: Final = 1000
-_MOST_COPIES: Final = 10_000
-_MOST_COPIED: Final = 50_000
-_MOST_LINKS: Final = 100_000
+_MOST_BYTES: Final = LIMITS["included bytes"].least
 _LONGEST_NAME: Final = 1000
-
-
-class LimitError(FileFormatError):
-    """A robot that grows beyond a stated limit, which ends the reading and not only a link's."""
 
 
 class Sources:
@@ -50,7 +43,7 @@ class Sources:
 
     def __init__(self, folder: Path, addresses: Addresses) -> None:
         self.folder, self.addresses = folder, addresses
-        self.budget = Budget()
+        self.budget = Budget("", 0)  # whose limits do not depend on the size of the robot's own file
         self.names: dict[str, None] = {}
         """Of the files that were read, as they were asked for."""
         self.notes: dict[str, None] = {}
@@ -61,7 +54,6 @@ class Sources:
         """What ties the links that were read."""
         self.frames: dict[str, str] = {}
         """Of SDF: what each frame is attached to."""
-        self._files = self._bytes = self._copies = self._copied = self._links = 0
         self._open: set[Path] = set()
 
     def locate(self, address: str, folder: Path, at: Element) -> Path:
@@ -97,18 +89,14 @@ class Sources:
         FileFormatError
             If it is not XML that may be read, or is one too many.
         """
-        self._files += 1
-        if self._files > _MOST_FILES:
-            raise LimitError(
-                f"{at.where}: {address} is one of more than {_MOST_FILES} files to be read; divide the model"
-            )
+        self.budget.spend("files", where=f"{at.where}: {address}")
         try:
-            source = read_source(path, _MOST_BYTES - self._bytes)
+            source = read_source(path, self.budget.left("included bytes"))
         except OSError as error:
             raise FileFormatError(
                 f"{at.where}: {address} cannot be read: {error.strerror}; check {path}"
             ) from None
-        self._bytes += len(source)
+        self.budget.spend("included bytes", len(source), at.where)
         self.names[address] = None
         try:
             return parse_xml(
@@ -119,17 +107,12 @@ class Sources:
 
     def count_copies(self, number: int, at: Element) -> None:
         """Count copies of elements, so that a small file does not become a boundless one."""
-        self._copies += number
-        if self._copies > _MOST_COPIES:
-            raise LimitError(f"{at.where}: more than {_MOST_COPIES} copies are to be made; lower the count")
+        self.budget.spend("copies", number, at.where)
 
     def count_copied(self, number: int, at: Element, *, keep: bool) -> None:
         """Count the elements within copies, alike; those of copies within copies are not kept twice."""
-        if number + (self._copied if keep else 0) > _MOST_COPIED:
-            raise LimitError(
-                f"{at.where}: more than {_MOST_COPIED} elements are to stand in copies; lower the count"
-            )
-        self._copied += number if keep else 0
+        of = self.budget if keep else Budget("", 0)
+        of.spend("elements in copies", number, at.where)
 
     def name(self, prefix: str, own: str, at: Element) -> str:
         """Give a link its name; a long one is cut, and links are counted.
@@ -139,9 +122,7 @@ class Sources:
         FileFormatError
             If there are too many.
         """
-        self._links += 1
-        if self._links > _MOST_LINKS:
-            raise LimitError(f"{at.where}: there are more than {_MOST_LINKS} links; divide the model")
+        self.budget.spend("links", where=at.where)
         return self.prefix(prefix + own)
 
     def prefix(self, text: str) -> str:

@@ -31,6 +31,9 @@ class Standing(NamedTuple):
         The joint that moves it, itself or through what it is tied to; "" where it floats.
     carrier : str
         A link with mass that it is tied to (itself counted); "" if there is none.
+    weld : str
+        Another link that it is tied to whose own mass is spread in all directions, or the world; "" if there
+        is none.
     carries_mass : bool
         Whether what hangs on it by joints that move has mass enough for its motions.
     stands_for : bool
@@ -42,6 +45,7 @@ class Standing(NamedTuple):
     moves: bool
     joint: str
     carrier: str
+    weld: str
     carries_mass: bool
     stands_for: bool
     is_root: bool
@@ -53,6 +57,7 @@ class _Group:
     def __init__(self) -> None:
         self.links: list[int] = []
         self.carrier = ""
+        self.spread: list[int] = []
         self.has_shape = False
         self.joint: str | None = None
         self.is_free = True
@@ -60,15 +65,15 @@ class _Group:
         self.below: list[_Group] = []
 
 
-def standings(robot: Robot, has_mass: Sequence[bool]) -> list[Standing]:
+def standings(robot: Robot, has_mass: Sequence[bool], has_spread: Sequence[bool]) -> list[Standing]:
     """Tell for every link whether it can move and what carries mass there.
 
     Parameters
     ----------
     robot : Robot
         Its joints may name links that are not there, which are passed over, and may run in circles.
-    has_mass : sequence of bool
-        Of each link.
+    has_mass, has_spread : sequence of bool
+        Of each link: whether it has mass, and whether a body has its tensor with three moments above 0.
 
     Returns
     -------
@@ -99,6 +104,7 @@ def standings(robot: Robot, has_mass: Sequence[bool]) -> list[Standing]:
         group = groups.setdefault(find(i), _Group())
         group.links.append(i)
         group.carrier = group.carrier or (link.name if has_mass[i] else "")
+        group.spread += [i] if has_spread[i] else []
         group.has_shape = group.has_shape or bool(link.shapes)
         group.first = i if group.first < 0 else group.first
     ground = groups.setdefault(find(world), _Group())
@@ -121,7 +127,11 @@ def standings(robot: Robot, has_mass: Sequence[bool]) -> list[Standing]:
         stands_for = bool(link.shapes) or is_end
         # Six motions of a free link and those of one joint are too many for a single body with mass.
         carries_mass = sum(below in heavy for below in group.below) > group.is_free
-        told.append(Standing(moves, group.joint or "", group.carrier, carries_mass, stands_for, is_root))
+        weld = next((robot.links[k].name for k in group.spread[:2] if k != i), "")
+        if group is ground:
+            weld = weld or "the world"
+        standing = Standing(moves, group.joint or "", group.carrier, weld, carries_mass, stands_for, is_root)
+        told.append(standing)
     return told
 
 

@@ -8,15 +8,25 @@ from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 import numpy as np
 
 from polhode import RigidBody, principal_moments
-from polhode.errors import PolhodeError
+from polhode._snippets import LEAST_MOMENT, inside_edge
+from polhode.errors import InvalidInertiaError, PolhodeError
 from polhode.robots.mjcf_compiler import as_compiled
 from polhode.robots.model import Inertial
-from polhode.robots.room import LEAST, MOST, beyond_room, beyond_size, density_needed, times, too_dense
+from polhode.robots.room import (
+    LEAST,
+    MARKER,
+    MOST,
+    beyond_room,
+    beyond_size,
+    density_needed,
+    times,
+    too_dense,
+)
 from polhode.robots.structure import standings, without_mass
 from polhode.validity import nearest_valid
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from numpy.typing import NDArray
 
@@ -26,7 +36,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["FAILURES", "Verdict", "has_own_tensor", "is_without_mass", "judge"]
+__all__ = ["FAILURES", "Verdict", "has_own_tensor", "is_without_mass", "judge", "replacement"]
 
 Word = Literal[
     "good",
@@ -55,7 +65,8 @@ class Verdict(NamedTuple):
     line : int
         Line of the link in the file.
     verdict : str
-        ``"good"``; ``"suspect"``: far from what its shape has; ``"coarse"``: larger than
+        ``"good"``; ``"suspect"``: far from what its shape has, or its shape has no room for its mass in any
+        matter; ``"coarse"``: larger than
         its shape has room for, but by no more than its shape may differ from the true one;
         ``"placeholder"``: the unit tensor, the same multiple of it in links of different masses, or zero;
         ``"impossible"``: no body has it, or no body of the size of the link; ``"missing"``: no mass
@@ -79,6 +90,9 @@ class Verdict(NamedTuple):
         Remarks on the geometry, such as shapes that could not be read.
     better : Inertial or None
         Values to declare instead: those of the shape, or the nearest possible tensor.
+    inside : Inertial or None
+        If the declared tensor is on the edge I1 + I2 = I3, as of a lamina, where rounding may make it
+        impossible: the same tensor, moved inside by less than 6e-15 of the sum of its moments.
     file : str
         File that contains the link, if the robot file includes it.
     """
@@ -94,6 +108,7 @@ class Verdict(NamedTuple):
     shapes: str = ""
     notes: tuple[str, ...] = ()
     better: Inertial | None = None
+    inside: Inertial | None = None
     file: str = ""
 
 
@@ -117,9 +132,8 @@ def judge(
     # Ratios of numbers that lie far apart leave their range: infinity and zero are right there.
     with np.errstate(all="ignore"):
         read = [geometry.read(link) for link in robot.links]
-        stand = standings(
-            robot, [_has_mass(link, each) for link, each in zip(robot.links, read, strict=True)]
-        )
+        pairs = list(zip(robot.links, read, strict=True))
+        stand = standings(robot, [_has_mass(*pair) for pair in pairs], [_has_spread(*pair) for pair in pairs])
         judging = _Judging(
             geometry,
             robot.format,
@@ -146,6 +160,11 @@ def has_own_tensor(link: Link) -> bool:
     return True
 
 
+def replacement(verdict: Verdict, words: Collection[str]) -> Inertial | None:
+    """Return what is written for a link where verdicts of these words are corrected; None for nothing."""
+    return verdict.better if verdict.verdict in words else verdict.inside
+
+
 def is_without_mass(link: Link, verdict: Verdict) -> bool:
     """Tell whether a link fails and its file says no mass, so that a density or a mass is needed."""
     return verdict.verdict == "missing" or ("1 kg" in link.defaults and verdict.verdict in FAILURES)
@@ -163,6 +182,26 @@ def _has_mass(link: Link, geometry: Geometry) -> bool:
         unread = any((shape.density if shape.mass is None else shape.mass) != 0.0 for shape in solid)
         return link.inferred and (geometry.body is not None or (unread and geometry.unread > 0))
     return not _is_empty(link.inertial)
+
+
+def _has_spread(link: Link, geometry: Geometry) -> bool:
+    """Tell whether a body has its tensor, with three moments above 0: whatever is added keeps them so."""
+    body = geometry.body
+    try:
+        if link.inertial is not None:
+            body = RigidBody(link.inertial.mass, link.inertial.inertia)
+    except PolhodeError:
+        return False
+    return body is not None and not link.problem and float(body.principal_moments[0]) > 0.0
+
+
+def _is_point(declared: Inertial) -> bool:
+    """Tell whether a tensor is no larger than that of a ball of the densest matter, down to zero."""
+    try:
+        body = RigidBody(declared.mass, declared.inertia)
+    except PolhodeError:
+        return False
+    return too_dense(body) is not None
 
 
 def _reach(robot: Robot, geometry: Sequence[Geometry]) -> float:
@@ -232,7 +271,35 @@ class _Judging(NamedTuple):
         moments = np.asarray(principal_moments(declared.inertia))
         if own is not None:
             factor = _farthest(moments, own.principal_moments)
-        word, reason = self._law(link, declared, geometry, own, factor)
+        better, inside = None, None
+        is_point = _is_point(declared) and (own is None or not declared.inertia.any())
+        if is_point and standing.weld and self.format != "SDF":  # libsdformat refuses it all the same
+            word: Word = "good"
+            reason = f"a point mass, tied to {standing.weld}"
+            notes = (*notes, f"line {link.line}: {link.name} is {reason}: simulators join the two")
+        else:
+            word, reason = self._law(link, declared, geometry, own, factor)
+            better = None if word in ("good", "coarse") else _better(declared, own, word)
+        if word not in FAILURES:
+            inside = _inside(declared)
+        least = LEAST_MOMENT.get(self.format, 0.0)
+        if better is not None and not (moment := _least_moment(better)) > least:
+            what = "the nearest tensor of a body" if own is None else f"its {geometry.role} shape"
+            notes = (
+                *notes,
+                f"line {link.line}: {link.name}: {what} has {_refused(moment, least)}: not written",
+            )
+            better = None
+        if inside is not None and not float(moments[0]) > least:
+            notes = (*notes, f"line {link.line}: {link.name} has {_refused(float(moments[0]), least)}")
+            inside = None
+        elif inside is not None:
+            notes = (
+                *notes,
+                f"line {link.line}: {link.name} is on the edge I1 + I2 = I3, as a plate without thickness: "
+                "where it is turned, rounding may put it beyond, and MuJoCo refuses it then; --fix moves it "
+                "inside by the last digits",
+            )
         return Verdict(
             link.name,
             link.line,
@@ -244,7 +311,8 @@ class _Judging(NamedTuple):
             factor,
             geometry.role if own is not None else "",
             notes,
-            None if word in ("good", "coarse") else _better(declared, own, word),
+            None if better is None else _rounded(better),
+            inside,
         )
 
     def _law(
@@ -258,6 +326,8 @@ class _Judging(NamedTuple):
         """Say which law fails, the plainest first."""
         try:
             body = RigidBody(declared.mass, declared.inertia, declared.center_of_mass)
+        except InvalidInertiaError as error:  # its remedies are those of Python's arguments
+            return "impossible", error.fault
         except PolhodeError as error:
             return "impossible", str(error)
         if geometry.unread or geometry.low is None:
@@ -276,6 +346,12 @@ class _Judging(NamedTuple):
                 return "placeholder", _joined(told, compared, size.reason if size else "")
         if size is not None and size.word == "impossible":
             return size.word, _joined(compared, size.reason, size.why, needed)
+        if geometry.marker is not None:
+            told = (
+                f"its mass would have {geometry.marker:.3g} kg/m^3 in its shapes, beyond {MARKER:g}: they "
+                "are markers, and nothing else that was read tells its size"
+            )
+            return "suspect", _joined(told, *((size.reason, size.why) if size else ()))
         if factor is not None and not LEAST <= factor <= MOST:
             return "suspect", _joined(compared, *((size.reason, size.why) if size else ()), needed)
         if size is not None and size.word == "coarse":
@@ -321,13 +397,24 @@ def _filled(
             f"mass: the shape of {unread[0]}, which has no mass, tells no volume, so that its share is not "
             "known; pass density= instead"
         )
+    if mass is not None and mass > MARKER * volume > 0.0:
+        raise PolhodeError(
+            f"mass: {mass:.6g} kg in the shapes of links without mass would be {mass / volume:.3g} kg/m^3, "
+            f"and no matter has more than {MARKER:g}: the shapes are markers, or their lengths are wrong; "
+            "correct the file, or pass less"
+        )
     for i, body in without.items():
         weighed = body.scaled(mass=density if density is not None else (mass or 0.0) / volume)
-        better = _rounded(
-            Inertial(float(f"{float(weighed.mass):.9g}"), weighed.center_of_mass, weighed.inertia)
-        )
-        verdicts[i] = verdicts[i]._replace(
-            shape_moments=weighed.principal_moments, shapes=geometry.read(robot.links[i]).role, better=better
+        better = Inertial(float(f"{float(weighed.mass):.9g}"), weighed.center_of_mass, weighed.inertia)
+        found, least = verdicts[i], LEAST_MOMENT.get(robot.format, 0.0)
+        if not (moment := _least_moment(better)) > least:
+            told = f"line {found.line}: {found.name}: its shape has {_refused(moment, least)}: not written"
+            verdicts[i] = found._replace(notes=(*found.notes, told))
+            continue
+        verdicts[i] = found._replace(
+            shape_moments=weighed.principal_moments,
+            shapes=geometry.read(robot.links[i]).role,
+            better=_rounded(better),
         )
     return verdicts
 
@@ -346,26 +433,38 @@ def _compared(factor: float | None, geometry: Geometry) -> str:
 
 
 def _better(declared: Inertial, own: RigidBody | None, word: Word) -> Inertial | None:
-    """Give what to declare instead, in nine digits where those are still a body's."""
+    """Find what to declare instead."""
     if own is not None:
-        return _rounded(Inertial(declared.mass, own.center_of_mass, own.inertia))
+        return Inertial(declared.mass, own.center_of_mass, own.inertia)
     if word == "impossible" and declared.mass > 0.0:
         try:
             nearest, distance = nearest_valid(declared.inertia)
         except PolhodeError:
             return None
         if 0.0 < distance <= _NEAR * float(np.linalg.norm(declared.inertia)):
-            return _rounded(Inertial(declared.mass, declared.center_of_mass, nearest))
+            return declared._replace(inertia=nearest)
     return None
 
 
+def _inside(declared: Inertial) -> Inertial | None:
+    tensor = inside_edge(declared.inertia)
+    return None if tensor is declared.inertia else declared._replace(inertia=tensor)
+
+
+def _least_moment(inertial: Inertial) -> float:
+    return float(principal_moments(inertial.inertia)[0])
+
+
+def _refused(moment: float, least: float) -> str:
+    return f"a moment of {moment:.3g} kg m^2, and MuJoCo refuses what has no more than {least:g}"
+
+
 def _rounded(found: Inertial) -> Inertial:
+    """Round to nine digits where those are clear of the edge of what a body can have; else move it inside."""
     rounded = Inertial(found.mass, _nine(found.center_of_mass), _nine(found.inertia))
-    try:
-        RigidBody(rounded.mass, rounded.inertia, rounded.center_of_mass)
-    except PolhodeError:
-        return found
-    return rounded
+    if inside_edge(rounded.inertia) is rounded.inertia:
+        return rounded
+    return found._replace(inertia=inside_edge(found.inertia))
 
 
 def _nine(values: Floats) -> Floats:

@@ -6,6 +6,8 @@ this module. :func:`function` turns an expression into a numeric function of arr
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polhode.symbolic.functions import function
 from polhode.symbolic.laws import (
     angular_acceleration,
@@ -40,3 +42,11 @@ __all__ = [
     "symbols",
     "torque",
 ]
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name):
+        """Refuse a name of others with the one here."""
+        from polhode._hints import no_name
+
+        raise no_name(__name__, name, __all__)

@@ -105,7 +105,13 @@ class Shape:
         >>> cone.inertia_about((0, 0, 3 * h / 4))[0, 0].factor()
         3*M*(R**2 + 4*h**2)/20
         """
-        away = sympy.Matrix(list(point)) - self.center_of_mass
+        place = [point] if isinstance(point, str) else list(point)
+        if len(place) != 3:
+            raise ValueError(
+                f"point: expected three expressions or numbers, got {point!r}; the axes are those of "
+                f"center_of_mass, {tuple(self.center_of_mass)}"
+            )
+        away = sympy.Matrix(place) - self.center_of_mass
         return parallel_axis(self.inertia, self.mass, away)
 
     def function(self) -> Callable[..., NDArray[Any]]:

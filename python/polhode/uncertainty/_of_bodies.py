@@ -81,6 +81,7 @@ def parts_of_bodies(ids: Sequence[str], bodies: Sequence[RigidBody | None]) -> P
         correlated=(rows, draws),
         source=source,
         unstated=sum(body is not None for body in bodies) - len(found),
+        opposite_signs={},
     )
 
 

@@ -58,6 +58,8 @@ class Parts(NamedTuple):
         "" for a part whose draws are its own; empty where there is no other.
     unstated : int
         How many leaves state no sigma at all.
+    opposite_signs : dict of str to tuple of str
+        Sources with products of inertia of both signs, and these numbers; see `Ledger`.
     """
 
     mass: Floats
@@ -68,6 +70,7 @@ class Parts(NamedTuple):
     correlated: tuple[Integers, Floats]
     source: list[str]
     unstated: int
+    opposite_signs: dict[str, tuple[str, ...]]
 
 
 def read_parts(
@@ -113,7 +116,7 @@ def read_parts(
     _refuse_missing(values, leaves, where)
     is_stated = is_leaf.copy()
     is_stated[list(shapes)] = False
-    _turn_signs(table, values, is_stated, where)
+    signs = _turn_signs(table, values, is_stated, where)
     origin = _about_origin(table, leaves, where) if "about" in table else []
     origin = [row for row in origin if row not in shapes and not is_point[row]]
     if origin:
@@ -123,7 +126,9 @@ def read_parts(
     correlated = np.array([*shaped, *origin], np.intp), np.concatenate(draws, axis=2)
     _check_bodies(values, leaves, where, rtol)
     source = table.words("source") if "source" in table else []
-    return Parts(values[0], values[1:4], values[4:], growth, sigma, correlated, source, int(is_silent.sum()))
+    opposite = _opposite_signs(source, signs, sigma, np.flatnonzero(is_stated & ~is_point))
+    unstated = int(is_silent.sum())
+    return Parts(values[0], values[1:4], values[4:], growth, sigma, correlated, source, unstated, opposite)
 
 
 def _stacked(table: Table, names: tuple[str, ...]) -> Floats:
@@ -171,8 +176,8 @@ def _refuse_missing(values: Floats, leaves: Integers, where: Callable[[int], str
 
 def _turn_signs(
     table: Table, values: Floats, is_stated: NDArray[np.bool_], where: Callable[[int], str]
-) -> None:
-    """Turn positive products into elements of the tensor."""
+) -> NDArray[np.int8]:
+    """Turn positive products into elements of the tensor; return the sign that each row states."""
     conventions = table.words("POIconv")
     signs = np.fromiter(map(_SIGNS.get, conventions, repeat(-1)), np.int8, len(conventions))
     for row in np.flatnonzero(is_stated & (signs < 1)).tolist():
@@ -187,6 +192,23 @@ def _turn_signs(
             )
     for cells in values[7:]:
         np.subtract(0.0, cells, out=cells, where=is_stated & (signs == _PLUS))
+    return signs
+
+
+def _opposite_signs(
+    source: list[str], signs: NDArray[np.int8], sigma: Floats, rows: Integers
+) -> dict[str, tuple[str, ...]]:
+    """Find the sources of uncertain products that some rows state with one sign and some with the other."""
+    found: dict[str, set[tuple[int, bool]]] = {}
+    for row in rows.tolist() if source else ():
+        if source[row]:
+            uncertain = np.flatnonzero(sigma[7:, row]) + 7
+            found.setdefault(source[row], set()).update((k, signs[row] == _PLUS) for k in uncertain.tolist())
+    both = {
+        name: tuple(NUMBERS[k] for k in (7, 8, 9) if {(k, True), (k, False)} <= stated)
+        for name, stated in found.items()
+    }
+    return {name: numbers for name, numbers in both.items() if numbers}
 
 
 def _about_origin(table: Table, leaves: Integers, where: Callable[[int], str]) -> list[int]:

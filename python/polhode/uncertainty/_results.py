@@ -73,6 +73,11 @@ class Ledger:
         Basic mass plus mass growth allowance, rolled up.
     unstated : int
         Number of parts without standard deviations; these count as exact.
+    opposite_signs : dict of str to tuple of str
+        For each source whose parts state uncertain products of inertia with both signs (``POIconv``): the
+        names of these numbers. The parts share the error of the element of the tensor. So where a number that
+        is stated with ``-`` is too large by 0.7 of its sigma, one that is stated with ``+`` is too small by
+        0.7 of its own.
     """
 
     ids: tuple[str, ...]
@@ -85,6 +90,7 @@ class Ledger:
     inertia: Floats
     predicted_mass: Floats
     unstated: int
+    opposite_signs: dict[str, tuple[str, ...]]
     _tree: Tree
     _values: Values
     _covariances: Covariances | None
@@ -200,7 +206,13 @@ class Ledger:
         write_json_ledger(self, path, covariance=covariance)
 
     def plot(
-        self, ax: Axes | None = None, *, of: str = "mass", at: str | None = None, number: str = "mass"
+        self,
+        ax: Axes | None = None,
+        *,
+        of: str = "mass",
+        at: str | None = None,
+        number: str = "mass",
+        mass_label: str | None = None,
     ) -> Axes:
         """Draw the contributions of the parts: to the mass as a sunburst, or to a variance as bars.
 
@@ -214,6 +226,9 @@ class Ledger:
             The id of a node; the root by default.
         number : str, optional
             The number whose variance is shared, see `variance_shares`.
+        mass_label : str, optional
+            Word for the unit of the masses; it converts no number. Without it the picture says that the unit
+            is that of the table.
 
         Returns
         -------
@@ -225,7 +240,7 @@ class Ledger:
             return bars(self.variance_shares(number, at), ax)
         if of != "mass":
             raise PolhodeError(f'of: expected "mass" or "variance", got {of!r}')
-        return sunburst(self[self.root if at is None else at], ax)
+        return sunburst(self[self.root if at is None else at], ax, mass_label=mass_label)
 
     def __getitem__(self, name: str) -> Part:
         row = self._tree.row_of.get(name) if isinstance(name, str) else None

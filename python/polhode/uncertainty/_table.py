@@ -7,6 +7,7 @@ import difflib
 import io
 import math
 import os
+from collections import Counter
 from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -223,7 +224,8 @@ def table_of_text(text: str, file: str, folder: Path) -> Table:
     if not rows:
         raise FileFormatError(f"{file}: the file is empty")
     names = [name.strip() for name in rows[0]]
-    twice = next((name for name in names if names.count(name) > 1), None)
+    often = Counter(names)
+    twice = next((name for name in names if often[name] > 1), None)
     if twice is not None:
         raise FileFormatError(f"{file}: line {lines[0]}: column {twice!r} is there twice")
     for row, line in zip(rows, lines, strict=True):

@@ -99,7 +99,9 @@ def ledger(
     - ``Ipoint``: TRUE if the part is a point mass; a tensor in its row is then ignored.
     - ``source``: parts with the same word here have the same errors, for example because they were weighed on
       one scale. If the mass of one of them is wrong by 0.7 of its sigma, so are the masses of the others,
-      each by 0.7 of its own sigma. The same holds for the other nine numbers.
+      each by 0.7 of its own sigma. The same holds for the other nine numbers; of a product of inertia it is
+      the error of the element of the tensor that is shared, whatever ``POIconv`` says of each row, see
+      `Ledger.opposite_signs`.
     - ``growth``: mass growth allowance, a fraction of the basic mass (0.15 or 15%), as in AIAA S-120A.
     - ``solid`` with its ``arguments`` (``radius=0.1 height=0.3``), or ``file``: a shape that gives the
       tensor, in place of the six numbers. It needs ``mass`` or ``density``, which may have ``sigma_mass`` or
@@ -196,6 +198,7 @@ def _rolled(
         inertia=frozen(tensors(made.by_row(values.inertia))),
         predicted_mass=frozen(made.by_row(predicted)),
         unstated=parts.unstated,
+        opposite_signs=parts.opposite_signs,
         _tree=made,
         _values=values,
         _covariances=covariances,

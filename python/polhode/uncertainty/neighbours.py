@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Neighbours"]
+__all__ = ["HALVINGS", "Neighbours"]
 
 CLOSE: Final = 4.0
 """Moments within so many deviations of their gap may change places: the tensor tells them better than
@@ -60,7 +60,8 @@ class Neighbours:
         arguments = [_number(argument, place) for place, argument in enumerate(arguments)]
         self.body = body
         self._values = [np.asarray(argument.value, dtype=float) for argument in arguments]
-        covariance = _joint_covariance(body, arguments)
+        variables, tangents = _joint_tangents(body, arguments)
+        covariance = tangents @ tangents.T
         # In units of the numbers themselves, so that kilograms and metres stand side by side.
         scale = np.sqrt(np.diagonal(covariance))
         scale[scale == 0.0] = 1.0
@@ -69,6 +70,10 @@ class Neighbours:
         factor: Floats = scale[:, None] * vectors[:, kept] * np.sqrt(values[kept])
         self._factor, self._others = factor[:10], factor[10:]
         self.rank: int = int(kept.sum())
+        self.variables = variables
+        """What the numbers depend on."""
+        self.of_variables: Floats = (vectors[:, kept] / np.sqrt(values[kept])).T @ (tangents / scale[:, None])
+        """Coordinates of one standard deviation of each variable, shape (rank, variables)."""
         if body is not None:
             self._way = _Way(body, self._factor)
 
@@ -221,8 +226,10 @@ def _body(numbers: Floats) -> RigidBody:
     return _core.RigidBody(float(numbers[0]), _symmetric(numbers[4:]), numbers[1:4], rtol=1e-13)
 
 
-def _joint_covariance(body: RigidBody | None, arguments: Sequence[Uncertain]) -> Floats:
-    """Of the ten numbers and all others, by the variables that they depend on."""
+def _joint_tangents(
+    body: RigidBody | None, arguments: Sequence[Uncertain]
+) -> tuple[list[tuple[int, ...]], Floats]:
+    """Give the variables of the ten numbers and all others, and the changes by one sigma of each."""
     columns: dict[tuple[int, ...], int] = {}
     rows: list[dict[int, float]] = [{} for _ in range(10)]
     state = None if body is None else body._doubts()
@@ -240,7 +247,7 @@ def _joint_covariance(body: RigidBody | None, arguments: Sequence[Uncertain]) ->
     for k, steps in enumerate(rows):
         for column, step in steps.items():
             factor[k, column] = step
-    return factor @ factor.T
+    return list(columns), factor
 
 
 def _symmetric(elements: Floats) -> Floats:

@@ -122,7 +122,8 @@ def axis_probabilities(body: RigidBody) -> AxisProbabilities:
 def mode_probabilities(motion: FreeMotion) -> ModeProbabilities:
     """Compute the probabilities of long-axis mode and short-axis mode of a free motion.
 
-    The mode follows from the sign of ``1 − 2T I₂/L²``, which is taken as normally distributed.
+    The mode follows from the sign of ``1 − 2T I₂/L²``, which is taken as normally distributed. The mode of a
+    motion from given periods was given, and is certain.
 
     Parameters
     ----------
@@ -152,6 +153,9 @@ def mode_probabilities(motion: FreeMotion) -> ModeProbabilities:
         momentum = body.inertia @ omega
         return 1.0 - body.principal_moments[1] * (omega @ momentum) / (momentum @ momentum)
 
+    if motion._from_periods is not None:
+        is_short = np.full(motion.shape, float(motion._from_periods.mode == "short-axis"))[()]
+        return ModeProbabilities(1.0 - is_short, is_short, np.full(motion.shape, True)[()])
     found = each_motion(motion, excess, ())
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.asarray(found.value) / np.asarray(found.sigma)

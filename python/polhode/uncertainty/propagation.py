@@ -10,7 +10,7 @@ import numpy as np
 from polhode._progress import watched
 from polhode._repr import short
 from polhode.errors import PolhodeError
-from polhode.uncertainty.neighbours import Neighbours
+from polhode.uncertainty.neighbours import HALVINGS, Neighbours
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Function = Callable[..., Any]
 
-__all__ = ["Propagated", "is_enough", "propagate"]
+__all__ = ["Propagated", "is_enough", "propagate", "slopes_of"]
 
 LACKING: Final = 0.015
 """Largest part of a variance that the first order may lack: a percent of the deviation, with a margin."""
@@ -166,20 +166,27 @@ def _numbers(f: Function, given: tuple[Any, ...], shape: tuple[int, ...] | None 
     return value
 
 
-def _slopes(f: Function, around: Neighbours, shape: tuple[int, ...]) -> Floats:
+def slopes_of(f: Function, around: Neighbours, shape: tuple[int, ...]) -> Floats:
     """Give the derivatives by one standard deviation of each direction, shape (k, numbers)."""
-    slopes = []
+    found = []
     for direction in np.eye(around.rank):
-        full = around.step(direction)
-        far, near = (
-            (
-                _numbers(f, around.at(step * direction), shape)
-                - _numbers(f, around.at(-step * direction), shape)
-            )
-            for step in (full, 0.5 * full)
-        )
-        slopes.append(((8.0 * near - far) / (6.0 * full)).ravel())
-    return np.array(slopes).reshape(around.rank, math.prod(shape))
+        step = around.step(direction)
+        for halvings in range(HALVINGS + 1):
+            try:
+                far, near = (
+                    (
+                        _numbers(f, around.at(part * step * direction), shape)
+                        - _numbers(f, around.at(-part * step * direction), shape)
+                    )
+                    for part in (1.0, 0.5)
+                )
+                break
+            except PolhodeError:  # the function has no value so far away
+                if halvings == HALVINGS:
+                    raise
+                step *= 0.5
+        found.append(((8.0 * near - far) / (6.0 * step)).ravel())
+    return np.array(found).reshape(around.rank, math.prod(shape))
 
 
 def _is_linear(f: Function, around: Neighbours, value: Floats, slopes: Floats) -> NDArray[np.bool_]:
@@ -241,13 +248,13 @@ def _follows(f: Function, around: Neighbours, value: Floats, variance: Floats) -
 
 def _linear(f: Function, around: Neighbours) -> Propagated:
     value = _numbers(f, around.start)
-    slopes = _slopes(f, around, value.shape)
+    slopes = slopes_of(f, around, value.shape)
     return _told(value, slopes.T @ slopes, _is_linear(f, around, value, slopes))
 
 
 def _second_order(f: Function, around: Neighbours) -> Propagated:
     value = _numbers(f, around.start)
-    slopes, rank = _slopes(f, around, value.shape), around.rank
+    slopes, rank = slopes_of(f, around, value.shape), around.rank
     bends = np.zeros((rank, rank, value.size))
     for i in range(rank):
         for j in range(i + 1):
@@ -277,7 +284,7 @@ def _monte_carlo(f: Function, around: Neighbours, n: int, seed: int, progress: P
     covariance = np.atleast_2d(np.cov(draws, rowvar=False))
     # By the first order: where the ways lead elsewhere the draws may have any variance. What ways miss in the
     # second order is seen; in the third, of a quotient, it may be twice as much.
-    first = (_slopes(f, around, value.shape) ** 2).sum(axis=0)
+    first = (slopes_of(f, around, value.shape) ** 2).sum(axis=0)
     follows = _follows(f, around, value, np.minimum(first, np.diagonal(covariance)) / 3)
     return _told(mean.reshape(value.shape), covariance, follows)
 

@@ -10,9 +10,8 @@ from polhode import _core
 from polhode._from_zero import runs_from_zero
 from polhode._repr import short
 from polhode._rows import rows_of
-from polhode._variables import of_forms
+from polhode._variables import angles_of, of_forms, row_of
 from polhode.errors import PolhodeError
-from polhode.uncertainty.motions import row_of
 from polhode.uncertainty.neighbours import Neighbours
 from polhode.uncertainty.propagation import is_enough
 
@@ -78,7 +77,7 @@ def _row(run: Trajectory, stack: tuple[int, ...], row: int) -> NDArray[np.bool_]
     if of_omega is not None:
         arguments.append(row_of(of_omega, rows_of(np.shape(of_omega.value)[:-1], stack)[row]))
     if of_attitude is not None:
-        arguments.append(of_forms(np.zeros(3), of_attitude._forms()))
+        arguments.append(of_forms(np.zeros(3), angles_of(of_attitude, stack, row)))
     around = Neighbours(None if body.covariance is None else body, arguments)
     rng = np.random.default_rng(20)
     directions = rng.normal(size=(DIRECTIONS, around.rank))

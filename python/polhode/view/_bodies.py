@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from polhode import _core
+from polhode._hints import with_hints
 from polhode._scene.ellipsoid import inertia_semi_axes, principal_circles
 from polhode._scene.shape import body_shape, check_one, given_shape, longest
 from polhode._scene.style import AXIS_COLORS, OUTLINE_COLOR
@@ -28,13 +29,14 @@ _FEATURE_ANGLE: Final = 40.0
 _ELLIPSOID_COLOR: Final = "#9DB2CF"
 
 
+@with_hints
 def body(
     vertices: ArrayLike,
     faces: ArrayLike,
     plotter: Plotter | None = None,
     *,
     opacity: float = 1.0,
-    length_unit: str | None = None,
+    length_label: str | None = None,
     name: str = "body",
 ) -> Plotter:
     """Show a mesh as a shaded body with its sharp edges.
@@ -49,8 +51,9 @@ def body(
         Where to show it; a new one by default.
     opacity : float
         Opacity of the surface, from 0 to 1.
-    length_unit : str, optional
-        Name of the unit of the coordinates; without it the coordinate axes are not drawn.
+    length_label : str, optional
+        Word for the unit of the coordinates at their axes; without it the axes are not drawn. It converts no
+        number.
     name : str
         Name of the actors; another body of that name is replaced.
 
@@ -68,8 +71,8 @@ def body(
     """
     plotter = new_plotter() if plotter is None else plotter
     add_surface(plotter, given_shape(vertices, faces, np.zeros(3)), name, opacity)
-    if length_unit is not None:
-        titles = {f"{axis}title": f"{axis} ({length_unit})" for axis in "xyz"}
+    if length_label is not None:
+        titles = {f"{axis}title": f"{axis} ({length_label})" for axis in "xyz"}
         counts = {f"n_{axis}labels": 3 for axis in "xyz"}
         plotter.show_bounds(grid="back", location="outer", color="#555555", font_size=12, **titles, **counts)
     plotter.reset_camera()

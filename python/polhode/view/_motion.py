@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from polhode import _core
+from polhode._hints import with_hints
 from polhode._scene.footage import RATE
 from polhode._scene.scene import Scene
 from polhode._scene.shape import longest
@@ -33,6 +34,7 @@ _TICK: Final = 30
 """Milliseconds between two pictures."""
 
 
+@with_hints
 def motion(
     trajectory: Trajectory | FreeMotion | HeavyTop | GyrostatMotion,
     plotter: Plotter | None = None,
@@ -42,7 +44,7 @@ def motion(
     shape: tuple[ArrayLike, ArrayLike] | None = None,
     duration: float | None = None,
     title: str = "",
-    time_unit: str = "s",
+    time_label: str = "s",
     name: str = "motion",
 ) -> Plotter:
     """Show the motion of one body about its reference point, with ω, the path of ω in space, and L.
@@ -71,8 +73,8 @@ def motion(
     duration : float, optional
         Duration of the whole motion on the screen, in seconds. By default 10, or more so that the body turns
         by at most 20 degrees from picture to picture.
-    title, time_unit : str
-        Title and unit of time as they are shown.
+    title, time_label : str
+        Title, and word for the unit of the times; it converts no number.
     name : str
         Name of the actors; another motion of that name is replaced.
 
@@ -98,7 +100,7 @@ def motion(
     >>> racket = solids.box((3, 2, 1), mass=1.0).simulate(np.linspace(0, 20, 1001), omega=(0.01, 3, 0))
     >>> view.motion(racket).show()  # doctest: +SKIP
     """
-    options: dict[str, Any] = {"shape": shape, "title": title, "duration": duration, "time_unit": time_unit}
+    options: dict[str, Any] = {"shape": shape, "title": title, "duration": duration, "time_unit": time_label}
     if not isinstance(trajectory, _core.FreeMotion | _core.HeavyTop | _core.GyrostatMotion):
         if end is not None:
             raise ValueError("end: a trajectory has its own times; leave it out")

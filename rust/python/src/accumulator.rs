@@ -8,7 +8,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 
-use crate::arrays::write;
+use crate::arrays::{read_scalar, write};
 use crate::body::PyRigidBody;
 use crate::elsewhere::{handed_over, is_any};
 use crate::errors::to_py;
@@ -90,7 +90,7 @@ impl PyMassAccumulator {
         slf: &Bound<'py, Self>,
         masses: &Bound<'py, PyAny>,
         positions: &Bound<'py, PyAny>,
-        start: Option<i128>,
+        #[pyo3(from_py_with = read_scalar)] start: Option<i128>,
     ) -> PyResult<()> {
         let (py, this) = (slf.py(), slf.get());
         let start = start.map(number_of_particle).transpose()?;

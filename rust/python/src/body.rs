@@ -59,7 +59,7 @@ pub(crate) type Doubts = Option<Arc<Vec<Doubt>>>;
 /// >>> RigidBody(mass=1.0, inertia=np.diag([1.0, 1.0, 3.0]))
 /// Traceback (most recent call last):
 ///     ...
-/// polhode.errors.InvalidInertiaError: principal moments 1.0, 1.0, 3.0 break the triangle inequality I1 + I2 >= I3 by 1.0, 2.00e-1 of their sum: no distribution of mass has them; pass rtol= if the table was printed to few digits
+/// polhode.errors.InvalidInertiaError: principal moments 1.0, 1.0, 3.0 break the triangle inequality I1 + I2 >= I3 by 1.0, 2.00e-1 of their sum: no distribution of mass has them; check the numbers and their units (validity.nearest_valid finds the nearest tensor that a body has)
 #[pyclass(name = "RigidBody", module = "polhode", frozen)]
 #[derive(Clone)]
 pub(crate) struct PyRigidBody {

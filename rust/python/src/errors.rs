@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
 
-use crate::advice::{CLOSE, in_words};
+use crate::advice::{CLOSE, in_words, of_body};
 use crate::hints;
 use crate::shape::tuple;
 
@@ -24,11 +24,18 @@ pub(crate) fn to_py(py: Python<'_>, error: &Error) -> PyErr {
         _ => "PolhodeError",
     };
     let exception = new(py, name, in_words(error));
-    if !matches!(error, Error::Mesh(MeshFault::Open { .. })) {
-        return exception;
-    }
     let value = exception.value(py);
-    match (value.setattr("law", "closed")).and_then(|()| value.setattr("way_out", CLOSE)) {
+    let told = match error {
+        Error::Mesh(MeshFault::Open { .. }) => {
+            (value.setattr("law", "closed")).and_then(|()| value.setattr("way_out", CLOSE))
+        }
+        Error::Body(fault) if fault.kind() == Kind::Inertia => value.setattr(
+            "way_out",
+            of_body(fault).trim_start_matches([';', ':', ' ']),
+        ),
+        _ => Ok(()),
+    };
+    match told {
         Ok(()) => exception,
         Err(error) => error,
     }
@@ -39,7 +46,7 @@ pub(crate) fn with_prefix(py: Python<'_>, prefix: &str, error: &PyErr) -> PyErr 
     let value = error.value(py);
     let raised = PyErr::from_type(error.get_type(py), format!("{prefix}: {value}"));
     for name in ["law", "way_out"] {
-        // Meshes alone have them.
+        // Not every error has them.
         if let Ok(told) = value.getattr(name)
             && let Err(error) = raised.value(py).setattr(name, told)
         {

@@ -6,7 +6,7 @@ use polhode::Error;
 use polhode::error::MotionFault;
 use pyo3::prelude::*;
 
-use crate::arrays::{read, write};
+use crate::arrays::{read, read_scalar, write};
 use crate::kinematics::parse_frame;
 use crate::rotations::{in_radians, out_of_radians, parse_sequence, raises_where_singular};
 use crate::stack::{Broadcast, Stack};
@@ -49,8 +49,8 @@ pub(crate) fn angular_velocity_from_euler_rates<'py>(
     py: Python<'py>,
     angles: &Bound<'py, PyAny>,
     rates: &Bound<'py, PyAny>,
-    sequence: &str,
-    frame: &str,
+    #[pyo3(from_py_with = read_scalar)] sequence: &str,
+    #[pyo3(from_py_with = read_scalar)] frame: &str,
     degrees: bool,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let (sequence, frame) = (parse_sequence(py, sequence)?, parse_frame(frame)?);
@@ -104,9 +104,9 @@ pub(crate) fn euler_rates<'py>(
     py: Python<'py>,
     angles: &Bound<'py, PyAny>,
     omega: &Bound<'py, PyAny>,
-    sequence: &str,
-    frame: &str,
-    singular: &str,
+    #[pyo3(from_py_with = read_scalar)] sequence: &str,
+    #[pyo3(from_py_with = read_scalar)] frame: &str,
+    #[pyo3(from_py_with = read_scalar)] singular: &str,
     degrees: bool,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let raises = raises_where_singular(singular)?;

@@ -17,6 +17,7 @@ use polhode::parallel::Halt;
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 
+use crate::arrays::read_scalar;
 use crate::body::PyRigidBody;
 use crate::depth::Deeper;
 use crate::errors::{to_py, with_prefix};
@@ -57,7 +58,7 @@ pub(crate) fn read_stl(py: Python<'_>, path: PathBuf) -> PyResult<Arrays<'_>> {
 pub(crate) fn stream_solid(
     py: Python<'_>,
     path: PathBuf,
-    scale: f64,
+    #[pyo3(from_py_with = read_scalar)] scale: f64,
     density: Option<Weight>,
     mass: Option<Weight>,
     orient: bool,
@@ -128,7 +129,7 @@ fn stream_error(py: Python<'_>, path: &Path, error: StreamError) -> PyErr {
 pub(crate) fn read_plates(
     py: Python<'_>,
     path: PathBuf,
-    index_base: usize,
+    #[pyo3(from_py_with = read_scalar)] index_base: usize,
 ) -> PyResult<Arrays<'_>> {
     if index_base > 1 {
         return Err(PyValueError::new_err(format!(

@@ -8,7 +8,7 @@ use polhode::uncertainty::FromPositiveProducts;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::{Argument, read, try_rows, write, write_of};
+use crate::arrays::{Argument, read, read_scalar, try_rows, write, write_of};
 use crate::body::PyRigidBody;
 use crate::stack::{Broadcast, Stack};
 use crate::uncertain::{Quantity, carried, of_numbers, quantity, quantity_or};
@@ -53,7 +53,7 @@ impl PyRigidBody {
         moments: &Bound<'_, PyAny>,
         products: &Bound<'_, PyAny>,
         center_of_mass: Argument<'_>,
-        rtol: Option<f64>,
+        #[pyo3(from_py_with = read_scalar)] rtol: Option<f64>,
     ) -> PyResult<Self> {
         let mass: Quantity<f64> = quantity(mass, "mass")?;
         let moments: Quantity<[f64; 3]> = quantity(moments, "moments")?;
@@ -166,7 +166,7 @@ pub(crate) fn to_pseudo_inertia<'py>(py: Python<'py>, body: &PyRigidBody) -> Arr
 #[pyo3(signature = (pseudo_inertia, *, rtol=None))]
 pub(crate) fn from_pseudo_inertia(
     pseudo_inertia: &Bound<'_, PyAny>,
-    rtol: Option<f64>,
+    #[pyo3(from_py_with = read_scalar)] rtol: Option<f64>,
 ) -> PyResult<PyRigidBody> {
     let rows: Stack<Matrix4<f64>> = read(pseudo_inertia, "pseudo_inertia")?;
     let body = |row: &Matrix4<f64>| RigidBody::from_pseudo_inertia(row, rtol.unwrap_or(0.0));
@@ -196,7 +196,7 @@ pub(crate) fn from_pseudo_inertia(
 pub(crate) fn to_spatial_inertia<'py>(
     py: Python<'py>,
     body: &PyRigidBody,
-    order: &str,
+    #[pyo3(from_py_with = read_scalar)] order: &str,
 ) -> Array<'py> {
     let order = spatial_order(order)?;
     write_of(py, &body.bodies, |body| body.spatial_inertia(order))
@@ -227,8 +227,8 @@ pub(crate) fn to_spatial_inertia<'py>(
 #[pyo3(signature = (spatial_inertia, order="angular-linear", *, rtol=None))]
 pub(crate) fn from_spatial_inertia(
     spatial_inertia: &Bound<'_, PyAny>,
-    order: &str,
-    rtol: Option<f64>,
+    #[pyo3(from_py_with = read_scalar)] order: &str,
+    #[pyo3(from_py_with = read_scalar)] rtol: Option<f64>,
 ) -> PyResult<PyRigidBody> {
     let order = spatial_order(order)?;
     let rows: Stack<Matrix6<f64>> = read(spatial_inertia, "spatial_inertia")?;
@@ -281,7 +281,7 @@ pub(crate) fn to_parameters<'py>(py: Python<'py>, body: &PyRigidBody) -> Array<'
 #[pyo3(signature = (parameters, *, rtol=None))]
 pub(crate) fn from_parameters(
     parameters: &Bound<'_, PyAny>,
-    rtol: Option<f64>,
+    #[pyo3(from_py_with = read_scalar)] rtol: Option<f64>,
 ) -> PyResult<PyRigidBody> {
     let rows: Stack<[f64; 10]> = read(parameters, "parameters")?;
     let body = |row: &[f64; 10]| RigidBody::from_parameters(row, rtol.unwrap_or(0.0));

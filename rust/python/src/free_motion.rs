@@ -54,6 +54,8 @@ pub(crate) struct PyFreeMotion {
     body: Py<PyRigidBody>,
     pub(crate) motions: Stack<FreeMotion>,
     uncertain: UncertainStart,
+    /// The periods that it was made from, where those or the body are uncertain: for each source the motion is found anew.
+    from_periods: Option<Py<PyAny>>,
 }
 
 impl PyFreeMotion {
@@ -83,6 +85,7 @@ impl PyFreeMotion {
             body,
             motions,
             uncertain,
+            from_periods: None,
         })
     }
 
@@ -150,6 +153,11 @@ impl PyRigidBody {
 
 #[pymethods]
 impl PyFreeMotion {
+    /// Asked where there is no such attribute.
+    fn __getattr__(slf: &Bound<'_, Self>, name: &str) -> PyResult<Py<PyAny>> {
+        Err(crate::hints::no_attribute(slf.as_any(), name))
+    }
+
     /// Angular velocity of the body relative to space at t = 0, components in the body frame, in radians per unit
     /// of time, shape (..., 3).
     #[getter]
@@ -169,6 +177,12 @@ impl PyFreeMotion {
     #[getter]
     fn uncertain_start<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         self.uncertain.to_python(py)
+    }
+
+    /// The periods of an uncertain motion that was made from them, else None.
+    #[getter]
+    fn _from_periods(&self, py: Python<'_>) -> Option<Py<PyAny>> {
+        self.from_periods.as_ref().map(|given| given.clone_ref(py))
     }
 
     /// Shape of the stack of motions, as a tuple of int; ``()`` for one motion.
@@ -239,25 +253,32 @@ impl PyFreeMotion {
         let body = self.body.bind(py).clone().into_any();
         let uncertain = self.uncertain_start(py)?.into_any();
         let [omega, quaternion] = [self.omega(py)?, self.quaternion(py)?].map(in_slabs);
-        let parts = [body, omega?, quaternion?, uncertain];
+        let given = self._from_periods(py).into_pyobject(py)?.into_any();
+        let parts = [body, omega?, quaternion?, uncertain, given];
         Ok((restore, PyTuple::new(py, parts)?))
     }
 
     /// The motions that `__reduce__` took apart; for pickle.
     #[staticmethod]
+    #[pyo3(signature = (body, omega, quaternion, uncertain_start, from_periods=None))]
     fn _from_start(
         py: Python<'_>,
         body: Py<PyRigidBody>,
         omega: &Bound<'_, PyAny>,
         quaternion: &Bound<'_, PyAny>,
         uncertain_start: (Option<Py<PyUncertain>>, Option<Py<PyUncertain>>),
+        from_periods: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
         let quaternion: Stack<[f64; 4]> = read(quaternion, "quaternion")?;
         let attitude = quaternion.map(py, |&[x, y, z, w]| {
             UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)) // to the last bit
         })?;
         let uncertain = UncertainStart::restored(uncertain_start);
-        Self::new(py, body, &read(omega, "omega")?, &attitude, uncertain)
+        let motion = Self::new(py, body, &read(omega, "omega")?, &attitude, uncertain)?;
+        Ok(Self {
+            from_periods,
+            ..motion
+        })
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {

@@ -4,27 +4,6 @@ use pyo3::exceptions::{PyAttributeError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
-/// Names under which people look for an argument, by the argument.
-const OTHER_NAMES: [(&str, &[&str]); 7] = [
-    (
-        "center_of_mass",
-        &[
-            "center",
-            "centre",
-            "centre_of_mass",
-            "com",
-            "cog",
-            "center_of_gravity",
-        ],
-    ),
-    ("mass", &["m"]),
-    ("inertia", &["I", "tensor", "inertia_tensor"]),
-    ("moments", &["inertia", "principal_moments"]),
-    ("omega", &["w", "angular_velocity", "rate", "rates"]),
-    ("attitude", &["q", "quaternion", "orientation", "rotation"]),
-    ("load", &["loads", "torque", "force"]),
-];
-
 /// What to write instead of an array of this shape; "" where nothing is known.
 pub(crate) fn for_shape(name: &str, shape: &[usize]) -> &'static str {
     match (name, shape) {
@@ -39,11 +18,17 @@ pub(crate) fn for_shape(name: &str, shape: &[usize]) -> &'static str {
 }
 
 /// What to write instead of something that is not numbers, by the kind of its dtype.
-pub(crate) fn for_kind(kind: &str) -> &'static str {
-    if kind == "U" {
-        "; convert units first: numpy.deg2rad(30) is 30 deg/s in rad/s"
-    } else {
-        ""
+pub(crate) fn for_kind(name: &str, kind: &str) -> &'static str {
+    match (name, kind) {
+        ("axis" | "normal" | "direction", "U") => "; the axis z is (0, 0, 1)",
+        ("point" | "displacement" | "position", "U") => {
+            "; a point is three numbers, body.center_of_mass for example"
+        }
+        ("rotation" | "attitude", "U") => {
+            "; euler_angles.to_quaternion((phi, theta, psi)) makes a rotation of angles"
+        }
+        (_, "U") => "; convert units first: numpy.deg2rad(30) is 30 deg/s in rad/s",
+        _ => "",
     }
 }
 
@@ -69,21 +54,21 @@ pub(crate) fn no_gravity() -> PyErr {
     )
 }
 
-/// An attribute that a body does not have, with what people look for under its name.
-pub(crate) fn no_attribute(name: &str) -> PyErr {
-    let way_out = match name {
-        "energy" => "; kinetic_energy(omega) gives it, and its .total the sum",
-        "com" | "center" | "centre_of_mass" | "centroid" => "; center_of_mass is it",
-        "moments" => "; principal_moments are they",
-        "axes" | "principal_axes" => "; principal.axes are they",
-        "moment_of_inertia" | "inertia_tensor" | "tensor" | "I" => {
-            "; inertia is the tensor about the centre of mass, inertia_about(point) that about another"
+/// An attribute that an object does not have, with what people look for under its name.
+pub(crate) fn no_attribute(object: &Bound<'_, PyAny>, name: &str) -> PyErr {
+    let kind = object.get_type();
+    let refused = |name: &str| -> PyResult<PyErr> {
+        let words = kind.name()?;
+        if name.starts_with('_') {
+            return Ok(PyAttributeError::new_err(format!(
+                "'{words}' object has no attribute '{name}'"
+            )));
         }
-        _ => "",
+        let hints = object.py().import("polhode._hints")?;
+        let error = hints.call_method1("no_attribute", (words, name, kind.dir()?))?;
+        Ok(PyErr::from_value(error))
     };
-    PyAttributeError::new_err(format!(
-        "'RigidBody' object has no attribute '{name}'{way_out}"
-    ))
+    refused(name).unwrap_or_else(|error| error)
 }
 
 /// Refuse keyword arguments that `function` does not have, with the one that was meant.
@@ -92,42 +77,10 @@ pub(crate) fn refuse_unknown(
     known: &[&str],
     unknown: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<()> {
-    let Some(given) = unknown.and_then(|unknown| unknown.keys().iter().next()) else {
+    let Some((given, _)) = unknown.and_then(|unknown| unknown.iter().next()) else {
         return Ok(());
     };
-    let given: String = given.extract()?;
-    let meant = OTHER_NAMES
-        .iter()
-        .find(|(name, others)| known.contains(name) && others.contains(&given.as_str()))
-        .map(|(name, _)| (*name).to_owned());
-    let meant = match meant {
-        Some(name) => Some(name),
-        None => nearest(unknown, &given, known)?,
-    };
-    let way_out = match meant {
-        _ if given == "gravity" => {
-            "; it is a load: load=loads.uniform_gravity((0, 0, -9.81))".to_owned()
-        }
-        Some(name) => format!("; did you mean {name}=?"),
-        None => format!("; it takes {}", known.join(", ")),
-    };
-    Err(PyTypeError::new_err(format!(
-        "{function}() got an unexpected keyword argument '{given}'{way_out}"
-    )))
-}
-
-/// The known name that is spelt most nearly so.
-fn nearest(
-    any: Option<&Bound<'_, PyDict>>,
-    given: &str,
-    known: &[&str],
-) -> PyResult<Option<String>> {
-    let Some(py) = any.map(Bound::py) else {
-        return Ok(None);
-    };
-    let found: Vec<String> = py
-        .import("difflib")?
-        .call_method1("get_close_matches", (given, known.to_vec(), 1))?
-        .extract()?;
-    Ok(found.into_iter().next())
+    let hints = given.py().import("polhode._hints")?;
+    let error = hints.call_method1("no_keyword", (function, given, known.to_vec()))?;
+    Err(PyErr::from_value(error))
 }

@@ -1,11 +1,12 @@
 //! NumPy's indexing over a stack.
 
 use numpy::PyReadonlyArrayDyn;
-use pyo3::exceptions::PyMemoryError;
+use pyo3::exceptions::{PyIndexError, PyMemoryError, PyOverflowError};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use crate::arrays::{contiguous, numpy};
+use crate::shape::tuple;
 
 /// The rows of a stack that a key picks, as NumPy itself tells.
 pub(crate) fn picked_by<'py>(
@@ -19,6 +20,11 @@ pub(crate) fn picked_by<'py>(
     picked_rows(&rows.get_item(key).map_err(|error| {
         if error.is_instance_of::<PyMemoryError>(py) {
             PyMemoryError::new_err(format!("key: {}", error.value(py)))
+        } else if error.is_instance_of::<PyOverflowError>(py) {
+            PyIndexError::new_err(format!(
+                "key: a number beyond any index, in a stack of shape {}",
+                tuple(shape)
+            ))
         } else {
             error
         }

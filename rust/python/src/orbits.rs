@@ -136,8 +136,10 @@ pub(crate) fn kepler_states<'py>(
     let orbits = through(py, mu, position, velocity)?;
     let elapsed: Stack<f64> = read(elapsed, "t")?;
     let shapes = [&orbits.shape[..], &elapsed.shape];
-    let found = Broadcast::of(["orbit", "t"], shapes)?
-        .try_map(py, |[o, t]| Ok(orbits[o].at(elapsed[t])))?;
+    let found = Broadcast::of(["orbit", "t"], shapes)?.try_map(py, |[o, t]| {
+        orbits[o].check(elapsed[t])?;
+        Ok(orbits[o].at(elapsed[t]))
+    })?;
     Ok((
         write_of(py, &found, |state| state.0)?,
         write_of(py, &found, |state| state.1)?,

@@ -13,7 +13,9 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
 
-use crate::arrays::{Item, floats, numpy, read, write, write_numbers_of, write_of, write_words_of};
+use crate::arrays::{
+    Item, floats, numpy, read, read_scalar, write, write_numbers_of, write_of, write_words_of,
+};
 use crate::errors::{at_row, to_py, wrong_shape};
 use crate::interrupt::Interrupt;
 use crate::memory;
@@ -30,15 +32,16 @@ type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
 ///     the smallest to the largest floats. A tensor with an element that is not finite gives NaN in
 ///     its own row only.
 /// canonical : bool, optional
-///     Whether to choose those axes that equal moments (to 1e-6 of the largest) leave free by the directions
-///     of the body axes, as :meth:`polhode.PrincipalAxes.canonical` does.
+///     Whether moments that differ by 1e-6 of the largest or less count as equal where axes are chosen, as
+///     :meth:`polhode.PrincipalAxes.canonical` does.
 ///
 /// Returns
 /// -------
 /// PrincipalAxes
 ///     ``moments`` (..., 3), ascending, and ``axes`` (..., 3, 3), whose columns are the axes: right-handed,
 ///     ``inertia = axes @ diag(moments) @ axes.T``. The signs: in columns 0 and 1 the component of largest
-///     size is positive (the first such, if several are equal to 1e-8).
+///     size is positive (the first such, if several are equal to 1e-8). Where moments are equal, to rounding,
+///     the axes nearest to the body axes.
 ///
 /// Raises
 /// ------
@@ -225,7 +228,7 @@ pub(crate) fn canonical_axes<'py>(
     py: Python<'py>,
     moments: &Bound<'py, PyAny>,
     axes: &Bound<'py, PyAny>,
-    rtol: f64,
+    #[pyo3(from_py_with = read_scalar)] rtol: f64,
 ) -> Array<'py> {
     check_rtol(rtol)?;
     let (moments, axes) = (read::<[f64; 3]>(moments, "moments")?, read(axes, "axes")?);
@@ -254,7 +257,7 @@ pub(crate) fn principal_derivative<'py>(
     moments: &Bound<'py, PyAny>,
     axes: &Bound<'py, PyAny>,
     tangent: &Bound<'py, PyAny>,
-    rtol: f64,
+    #[pyo3(from_py_with = read_scalar)] rtol: f64,
 ) -> PyResult<Derivative<'py>> {
     check_rtol(rtol)?;
     let (moments, axes) = (read::<[f64; 3]>(moments, "moments")?, read(axes, "axes")?);

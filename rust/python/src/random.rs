@@ -8,7 +8,7 @@ use polhode::random::laws::{normal, uniform};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::floats;
+use crate::arrays::{floats, read_scalar};
 use crate::errors::to_py;
 use crate::interrupt::Interrupt;
 use crate::memory;
@@ -43,12 +43,12 @@ enum Law {
 #[pyfunction]
 pub(crate) fn random_numbers<'py>(
     py: Python<'py>,
-    law: &str,
-    seed: u64,
-    stream: u64,
-    first: u64,
-    count: usize,
-    width: usize,
+    #[pyo3(from_py_with = read_scalar)] law: &str,
+    #[pyo3(from_py_with = read_scalar)] seed: u64,
+    #[pyo3(from_py_with = read_scalar)] stream: u64,
+    #[pyo3(from_py_with = read_scalar)] first: u64,
+    #[pyo3(from_py_with = read_scalar)] count: usize,
+    #[pyo3(from_py_with = read_scalar)] width: usize,
 ) -> PyResult<Bound<'py, PyAny>> {
     let law = match law {
         "bits" => Law::Bits,

@@ -6,7 +6,7 @@ use polhode::mass::regions::Region;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::{Argument, Item, read, read_or};
+use crate::arrays::{Argument, Item, read, read_or, read_scalar};
 use crate::errors::to_py;
 use crate::interrupt::watched;
 use crate::meshes::{read_mesh, with_mesh};
@@ -85,9 +85,9 @@ pub(crate) fn cuboid(low: &Bound<'_, PyAny>, high: &Bound<'_, PyAny>) -> PyResul
 )]
 pub(crate) fn ball(
     py: Python<'_>,
-    radius: f64,
+    #[pyo3(from_py_with = read_scalar)] radius: f64,
     center: Argument<'_>,
-    inner_radius: f64,
+    #[pyo3(from_py_with = read_scalar)] inner_radius: f64,
 ) -> PyResult<PyRegion> {
     let center: [f64; 3] = single(read_or(&center, "center", [0.0; 3])?, "center")?;
     made(
@@ -161,10 +161,10 @@ pub(crate) fn ellipsoid(semi_axes: &Bound<'_, PyAny>, center: Argument<'_>) -> P
 )]
 pub(crate) fn cylinder(
     py: Python<'_>,
-    radius: f64,
-    height: f64,
+    #[pyo3(from_py_with = read_scalar)] radius: f64,
+    #[pyo3(from_py_with = read_scalar)] height: f64,
     center: Argument<'_>,
-    inner_radius: f64,
+    #[pyo3(from_py_with = read_scalar)] inner_radius: f64,
 ) -> PyResult<PyRegion> {
     let center: [f64; 3] = single(read_or(&center, "center", [0.0; 3])?, "center")?;
     made(

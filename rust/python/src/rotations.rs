@@ -9,7 +9,7 @@ use polhode::motion::euler_angles::Sequence;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::{read, try_rows, write, write_of};
+use crate::arrays::{read, read_scalar, try_rows, write, write_of};
 use crate::attitudes::read_quaternion;
 use crate::errors::to_py;
 use crate::stack::{Broadcast, Stack};
@@ -84,7 +84,7 @@ pub(crate) fn raises_where_singular(word: &str) -> PyResult<bool> {
 pub(crate) fn quaternion_from_euler_angles<'py>(
     py: Python<'py>,
     angles: &Bound<'py, PyAny>,
-    sequence: &str,
+    #[pyo3(from_py_with = read_scalar)] sequence: &str,
     degrees: bool,
 ) -> Array<'py> {
     let sequence = parse_sequence(py, sequence)?;
@@ -133,8 +133,8 @@ pub(crate) fn quaternion_from_euler_angles<'py>(
 pub(crate) fn euler_angles_from_quaternion<'py>(
     py: Python<'py>,
     quaternion: &Bound<'py, PyAny>,
-    sequence: &str,
-    singular: &str,
+    #[pyo3(from_py_with = read_scalar)] sequence: &str,
+    #[pyo3(from_py_with = read_scalar)] singular: &str,
     degrees: bool,
 ) -> Array<'py> {
     let raises = raises_where_singular(singular)?;

@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use crate::about::is_pivot;
-use crate::arrays::{Numbers, read};
+use crate::arrays::{Numbers, read, read_scalar};
 use crate::attitudes::read_attitude;
 use crate::body::PyRigidBody;
 use crate::errors::{at_row, new, to_py};
@@ -37,7 +37,7 @@ pub(crate) fn motion_sensitivity<'py>(
     omega: &Bound<'py, PyAny>,
     quaternion: &Bound<'py, PyAny>,
     load: Option<&Bound<'py, PyLoad>>,
-    about: &str,
+    #[pyo3(from_py_with = read_scalar)] about: &str,
     states: Option<&Bound<'py, PyAny>>,
     given: Vec<String>,
 ) -> PyResult<Bound<'py, PyAny>> {

@@ -10,7 +10,9 @@ use polhode::principal::{SymmetricTop, TOP_RTOL};
 use pyo3::prelude::*;
 
 use crate::about::points;
-use crate::arrays::{Argument, read, read_or, write, write_numbers, write_numbers_of, write_of};
+use crate::arrays::{
+    Argument, read, read_or, read_scalar, write, write_numbers, write_numbers_of, write_of,
+};
 use crate::body::PyRigidBody;
 use crate::stack::{Broadcast, Stack};
 
@@ -59,7 +61,7 @@ pub(crate) fn free_precession<'py>(
     body: &Bound<'py, PyRigidBody>,
     omega: &Bound<'py, PyAny>,
     about: Argument<'py>,
-    rtol: f64,
+    #[pyo3(from_py_with = read_scalar)] rtol: f64,
 ) -> PyResult<Bound<'py, PyAny>> {
     let bodies = &body.get().bodies;
     let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
@@ -131,7 +133,7 @@ pub(crate) fn nutation_damping<'py>(
     momentum: &Bound<'py, PyAny>,
     inertia: &Bound<'py, PyAny>,
     damping: &Bound<'py, PyAny>,
-    rtol: f64,
+    #[pyo3(from_py_with = read_scalar)] rtol: f64,
 ) -> PyResult<Bound<'py, PyAny>> {
     let bodies = &body.get().bodies;
     let momentum: Stack<f64> = read(momentum, "momentum")?;
@@ -204,7 +206,7 @@ pub(crate) fn least_spin<'py>(
     body: &Bound<'py, PyRigidBody>,
     gravity: &Bound<'py, PyAny>,
     inclination: Argument<'py>,
-    rtol: f64,
+    #[pyo3(from_py_with = read_scalar)] rtol: f64,
     degrees: bool,
 ) -> PyResult<Bound<'py, PyAny>> {
     let bodies = &body.get().bodies;
@@ -264,7 +266,7 @@ pub(crate) fn steady_precession<'py>(
     spin: &Bound<'py, PyAny>,
     inclination: &Bound<'py, PyAny>,
     gravity: &Bound<'py, PyAny>,
-    rtol: f64,
+    #[pyo3(from_py_with = read_scalar)] rtol: f64,
     degrees: bool,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let bodies = &body.get().bodies;

@@ -138,6 +138,11 @@ export class FreeBody {
     return { omega, attitude: times(this.outer, this.turned(w, phi)) };
   }
 
+  /** Whether the intermediate axis turns over: it is nearest to L, now along it and then against it, within 45° both times. */
+  get turnsOver() {
+    return !this.isSteady && this.B * this.Y > Math.SQRT1_2 * this.L;
+  }
+
   /** From a time to the next at which the body turns over: ω passes through zero along the intermediate axis. */
   nextFlip(t) {
     if (this.isSteady) return Infinity;

@@ -83,7 +83,7 @@ function readouts(now) {
   const rows = energyRows(energy, motion.body ? null : frames.nearest(now.t), kinetic);
   rows.push(["|L|", length(state.momentum).toPrecision(6)], ["|\u03c9|", `${length(state.omega).toPrecision(5)} rad/${given.time_unit}`]);
   if (motion.body && span >= 0 && areThree(motion.moments)) { // else there is no intermediate axis
-    const flip = motion.body.nextFlip(state.since);
+    const flip = motion.body.turnsOver ? motion.body.nextFlip(state.since) : Infinity;
     rows.push(["next flip", Number.isFinite(flip) ? `in ${flip.toPrecision(4)} ${given.time_unit}` : "never"]);
   }
   for (const wheel of motion.wheels) rows.push([wheel.name, wheel.words(now.t, given.time_unit, speed)]);

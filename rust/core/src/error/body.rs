@@ -110,6 +110,8 @@ pub enum BodyFault {
         moments: [f64; 3],
         /// Whether the tensor was given about the origin of the body frame and moved to the centre of mass.
         is_from_origin: bool,
+        /// Whether a body has the tensor as it was given, taken about the centre of mass.
+        is_possible_as_given: bool,
     },
     /// The two smaller principal moments sum to less than the largest.
     #[error(
@@ -124,6 +126,8 @@ pub enum BodyFault {
         deficit: f64,
         /// The deficit over the sum of the moments.
         relative: f64,
+        /// Whether the tensor was given as numbers; else it is that of matter, or of a body that was admitted with a tolerance.
+        is_given: bool,
     },
     /// A 6×6 matrix that no mass, first moments and tensor make up.
     #[error(

@@ -243,6 +243,17 @@ pub enum MotionFault {
         /// The largest.
         reach: f64,
     },
+    /// A time so far from the epoch of an orbit that its state is not known any more.
+    #[error(
+        "a time {elapsed:?} from the epoch is beyond the reach of this orbit, {reach:.3e}: the phase on an ellipse is known to 2^-90 of \
+         the revolutions made, near a parabola to less, and squares of distances must be float64; ask for times within, or give the state of the orbit at a later epoch"
+    )]
+    OrbitBeyondReach {
+        /// The time from the epoch.
+        elapsed: f64,
+        /// The largest.
+        reach: f64,
+    },
     /// The step of an integration fell below what the clock can tell apart.
     #[error(
         "the integration cannot go on at t = {time:?}: its step would have to be {step:.2e}, too small to advance the \
@@ -268,6 +279,26 @@ pub enum MotionFault {
         ahead: f64,
         /// The limit.
         most: f64,
+    },
+    /// A function whose passages through zero are looked for, and that changes too fast for that.
+    #[error(
+        "{} changes too fast to find all its zeros: after {looks} evaluations in parts of the run that were halved it is not \
+         followed in one of length {length:.1e} near t = {time:?}; ask for a shorter time and go on from its end, or, if the \
+         function is rounding errors about zero there, look for a level above them",
+        match event {
+            Some(number) => format!("events: event {number}"),
+            None => "a switch of the load".to_owned(),
+        }
+    )]
+    UnresolvedFunction {
+        /// Its number among the events, or a switch of the load.
+        event: Option<usize>,
+        /// Where it has not been followed.
+        time: f64,
+        /// The length of the part there.
+        length: f64,
+        /// How often it was evaluated in parts that were halved.
+        looks: u64,
     },
     /// The equations of motion gave a number that is not finite.
     #[error(
@@ -299,6 +330,7 @@ impl MotionFault {
             Self::GimbalLock { .. } | Self::SingularEulerRates { .. } => Kind::SingularAttitude,
             Self::StepTooSmall { .. }
             | Self::TooManySteps { .. }
+            | Self::UnresolvedFunction { .. }
             | Self::NotFiniteMotion { .. }
             | Self::NotFiniteDerivative { .. } => Kind::Integration,
             Self::EulerSequence { .. }
@@ -316,6 +348,7 @@ impl MotionFault {
             | Self::PivotedInOrbit
             | Self::OutsideTimes { .. }
             | Self::StatesStay { .. }
+            | Self::OrbitBeyondReach { .. }
             | Self::BeyondReach { .. } => Kind::Argument,
         }
     }

@@ -3,15 +3,15 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::body::RigidBody;
-use super::error_bound::{ErrorBound, UNIT};
+use super::error_bound::{ErrorBound, UNIT, faint};
 use super::parallel_axis::point_inertia;
 use super::provenance::Provenance;
 use super::validity::{ROUNDING, check_mass, trace};
 use crate::error::{BodyFault, Error, all_finite_of_body};
 use crate::numerics::eigen3::eigen3;
-use crate::numerics::power_of_two::{length, root_of_ratio};
+use crate::numerics::power_of_two::length;
 use crate::numerics::reduce::{depth, sum_terms};
-use crate::principal::{PrincipalAxes, principal_axes, with_sign_rule};
+use crate::principal::{PrincipalAxes, canonical_to_rounding, principal_axes, with_sign_rule};
 
 /// The bodies as one rigid body.
 ///
@@ -143,6 +143,8 @@ struct Assembly<'a, F: Fn(usize) -> (f64, &'a RigidBody)> {
     part: F,
     mass: f64,
     center: Vector3<f64>,
+    /// From the centre as stored to the centre meant: what rounding has left.
+    rest: Vector3<f64>,
     inertia: Matrix3<f64>,
     /// The traces of all terms of the tensor, each counted as positive.
     spread: f64,
@@ -167,7 +169,6 @@ impl<'a, F: Fn(usize) -> (f64, &'a RigidBody)> Assembly<'a, F> {
             Vector3::new(x, y, z)
         };
         let center = reference + offset(&reference);
-        // What rounding has left between the centre as stored and the centre meant.
         let rest = offset(&center);
         let [xx, xy, xz, yy, yz, zz, spread] = sum_terms(count, |i| {
             let (sign, body) = part(i);
@@ -182,6 +183,7 @@ impl<'a, F: Fn(usize) -> (f64, &'a RigidBody)> Assembly<'a, F> {
             part,
             mass,
             center,
+            rest,
             inertia: inertia - point_inertia(mass, &rest),
             spread,
         }
@@ -220,10 +222,10 @@ impl<'a, F: Fn(usize) -> (f64, &'a RigidBody)> Assembly<'a, F> {
         let [s1, s2, s3] = s.values;
         let column = |k: usize| first.axes * s.vectors.column(k);
         let (u, v) = (column(2), column(1));
-        PrincipalAxes {
+        canonical_to_rounding(&PrincipalAxes {
             moments: [s1 + s2, s1 + s3, s2 + s3],
             axes: with_sign_rule(Matrix3::from_columns(&[u, v, u.cross(&v)])),
-        }
+        })
     }
 
     fn body(&self, principal: PrincipalAxes) -> RigidBody {
@@ -244,27 +246,49 @@ impl<'a, F: Fn(usize) -> (f64, &'a RigidBody)> Assembly<'a, F> {
     }
 
     /// What the parts' own errors and the rounding of these sums can have done.
+    ///
+    /// With d from the stored centre Q, the centre of the parts as they are stored is at `rest`, and the exact one, which the
+    /// exact tensor is about, at most `off` from there. A part's tensor about Q changes by `m (2 |d| δ + δ²)` where its centre
+    /// is off by δ, and the tensor about the centre by `M (2 |rest| off + off²)`. Far from the origin, or where masses cancel,
+    /// the squares are all there is.
     fn error_bound(&self) -> ErrorBound {
-        let [mass, masses, lever, centers, inertia] = sum_terms(self.count, |i| {
+        let [mass, masses, lever, levers, centers, inertia] = sum_terms(self.count, |i| {
             let body = (self.part)(i).1;
             let own = body.error_bound;
             let length = length(&(body.center_of_mass - self.center));
+            let shift = (body.mass + own.mass) * own.center_of_mass;
             [
                 own.mass,
                 body.mass,
                 own.mass * length,
-                body.mass * own.center_of_mass,
-                own.inertia + length * (own.mass * length + 4.0 * body.mass * own.center_of_mass),
+                body.mass * length,
+                shift,
+                own.inertia
+                    + length * (own.mass * length + 3.0 * shift)
+                    + 2.0 * shift * own.center_of_mass,
             ]
         });
         let relative = 2.0 * UNIT * (depth(self.count) + 8.0);
-        let width = root_of_ratio(self.spread, self.mass);
+        let mass = mass + relative * masses;
+        let rest = length(&self.rest);
+        // What is left of masses that cancel may be none.
+        let least = (self.mass - mass).max(0.0);
+        let off = |centers: f64| (lever + centers + relative * levers + mass * rest) / least;
+        let moved = off(3.0_f64.sqrt() * centers);
+        let about_center = mass * rest * rest
+            + (self.mass + mass) * moved * (2.0 * rest + moved)
+            + 8.0 * UNIT * self.mass * rest * rest;
+        let faint = if levers > 0.0 {
+            faint(self.spread)
+        } else {
+            0.0
+        };
         ErrorBound {
-            mass: mass + relative * masses,
-            center_of_mass: (lever + centers) / self.mass + relative * (masses / self.mass) * width,
-            inertia: inertia + 2.0 * relative * self.spread,
+            mass,
+            center_of_mass: off(centers) + self.rest.amax(),
+            inertia: inertia + about_center + 2.0 * relative * self.spread + faint,
         }
-        .rounded(&self.center, self.spread)
+        .rounded(&Vector3::zeros(), self.spread)
     }
 }
 

@@ -3,13 +3,13 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::body::RigidBody;
-use super::error_bound::{ErrorBound, UNIT};
-use super::provenance::Provenance;
-use super::units::{QUANTUM, Units};
+use super::error_bound::{ErrorBound, UNIT, faint};
+use super::provenance::{MomentsFrom, Provenance};
+use super::units::Units;
 use super::validity::{check_mass, check_rotation, mean_of_halves, trace};
 use crate::error::{Error, all_finite, all_finite_of_body, finite};
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
-use crate::principal::{PrincipalAxes, with_sign_rule};
+use crate::principal::{PrincipalAxes, canonical, canonical_to_rounding, with_sign_rule};
 
 impl RigidBody {
     /// The body moved by `d`.
@@ -63,19 +63,25 @@ impl RigidBody {
         let center_of_mass = rotation * self.center_of_mass;
         all_finite_of_body("center_of_mass", &center_of_mass)?;
         all_finite_of_body("inertia", &inertia)?;
-        // Each element of a turned vector takes up three others, of a turned tensor nine, by factors of one at most.
+        // The factors by which an element of a turned vector takes up three others are a row of R, whose sizes add up to √3 at
+        // most; those of a turned tensor are products of two rows.
         let turned = ErrorBound {
             mass: self.error_bound.mass,
-            center_of_mass: 3.0 * self.error_bound.center_of_mass,
-            inertia: 9.0 * self.error_bound.inertia,
+            center_of_mass: 1.75 * self.error_bound.center_of_mass,
+            inertia: 3.01 * self.error_bound.inertia,
+        };
+        let principal = PrincipalAxes {
+            moments: self.principal.moments,
+            axes: with_sign_rule(rotation * self.principal.axes),
         };
         Ok(Self {
             mass: self.mass,
             center_of_mass,
             inertia,
-            principal: PrincipalAxes {
-                moments: self.principal.moments,
-                axes: with_sign_rule(rotation * self.principal.axes),
+            principal: if self.provenance.moments == MomentsFrom::Given {
+                canonical(&principal, 0.0)
+            } else {
+                canonical_to_rounding(&principal)
             },
             error_bound: turned.rounded(&center_of_mass, trace(&inertia)),
             provenance: self.provenance,
@@ -118,12 +124,8 @@ impl RigidBody {
             times_power_of_two(mass, -units.mass),
         );
         let scale = |x: f64| x * mass * length * length;
-        // Below the normal numbers moments have few digits: what they lack is seen when they are larger.
-        let faint = if trace(&self.inertia) < f64::MIN_POSITIVE / f64::EPSILON {
-            16.0 * QUANTUM
-        } else {
-            0.0
-        };
+        // What moments below the normal numbers lack is seen when they are larger.
+        let faint = faint(trace(&self.inertia));
         let scaled = units.told(&Self {
             mass: self.mass * mass,
             center_of_mass: self.center_of_mass * length,

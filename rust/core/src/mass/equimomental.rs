@@ -94,6 +94,7 @@ fn spreads(moments: &[f64; 3]) -> Result<([f64; 3], &'static [[f64; 3]]), Error>
             moments: *moments,
             deficit,
             relative: deficit / sum,
+            is_given: false,
         }
         .into());
     }

@@ -71,10 +71,23 @@ impl ErrorBound {
     #[inline]
     pub(crate) fn rounded(self, center_of_mass: &Vector3<f64>, trace: f64) -> Self {
         let bound = |x: f64| if x.is_nan() { f64::INFINITY } else { x };
+        let size = center_of_mass.amax();
+        let place = if size > 0.0 { faint(size) } else { 0.0 };
+        let moment = if trace > 0.0 { faint(trace) } else { 0.0 };
         Self {
             mass: bound(self.mass),
-            center_of_mass: bound(self.center_of_mass + 8.0 * UNIT * center_of_mass.amax()),
-            inertia: bound(self.inertia + 32.0 * UNIT * trace),
+            center_of_mass: bound(self.center_of_mass + 8.0 * UNIT * size + place),
+            inertia: bound(self.inertia + 32.0 * UNIT * trace + moment),
         }
+    }
+}
+
+/// What a few products that come to about this size can have lost below the normal numbers, which have fewer digits.
+#[inline]
+pub(super) fn faint(size: f64) -> f64 {
+    if size < f64::MIN_POSITIVE / f64::EPSILON {
+        16.0 * f64::from_bits(1)
+    } else {
+        0.0
     }
 }

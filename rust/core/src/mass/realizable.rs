@@ -9,11 +9,17 @@ use crate::error::{Error, all_finite};
 use crate::numerics::power_of_two::length;
 use crate::principal::principal_axes;
 
+/// How far inside the triangle inequality a tensor that is not diagonal has to be, beside its trace, for every program to
+/// find it possible: moments that are computed in float64 are off by some units of rounding of the largest.
+const EDGE: f64 = 4.0 * f64::EPSILON;
+
 /// The tensor of a body that is nearest to this one, and how far it is, both in the Frobenius norm.
 ///
 /// The nearest tensor has the same principal axes; its moments are the nearest point of the cone `I₁ + I₂ ≥ I₃, …` to the
-/// moments of the one given. A tensor that [`RigidBody::new`] accepts comes back as it is, at distance zero; one with an
-/// element that is not finite gives NaN.
+/// moments of the one given. On the edge of the cone the rounding of its elements would decide whether the moments that a
+/// program computes from them obey the law. So the same small part of the trace, 8 ε, is added to all three moments there,
+/// which leaves the axes as they are. A tensor whose moments obey the law whoever computes them comes back as it is, at
+/// distance zero; one with an element that is not finite gives NaN.
 ///
 /// # Examples
 ///
@@ -37,15 +43,36 @@ pub fn nearest_valid(inertia: &Matrix3<f64>) -> Result<(Matrix3<f64>, f64), Erro
     }
     let inertia = mean_of_halves(inertia);
     let principal = principal_axes(&inertia);
-    let scale = principal.moments.iter().map(|x| x.abs()).sum::<f64>();
-    if check_moments(&principal.moments, ROUNDING * scale, ROUNDING, false).is_ok() {
-        return Ok((inertia, 0.0));
+    let moments = Vector3::from(principal.moments);
+    let scale = moments.abs().sum();
+    let is_rounding = check_moments(&principal.moments, ROUNDING * scale, ROUNDING, false).is_ok();
+    let (on_cone, change) = if is_rounding {
+        (inertia, Vector3::zeros())
+    } else {
+        let nearest = Vector3::from(nearest_moments(&principal.moments));
+        let axes = principal.axes;
+        let tensor = axes * Matrix3::from_diagonal(&nearest) * axes.transpose();
+        (mean_of_halves(&tensor), nearest - moments)
+    };
+    let nudge = nudge(&on_cone);
+    let tensor = on_cone + Matrix3::from_diagonal_element(nudge);
+    Ok((tensor, length(&change.add_scalar(nudge))))
+}
+
+/// What all three moments of this tensor lack to be inside the cone by twice [`EDGE`]; zero where they are by once that, or
+/// where the tensor is diagonal, so that its moments are what they are.
+fn nudge(inertia: &Matrix3<f64>) -> f64 {
+    let [i1, i2, i3] = principal_axes(inertia).moments;
+    let scale = i1.abs() + i2 + i3;
+    let is_diagonal = [(0, 1), (0, 2), (1, 2)]
+        .iter()
+        .all(|&at| inertia[at] == 0.0);
+    let inside = i1 - (i3 - i2);
+    if (is_diagonal && i1 + i2 >= i3) || inside >= EDGE * scale {
+        0.0
+    } else {
+        2.0 * EDGE * scale - inside
     }
-    let nearest = nearest_moments(&principal.moments);
-    let axes = principal.axes;
-    let tensor = axes * Matrix3::from_diagonal(&Vector3::from(nearest)) * axes.transpose();
-    let distance = Vector3::from(nearest) - Vector3::from(principal.moments);
-    Ok((mean_of_halves(&tensor), length(&distance)))
 }
 
 /// The nearest point of the cone of possible moments, whose edges are (0, 1, 1), (1, 0, 1) and (1, 1, 0), to ascending
@@ -183,6 +210,27 @@ mod tests {
         assert_eq!(nearest(-5.0, 1.0, 3.0).0, Vector3::new(0.0, 2.0, 2.0));
         assert_eq!(nearest(-3.0, -2.0, -1.0).0, Vector3::zeros());
         assert_eq!(nearest(1.0, 2.0, 3.0), (Vector3::new(1.0, 2.0, 3.0), 0.0));
+    }
+
+    #[test]
+    fn a_turned_tensor_on_the_edge_is_nudged_by_a_part_of_itself() {
+        let turn = nalgebra::Rotation3::from_euler_angles(0.3, -1.0, 2.0).into_inner();
+        for scale in [1e-300, 1e-47, 1.0, 1e37, 1e300] {
+            let with = |thickness: f64| {
+                let moments = Vector3::new(1.0 + thickness, 2.0 + thickness, 3.0) * scale;
+                mean_of_halves(&(turn * Matrix3::from_diagonal(&moments) * turn.transpose()))
+            };
+            // 2 EDGE tr(I) = 48 ε where 3 is the largest moment; half of it is enough, to rounding.
+            let (nudged, distance) = nearest_valid(&with(0.0)).expect("symmetric");
+            let part = distance / (scale * f64::EPSILON * 3.0_f64.sqrt());
+            assert!((30.0..66.0).contains(&part), "{part}");
+            let [i1, i2, i3] = principal_axes(&nudged).moments;
+            assert!(i1 + i2 - i3 > EDGE * (i1 + i2 + i3));
+            assert_eq!(nearest_valid(&nudged), Ok((nudged, 0.0)));
+            let is_nudged =
+                |thickness: f64| nearest_valid(&with(thickness)).expect("symmetric").1 > 0.0;
+            assert!(is_nudged(8.0 * f64::EPSILON) && !is_nudged(18.0 * f64::EPSILON));
+        }
     }
 
     #[test]

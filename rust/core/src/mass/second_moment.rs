@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::error_bound::ErrorBound;
 use crate::numerics::eigen3::Eigen3;
-use crate::principal::{PrincipalAxes, with_sign_rule};
+use crate::principal::{PrincipalAxes, canonical_to_rounding, with_sign_rule};
 
 /// Mass, centre of mass and second moment `S = ∫ (r − c)(r − c)ᵀ dm` about it.
 ///
@@ -120,10 +120,10 @@ impl SecondMoment {
         });
         let column = |k: usize| self.axes * s.vectors.column(k);
         let (u, v) = (column(2), column(1));
-        PrincipalAxes {
+        canonical_to_rounding(&PrincipalAxes {
             moments: [s1 + s2, s1 + s3, s2 + s3],
             axes: with_sign_rule(Matrix3::from_columns(&[u, v, u.cross(&v)])),
-        }
+        })
     }
 }
 

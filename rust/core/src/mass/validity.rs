@@ -71,6 +71,7 @@ pub(super) fn check_moments(
         return Err(BodyFault::NegativeMoment {
             moments: *moments,
             is_from_origin,
+            is_possible_as_given: false,
         }
         .into());
     }
@@ -82,6 +83,7 @@ pub(super) fn check_moments(
             moments: *moments,
             deficit,
             relative,
+            is_given: true,
         }
         .into());
     }

@@ -2,12 +2,14 @@
 //!
 //! The axes are the **columns** of V, components in the body frame: `v_B` = V `v_P`. V is a rotation. Since an axis has no
 //! direction of its own, a rule picks one: in columns 0 and 1 the first component that is as large as the largest, to
-//! 1e-8, is positive, and column 2 = column 0 × column 1.
+//! 1e-8, is positive, and column 2 = column 0 × column 1. Where moments are equal to rounding, of all axes that will do
+//! those nearest to the body frame are taken ([`canonical_to_rounding`]).
 
 use std::ops::ControlFlow;
 
 use nalgebra::Matrix3;
 
+use super::canonical::{canonical_to_rounding, may_be_free};
 use crate::numerics::eigen3::{self, Eigen3, eigen3, eigen3_many, eigenvalues3_many};
 use crate::numerics::threads::{Halt, fill_blocks};
 
@@ -56,10 +58,10 @@ pub struct PrincipalAxes {
 #[must_use]
 pub fn principal_axes(inertia: &Matrix3<f64>) -> PrincipalAxes {
     let Eigen3 { values, vectors } = eigen3(inertia);
-    PrincipalAxes {
+    canonical_to_rounding(&PrincipalAxes {
         moments: values,
         axes: vectors,
-    }
+    })
 }
 
 /// The principal moments and axes of a stack of tensors, on several threads when the stack is large; tensors and axes
@@ -113,6 +115,13 @@ pub fn principal_axes_many(
             let tensors = &tensors[start..start + moments.len()];
             all_symmetric(tensors, asymmetry).map_err(|row| start + row)?;
             eigen3_many(tensors, moments, axes);
+            for (&moments, row) in moments.iter().zip(axes.iter_mut()) {
+                if may_be_free(&moments) {
+                    let axes = Matrix3::from_row_slice(row);
+                    let found = canonical_to_rounding(&PrincipalAxes { moments, axes });
+                    row.copy_from_slice(found.axes.transpose().as_slice());
+                }
+            }
         }
         Ok(())
     })

@@ -1,7 +1,9 @@
 //! Canonical axes: where a body leaves its axes free, those nearest to the body frame.
 //!
 //! Every axis of a sphere is principal, and every axis across the symmetry axis of a top. An eigensolver then returns axes
-//! that hang on the last bits of the tensor. The canonical choice depends on the body alone.
+//! that hang on the last bits of the tensor, and a closed form returns others. The canonical choice depends on the body
+//! alone: of all principal axes with moments in ascending order, those with the largest trace of V, the cosines of the
+//! angles between the k-th principal axis and the k-th axis of the body frame taken together.
 
 use std::convert::Infallible;
 use std::ops::ControlFlow;
@@ -11,15 +13,20 @@ use nalgebra::{Matrix3, Vector3};
 use super::axes::{PrincipalAxes, with_sign_rule};
 use crate::numerics::threads::{Halt, fill_blocks};
 
-/// Projections whose squares are this close count as equal, and the earlier body axis is taken.
+/// A symmetry axis that is this nearly across its axis of the body frame has two nearest pairs: its direction decides.
 const TIE: f64 = 1e-8;
+
+/// Two moments count as equal for [`canonical_to_rounding`] where they differ by at most this part of the larger one. Sums
+/// over matter and tensors turned to another frame are off by a few units of rounding.
+pub const ROUNDING_RTOL: f64 = 16.0 * f64::EPSILON;
 
 /// The same moments with the free axes turned to the body frame; moments closer than `rtol` times the largest magnitude
 /// count as equal.
 ///
-/// All three equal: the axes are the body's own. Two equal: of the body axes the one with the largest projection on the
-/// plane of the pair (x before y before z where they tie) gives the pair's first axis its direction. The sign rule then
-/// holds as ever. Where no two are equal, or a moment is not finite, nothing changes.
+/// All three equal: the axes are the body's own. Two equal: the pair across the symmetry axis n is what the shortest
+/// rotation to n makes of the other two axes of the body frame (of n and −n the nearer one, or, where n lies across its axis
+/// of the body frame, the one whose largest component is positive). No other pair is nearer: see the theory page. The sign
+/// rule then holds as ever. Where no two are equal, or a moment is not finite, nothing changes.
 ///
 /// V diag(I) Vᵀ then equals the tensor to `rtol` rather than to rounding.
 ///
@@ -27,44 +34,97 @@ const TIE: f64 = 1e-8;
 ///
 /// ```
 /// use polhode::mass::{Amount, solids};
-/// use polhode::nalgebra::Matrix3;
+/// use polhode::nalgebra::{Matrix3, Rotation3, Vector3};
 /// use polhode::principal::{TOP_RTOL, canonical};
 ///
-/// // A ball has any axes: the canonical ones are those of the body frame.
-/// let ball = solids::sphere(1.0, Amount::Mass(1.0))?;
-/// assert_eq!(canonical(&ball.principal(), TOP_RTOL).axes, Matrix3::identity());
+/// // A brick that is nearly a cube has its own axes; to a part in 10⁶ any axes will do, and the body's are canonical.
+/// let brick = solids::cuboid(&[1.0, 1.0 + 1e-8, 1.0 - 1e-8], Amount::Mass(1.0))?;
+/// let tilted = brick.rotated(&Rotation3::from_axis_angle(&Vector3::x_axis(), 0.1).into_inner())?;
+/// assert_ne!(tilted.principal().axes, Matrix3::identity());
+/// assert_eq!(canonical(&tilted.principal(), TOP_RTOL).axes, Matrix3::identity());
 /// # Ok::<(), polhode::Error>(())
 /// ```
 #[must_use]
 pub fn canonical(principal: &PrincipalAxes, rtol: f64) -> PrincipalAxes {
-    let [i1, i2, i3] = principal.moments;
+    let [i1, _, i3] = principal.moments;
     let close = rtol * i1.abs().max(i3.abs());
-    let axes = match (i2 - i1 <= close, i3 - i2 <= close) {
+    align(principal, |a, b| b - a <= close)
+}
+
+/// As [`canonical`], moments that rounding alone keeps apart ([`ROUNDING_RTOL`]) counting as equal: the axes of every body
+/// that is made from a tensor or from matter.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::nalgebra::{Matrix3, Vector3};
+/// use polhode::principal::{PrincipalAxes, ROUNDING_RTOL, canonical_to_rounding};
+///
+/// let flip = Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+/// let with_gap = |gap: f64| canonical_to_rounding(&PrincipalAxes { moments: [1.0, 1.0 + gap, 2.0], axes: flip }).axes;
+/// assert_eq!(with_gap(0.5 * ROUNDING_RTOL), Matrix3::identity());
+/// assert_eq!(with_gap(2.0 * ROUNDING_RTOL), flip);
+/// ```
+#[must_use]
+#[inline]
+pub fn canonical_to_rounding(principal: &PrincipalAxes) -> PrincipalAxes {
+    align(principal, is_rounding)
+}
+
+/// Whether rounding alone may keep two of the moments apart: seen at a glance, where many are asked. Only then
+/// [`canonical_to_rounding`] turns axes.
+#[inline]
+pub(super) fn may_be_free(&[i1, i2, i3]: &[f64; 3]) -> bool {
+    (i2 - i1).min(i3 - i2) <= ROUNDING_RTOL * i1.abs().max(i3.abs())
+}
+
+/// Whether rounding alone keeps two moments, a ≤ b, apart.
+#[inline]
+fn is_rounding(a: f64, b: f64) -> bool {
+    b - a <= ROUNDING_RTOL * a.abs().max(b.abs())
+}
+
+/// The free axes turned to the body frame, `are_equal` saying of two moments in ascending order whether they are.
+#[inline]
+fn align(principal: &PrincipalAxes, are_equal: impl Fn(f64, f64) -> bool) -> PrincipalAxes {
+    let [i1, i2, i3] = principal.moments;
+    let axes = match (are_equal(i1, i2), are_equal(i2, i3)) {
+        (false, false) => return *principal,
         (true, true) => Matrix3::identity(),
-        (true, false) => {
-            let symmetry = principal.axes.column(2).into_owned();
-            let first = nearest_across(&symmetry);
-            with_sign_rule(Matrix3::from_columns(&[
-                first,
-                symmetry.cross(&first),
-                symmetry,
-            ]))
-        }
-        (false, true) => {
-            let symmetry = principal.axes.column(0).into_owned();
-            let first = nearest_across(&symmetry);
-            with_sign_rule(Matrix3::from_columns(&[
-                symmetry,
-                first,
-                symmetry.cross(&first),
-            ]))
-        }
-        (false, false) => principal.axes,
+        (true, false) => nearest_about(principal.axes.column(2).into(), 2),
+        (false, true) => nearest_about(principal.axes.column(0).into(), 0),
     };
     PrincipalAxes {
         moments: principal.moments,
         axes,
     }
+}
+
+/// The axes nearest to the body frame whose column k is along the unit vector n, under the sign rule.
+///
+/// For an n whose component k is not negative, the sum of the cosines is largest, 1 + 2 `n_k`, for the shortest rotation
+/// from `e_k` to n: it takes `e_j` to `e_j − n_j (e_k + n)/(1 + n_k)`.
+fn nearest_about(n: Vector3<f64>, k: usize) -> Matrix3<f64> {
+    let toward = if n[k].abs() > TIE {
+        n[k]
+    } else {
+        // The direction of the sign rule, that both directions of n agree.
+        let enough = n.amax() * (1.0 - 1e-8);
+        n.iter().copied().find(|x| x.abs() >= enough).unwrap_or(1.0)
+    };
+    let n = n * 1.0_f64.copysign(toward);
+    let mut between = n / (1.0 + n[k]);
+    between[k] = 1.0; // (e_k + n)/(1 + n_k)
+    let mut axes = Matrix3::identity();
+    for j in 0..3 {
+        let axis = if j == k {
+            n
+        } else {
+            axes.column(j) - between * n[j]
+        };
+        axes.set_column(j, &axis);
+    }
+    with_sign_rule(axes)
 }
 
 /// As [`canonical`] for a stack in place, axes row-major.
@@ -112,16 +172,6 @@ pub fn canonical_many(
 
 /// Rows that one thread does at a time.
 const BLOCK: usize = 1024;
-
-/// The direction, across the unit vector n, of the projection of the body axis that has the longest.
-fn nearest_across(n: &Vector3<f64>) -> Vector3<f64> {
-    // The projection of e_k has the square 1 − n_k².
-    let least = n.component_mul(n).min();
-    let k = n.iter().position(|x| x * x <= least + TIE).unwrap_or(0);
-    let mut projection = -n * n[k];
-    projection[k] += 1.0;
-    projection.normalize()
-}
 
 #[cfg(test)]
 mod tests {

@@ -17,7 +17,7 @@ pub mod tops;
 pub use axes::{
     PrincipalAxes, principal_axes, principal_axes_many, principal_moments_many, with_sign_rule,
 };
-pub use canonical::{canonical, canonical_many};
+pub use canonical::{ROUNDING_RTOL, canonical, canonical_many, canonical_to_rounding};
 pub use derivative::{DEGENERATE_RTOL, PrincipalDerivative, derivative};
 pub use symmetric_top::SymmetricTop;
 pub use tops::{TOP_RTOL, Top, classify, classify_within, gaps, ray_kappa, rounding_rtols};

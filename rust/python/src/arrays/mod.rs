@@ -1,6 +1,7 @@
 //! NumPy layout: anything array-like in, C-ordered float64 arrays out.
 
 mod reading;
+mod scalar;
 mod series;
 mod slabs;
 mod writing;
@@ -11,6 +12,7 @@ pub(crate) use reading::{
     Argument, floats, list_floats, read, read_indices, read_list, read_or, real_numbers, try_items,
     try_rows,
 };
+pub(crate) use scalar::read_scalar;
 pub(crate) use series::{samples, try_series};
 pub(crate) use slabs::{Slabs, all_in_slabs, in_slabs};
 pub(crate) use writing::{

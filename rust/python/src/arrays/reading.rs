@@ -7,6 +7,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyInt, PyList, PyTuple};
 
+use crate::arrays::read_scalar;
 use crate::errors::{at_row, to_py, wrong_shape};
 use crate::foreign::AXES;
 use crate::foreign::{as_array, contiguous};
@@ -170,7 +171,7 @@ pub(crate) fn floats<'py>(
         let dtype = array.getattr("dtype")?;
         return Err(PyTypeError::new_err(format!(
             "{name}: expected real numbers, got dtype {dtype}{}",
-            hints::for_kind(&kind)
+            hints::for_kind(name, &kind)
         )));
     }
     let array = contiguous(&array, name, "float64")?;
@@ -192,7 +193,7 @@ pub(crate) fn floats<'py>(
 #[pyfunction]
 pub(crate) fn real_numbers<'py>(
     values: &Bound<'py, PyAny>,
-    name: &str,
+    #[pyo3(from_py_with = read_scalar)] name: &str,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let array = floats(values, name)?;
     let array: &Bound<'py, PyArrayDyn<f64>> = &array;

@@ -8,7 +8,9 @@ use polhode::motion::stability::stability;
 use pyo3::prelude::*;
 
 use super::PyFreeMotion;
-use crate::arrays::{Item, Numbers, write_any_of, write_numbers_of, write_of, write_words_of};
+use crate::arrays::{
+    Item, Numbers, read_scalar, write_any_of, write_numbers_of, write_of, write_words_of,
+};
 use crate::stack::Stack;
 
 type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
@@ -112,14 +114,15 @@ impl PyFreeMotion {
         self.numbers(py, Invariants::complementary_modulus)
     }
 
-    /// The periods of the motion, in the long-axis convention of the literature on tumbling asteroids.
+    /// The periods of the motion: each mode has its own, and those that it does not have are NaN.
     ///
     /// Returns
     /// -------
     /// Periods
-    ///     ``rotation``: P_ψ, after which the components of ω in the body repeat. ``precession``: P_φ, the
-    ///     mean period of axis 1 about L. ``flip``: time from one turning over of the intermediate axis to
-    ///     the next. ``rates``: mean rate of precession of each principal axis about L.
+    ///     ``turn``, ``wobble``: of a steady rotation. ``spin``, ``precession``: of a symmetric body.
+    ///     ``rotation``, ``precession``: P_ψ and P_φ of long- and short-axis mode, in the long-axis convention
+    ///     of the literature on tumbling asteroids. ``flip``: time from one turning over of the intermediate
+    ///     axis to the next. ``rates``: mean rate of precession of each principal axis about L.
     ///
     /// Examples
     /// --------
@@ -134,6 +137,9 @@ impl PyFreeMotion {
         let (py, this) = (slf.py(), slf.get());
         let periods = this.invariants(py)?.map(py, Invariants::periods)?;
         let parts = (
+            write_numbers_of(py, &periods, |periods| periods.turn)?,
+            write_numbers_of(py, &periods, |periods| periods.wobble)?,
+            write_numbers_of(py, &periods, |periods| periods.spin)?,
             write_numbers_of(py, &periods, |periods| periods.rotation)?,
             write_numbers_of(py, &periods, |periods| periods.precession)?,
             write_numbers_of(py, &periods, |periods| periods.flip)?,
@@ -262,7 +268,11 @@ impl PyFreeMotion {
     /// >>> brick.kinetic_energy(curve).rotational.round(12)
     /// array([1.5975, 1.5975, 1.5975, 1.5975, 1.5975])
     #[pyo3(signature = (n=181))]
-    fn polhode<'py>(&self, py: Python<'py>, n: i128) -> PyResult<Bound<'py, PyAny>> {
+    fn polhode<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = read_scalar)] n: i128,
+    ) -> PyResult<Bound<'py, PyAny>> {
         if n < 2 {
             return Err(pyo3::exceptions::PyValueError::new_err(format!(
                 "n: expected at least 2 points of a closed curve, got {n}"

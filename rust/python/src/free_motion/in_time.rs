@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 
 use super::PyFreeMotion;
 use super::constants::tuple;
-use crate::arrays::{read, write, write_numbers_of, write_of};
+use crate::arrays::{read, read_scalar, write, write_numbers_of, write_of};
 use crate::stack::{Broadcast, Stack};
 
 impl PyFreeMotion {
@@ -204,7 +204,7 @@ impl PyFreeMotion {
         &self,
         py: Python<'py>,
         t: &Bound<'py, PyAny>,
-        rtol: f64,
+        #[pyo3(from_py_with = read_scalar)] rtol: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         if !(rtol >= 0.0 && rtol.is_finite()) {
             return Err(PyValueError::new_err(format!(

@@ -83,6 +83,11 @@ impl PyGyrostatMotion {
 
 #[pymethods]
 impl PyGyrostat {
+    /// Asked where there is no such attribute.
+    fn __getattr__(slf: &Bound<'_, Self>, name: &str) -> PyResult<Py<PyAny>> {
+        Err(crate::hints::no_attribute(slf.as_any(), name))
+    }
+
     /// The motion when no torque acts about the centre of mass, in closed form.
     ///
     /// Parameters
@@ -141,6 +146,11 @@ impl PyGyrostat {
 
 #[pymethods]
 impl PyGyrostatMotion {
+    /// Asked where there is no such attribute.
+    fn __getattr__(slf: &Bound<'_, Self>, name: &str) -> PyResult<Py<PyAny>> {
+        Err(crate::hints::no_attribute(slf.as_any(), name))
+    }
+
     /// The body.
     #[getter]
     fn body(&self, py: Python<'_>) -> Py<PyRigidBody> {
@@ -179,8 +189,8 @@ impl PyGyrostatMotion {
         write_words_of(py, &self.motions, |motion| motion.mode.as_str(), "<U10")
     }
 
-    /// Time after which the components of ω and L in the body repeat; infinite where they are constant or
-    /// never repeat.
+    /// Time after which the components of ω and L in the body repeat; infinite where they never repeat, NaN where
+    /// they are constant (``mode`` "steady").
     #[getter]
     fn period<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.numbers(py, |motion| motion.period.rounded())

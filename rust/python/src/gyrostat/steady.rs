@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 
 use super::PyGyrostat;
 use super::motion::PyGyrostatMotion;
-use crate::arrays::{write_of, write_words_of};
+use crate::arrays::{read_scalar, write_of, write_words_of};
 use crate::errors::to_py;
 use crate::stack::Stack;
 
@@ -45,7 +45,11 @@ impl PyGyrostat {
     /// minimum minimum saddle saddle maximum maximum
     /// >>> print(*body.gyrostat((0, 2.5, 0)).equilibria(2.0).kind)
     /// minimum maximum
-    fn equilibria<'py>(&self, py: Python<'py>, momentum: f64) -> PyResult<Bound<'py, PyAny>> {
+    fn equilibria<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = read_scalar)] momentum: f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let [one] = &self.gyrostats.rows[..] else {
             return Err(PyValueError::new_err(
                 "equilibria: expected one gyrostat, got a stack; ask them one by one",

@@ -43,7 +43,8 @@ impl PyHeavyTop {
         Ok(write(py, &limits)?.into_any())
     }
 
-    /// Time from one least inclination to the next: infinite on an asymptotic path, NaN where the axis rests.
+    /// Time from one least inclination to the next: infinite on an asymptotic path, NaN where the inclination is
+    /// constant: on the paths "regular" and "steady".
     #[getter]
     fn nutation_period<'py>(&self, py: Python<'py>) -> Array<'py> {
         self.numbers(py, |nutation| nutation.period)

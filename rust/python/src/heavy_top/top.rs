@@ -8,7 +8,7 @@ use polhode::principal::TOP_RTOL;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arrays::{in_slabs, read, write, write_of};
+use crate::arrays::{in_slabs, read, read_scalar, write, write_of};
 use crate::attitudes::read_attitude_exactly;
 use crate::body::PyRigidBody;
 use crate::closed_form::trajectory;
@@ -54,7 +54,8 @@ pub(super) struct Start {
 /// nutation_limits : numpy.ndarray, shape (..., 2)
 ///     Least and largest inclination θ of the axis, from the pivot to the centre of mass, from the upward vertical.
 /// nutation_period : float or numpy.ndarray, shape (...)
-///     Time from one least inclination to the next: infinite on an asymptotic path, NaN where the axis rests.
+///     Time from one least inclination to the next: infinite on an asymptotic path, NaN where the inclination
+///     is constant: on the paths "regular" and "steady".
 /// mean_precession : float or numpy.ndarray, shape (...)
 ///     Mean rate at which the axis goes about the upward vertical, the mean of φ̇. Through the vertical φ jumps by half a
 ///     turn.
@@ -185,7 +186,7 @@ impl PyRigidBody {
         omega: &Bound<'_, PyAny>,
         attitude: Option<&Bound<'_, PyAny>>,
         gravity: Option<&Bound<'_, PyAny>>,
-        rtol: f64,
+        #[pyo3(from_py_with = read_scalar)] rtol: f64,
     ) -> PyResult<PyHeavyTop> {
         let gravity = gravity.ok_or_else(no_gravity)?;
         let given = StartGiven::read(omega, attitude)?;
@@ -197,6 +198,11 @@ impl PyRigidBody {
 
 #[pymethods]
 impl PyHeavyTop {
+    /// Asked where there is no such attribute.
+    fn __getattr__(slf: &Bound<'_, Self>, name: &str) -> PyResult<Py<PyAny>> {
+        Err(crate::hints::no_attribute(slf.as_any(), name))
+    }
+
     /// Angular velocity of the body relative to space at t = 0, components in the body frame, in radians per unit
     /// of time, shape (..., 3).
     #[getter]
@@ -313,7 +319,7 @@ impl PyHeavyTop {
         omega: &Bound<'_, PyAny>,
         quaternion: &Bound<'_, PyAny>,
         gravity: &Bound<'_, PyAny>,
-        rtol: f64,
+        #[pyo3(from_py_with = read_scalar)] rtol: f64,
         uncertain_start: (Option<Py<PyUncertain>>, Option<Py<PyUncertain>>),
     ) -> PyResult<Self> {
         let quaternion: Stack<[f64; 4]> = read(quaternion, "quaternion")?;

@@ -11,7 +11,7 @@ use super::made::made;
 use super::part::Acts;
 use super::recipe::recipe;
 use super::terms::matrices;
-use crate::arrays::{list_floats, read, write};
+use crate::arrays::{list_floats, read, read_scalar, write};
 use crate::attitudes::read_attitude;
 use crate::errors::to_py;
 use crate::interrupt::watched;
@@ -71,7 +71,7 @@ pub(crate) fn feedback(
     target: Option<&Bound<'_, PyAny>>,
     rate: Option<&Bound<'_, PyAny>>,
     times: Option<&Bound<'_, PyAny>>,
-    epoch: Option<f64>,
+    #[pyo3(from_py_with = read_scalar)] epoch: Option<f64>,
 ) -> PyResult<PyLoad> {
     let (stiffness, damping) = (matrices(K, "K")?, matrices(D, "D")?);
     let kept = PyDict::new(py);

@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use super::acting::{Acting, Fault};
 use super::load::PyLoad;
 use crate::about::is_pivot;
-use crate::arrays::{Numbers, read, write_of};
+use crate::arrays::{Numbers, read, read_scalar, write_of};
 use crate::attitudes::read_quaternion;
 use crate::body::PyRigidBody;
 use crate::depth::Deeper;
@@ -174,8 +174,8 @@ impl PyLoad {
         position: Option<&Bound<'py, PyAny>>,
         velocity: Option<&Bound<'py, PyAny>>,
         body: Option<&Bound<'py, PyRigidBody>>,
-        about: &str,
-        start: Option<f64>,
+        #[pyo3(from_py_with = read_scalar)] about: &str,
+        #[pyo3(from_py_with = read_scalar)] start: Option<f64>,
         states: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let wrenches = self.wrenches(
@@ -211,8 +211,8 @@ impl PyLoad {
         position: Option<&Bound<'py, PyAny>>,
         velocity: Option<&Bound<'py, PyAny>>,
         body: Option<&Bound<'py, PyRigidBody>>,
-        about: &str,
-        start: Option<f64>,
+        #[pyo3(from_py_with = read_scalar)] about: &str,
+        #[pyo3(from_py_with = read_scalar)] start: Option<f64>,
         states: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let wrenches = self.wrenches(
@@ -243,7 +243,7 @@ impl PyLoad {
         body: &Bound<'py, PyRigidBody>,
         quaternion: &Bound<'py, PyAny>,
         position: Option<&Bound<'py, PyAny>>,
-        about: &str,
+        #[pyo3(from_py_with = read_scalar)] about: &str,
     ) -> PyResult<Option<Bound<'py, PyArrayDyn<f64>>>> {
         if !self.is_analytic() {
             return Ok(None);
@@ -306,7 +306,7 @@ impl PyLoad {
     fn keeps_momentum<'py>(
         &self,
         py: Python<'py>,
-        about: &str,
+        #[pyo3(from_py_with = read_scalar)] about: &str,
     ) -> PyResult<Option<Bound<'py, PyAny>>> {
         let pivoted = is_pivot(about)?;
         if !self.is_analytic() {

@@ -10,7 +10,7 @@ use super::load::PyLoad;
 use super::made::made;
 use super::part::Acts;
 use super::recipe::recipe;
-use crate::arrays::{read, samples, try_rows, try_series, write};
+use crate::arrays::{read, read_scalar, samples, try_rows, try_series, write};
 use crate::orbits::Orbits;
 use crate::stack::{Broadcast, Stack};
 
@@ -53,7 +53,7 @@ pub(crate) fn gravity_gradient(
     mu: &Bound<'_, PyAny>,
     position: Option<&Bound<'_, PyAny>>,
     velocity: Option<&Bound<'_, PyAny>>,
-    epoch: Option<f64>,
+    #[pyo3(from_py_with = read_scalar)] epoch: Option<f64>,
 ) -> PyResult<PyLoad> {
     if Orbits::is(mu) {
         if position.is_some() || velocity.is_some() || epoch.is_some() {

@@ -1,5 +1,6 @@
 //! The functions that make loads of functions: of Python's and of compiled ones.
 
+use crate::arrays::read_scalar;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -118,9 +119,9 @@ fn load(function: &Bound<'_, PyAny>, name: &str, gives: Gives) -> PyResult<PyLoa
 #[pyo3(signature = (function, user_data=None, *, initial=None, name="states", scale=None))]
 pub(crate) fn compiled(
     function: &Bound<'_, PyAny>,
-    user_data: Option<usize>,
+    #[pyo3(from_py_with = read_scalar)] user_data: Option<usize>,
     initial: Option<&Bound<'_, PyAny>>,
-    name: &str,
+    #[pyo3(from_py_with = read_scalar)] name: &str,
     scale: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyLoad> {
     let own = match initial {
@@ -198,9 +199,9 @@ pub(crate) fn with_states(
     rates: Option<&Bound<'_, PyAny>>,
     initial: &Bound<'_, PyAny>,
     wrench: Option<&Bound<'_, PyAny>>,
-    name: &str,
+    #[pyo3(from_py_with = read_scalar)] name: &str,
     update: Option<&Bound<'_, PyAny>>,
-    period: Option<f64>,
+    #[pyo3(from_py_with = read_scalar)] period: Option<f64>,
     scale: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyLoad> {
     let (values, scales) = stateful::initial(initial, scale)?;

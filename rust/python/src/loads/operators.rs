@@ -8,12 +8,13 @@ use pyo3::{PyTraverseError, PyVisit};
 
 use super::load::{PyLoad, made};
 use super::recipe::described;
+use crate::arrays::read_scalar;
 use crate::shape::tuple;
 
 /// What scales a load: a real number of Python or NumPy, also one in an array without axes; `None` of anything else.
 fn real_number(factor: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
     if factor.is_instance_of::<PyFloat>() || factor.is_instance_of::<PyInt>() {
-        return factor.extract().map(Some);
+        return read_scalar(factor).map(Some);
     }
     let py = factor.py();
     if let Ok(array) = factor.cast::<PyUntypedArray>() {
@@ -28,7 +29,7 @@ fn real_number(factor: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
     }
     let real = py.import("numbers")?.getattr("Real")?;
     if factor.is_instance(&real)? {
-        return factor.extract().map(Some);
+        return read_scalar(factor).map(Some);
     }
     Ok(None)
 }
@@ -55,7 +56,11 @@ impl PyLoad {
 
     /// Give the same load for a motion that is continued and that had started at `t`. Orbits without an epoch
     /// get `t` as their epoch.
-    fn anchored(&self, py: Python<'_>, t: f64) -> PyResult<Self> {
+    fn anchored(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = read_scalar)] t: f64,
+    ) -> PyResult<Self> {
         self.with_epoch(py, t)
     }
 

@@ -9,7 +9,7 @@ use super::load::{PyLoad, schedule_load};
 use super::made::made;
 use super::part::Acts;
 use super::recipe::recipe;
-use crate::arrays::{as_array, read, samples, try_rows, try_series, write};
+use crate::arrays::{as_array, read, read_scalar, samples, try_rows, try_series, write};
 use crate::errors::to_py;
 use crate::kinematics::parse_frame;
 use crate::stack::{Broadcast, Stack};
@@ -38,7 +38,7 @@ use crate::stack::{Broadcast, Stack};
 pub(crate) fn constant_torque(
     py: Python<'_>,
     vector: &Bound<'_, PyAny>,
-    frame: &str,
+    #[pyo3(from_py_with = read_scalar)] frame: &str,
 ) -> PyResult<PyLoad> {
     let axes = parse_frame(frame)?;
     let vector: Stack<Vector3<f64>> = read(vector, "vector")?;
@@ -79,7 +79,7 @@ made!(ConstantTorque by constant_torque);
 pub(crate) fn constant_force(
     py: Python<'_>,
     vector: &Bound<'_, PyAny>,
-    frame: &str,
+    #[pyo3(from_py_with = read_scalar)] frame: &str,
     point: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyLoad> {
     let axes = parse_frame(frame)?;
@@ -210,7 +210,7 @@ pub(crate) fn sampled(
     py: Python<'_>,
     t: &Bound<'_, PyAny>,
     torque: &Bound<'_, PyAny>,
-    frame: &str,
+    #[pyo3(from_py_with = read_scalar)] frame: &str,
 ) -> PyResult<PyLoad> {
     let axes = parse_frame(frame)?;
     let (times, values) = samples([t, torque], ["t", "torque"])?;

@@ -12,7 +12,7 @@ use super::made::made;
 use super::part::Acts;
 use super::recipe::recipe;
 use super::stateful::check_name;
-use crate::arrays::{floats, list_floats, read, try_rows, write, write_of};
+use crate::arrays::{floats, list_floats, read, read_scalar, try_rows, write, write_of};
 use crate::errors::to_py;
 use crate::stack::{Broadcast, Stack};
 
@@ -123,8 +123,8 @@ pub(crate) fn wheel(
     times: Option<&Bound<'_, PyAny>>,
     friction: Option<&Bound<'_, PyAny>>,
     dry_friction: Option<&Bound<'_, PyAny>>,
-    limit: Option<f64>,
-    name: &str,
+    #[pyo3(from_py_with = read_scalar)] limit: Option<f64>,
+    #[pyo3(from_py_with = read_scalar)] name: &str,
 ) -> PyResult<PyLoad> {
     check_name(name)?;
     if limit.is_some() && !torque.is_some_and(PyAnyMethods::is_instance_of::<PyLoad>) {
@@ -333,7 +333,7 @@ pub(crate) fn slug(
     py: Python<'_>,
     inertia: &Bound<'_, PyAny>,
     damping: &Bound<'_, PyAny>,
-    name: &str,
+    #[pyo3(from_py_with = read_scalar)] name: &str,
 ) -> PyResult<PyLoad> {
     check_name(name)?;
     let (inertia, damping): (Stack<f64>, Stack<f64>) =

@@ -2,6 +2,7 @@
 
 use polhode::mass::composites::combined;
 use polhode::uncertainty::together;
+use pyo3::exceptions::{PyOverflowError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyNotImplemented, PyTuple};
 
@@ -96,7 +97,16 @@ impl PyRigidBody {
             Some(axis) => np
                 .getattr("lib")?
                 .getattr("array_utils")?
-                .call_method1("normalize_axis_tuple", (axis, depth))?
+                .call_method1("normalize_axis_tuple", (axis, depth))
+                .map_err(|error| {
+                    if error.is_instance_of::<PyOverflowError>(py) {
+                        PyValueError::new_err(format!(
+                            "axis: a number beyond any axis, of a stack with {depth}"
+                        ))
+                    } else {
+                        error
+                    }
+                })?
                 .extract()?,
         };
         let kept: Vec<usize> = (0..depth).filter(|k| !axes.contains(k)).collect();

@@ -9,7 +9,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::Argument;
+use crate::arrays::{Argument, read_scalar};
 use crate::attitudes::read_rotation;
 use crate::body::PyRigidBody;
 use crate::hints::refuse_unknown;
@@ -37,7 +37,7 @@ impl PyRigidBody {
         inertia: Given<'_, '_>,
         center_of_mass: Argument<'_>,
         inertia_about_origin: Given<'_, '_>,
-        rtol: Option<f64>,
+        #[pyo3(from_py_with = read_scalar)] rtol: Option<f64>,
         unknown: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         let known = [
@@ -135,7 +135,7 @@ impl PyRigidBody {
         moments: &Bound<'_, PyAny>,
         axes: Given<'_, '_>,
         center_of_mass: Argument<'_>,
-        rtol: Option<f64>,
+        #[pyo3(from_py_with = read_scalar)] rtol: Option<f64>,
         unknown: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         let known = ["mass", "moments", "axes", "center_of_mass", "rtol"];
@@ -206,6 +206,12 @@ impl PyRigidBody {
     /// -------
     /// RigidBody
     ///
+    /// Warns
+    /// -----
+    /// UserWarning
+    ///     When solids of a CAD file overlap, or bonds or fragments of a molecule cross a side of the cell in its
+    ///     file; see :func:`polhode.molecules.cell_crossings`.
+    ///
     /// Raises
     /// ------
     /// FileFormatError
@@ -224,14 +230,14 @@ impl PyRigidBody {
         path: &Bound<'py, PyAny>,
         density: Option<&Bound<'py, PyAny>>,
         mass: Option<&Bound<'py, PyAny>>,
-        length_unit: Option<&str>,
-        weld: f64,
-        closure: Option<&str>,
+        #[pyo3(from_py_with = read_scalar)] length_unit: Option<&str>,
+        #[pyo3(from_py_with = read_scalar)] weld: f64,
+        #[pyo3(from_py_with = read_scalar)] closure: Option<&str>,
         orient: bool,
         union: bool,
         repair: bool,
-        index_base: i64,
-        masses: &str,
+        #[pyo3(from_py_with = read_scalar)] index_base: i64,
+        #[pyo3(from_py_with = read_scalar)] masses: &str,
         progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let options = PyDict::new(py);

@@ -27,9 +27,8 @@ impl PyRigidBody {
     }
 
     /// Asked where there is no such attribute.
-    #[expect(clippy::unused_self, reason = "Python asks an instance")]
-    fn __getattr__(&self, name: &str) -> PyResult<Py<PyAny>> {
-        Err(no_attribute(name))
+    fn __getattr__(slf: &Bound<'_, Self>, name: &str) -> PyResult<Py<PyAny>> {
+        Err(no_attribute(slf.as_any(), name))
     }
 
     fn __len__(&self) -> PyResult<usize> {

@@ -9,7 +9,7 @@ use polhode::parallel;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::arrays::{Item, read, read_indices, read_list, write};
+use crate::arrays::{Item, read, read_indices, read_list, read_scalar, write};
 use crate::body::PyRigidBody;
 use crate::depth::Deeper;
 use crate::errors::to_py;
@@ -62,7 +62,7 @@ impl PyRigidBody {
         nodes: &Bound<'_, PyAny>,
         cells: &Bound<'_, PyAny>,
         density: &Bound<'_, PyAny>,
-        at: Option<&str>,
+        #[pyo3(from_py_with = read_scalar)] at: Option<&str>,
     ) -> PyResult<Self> {
         let nodes: Stack<[f64; 3]> = read_list(nodes, "nodes", "n")?;
         let cells = read_indices::<4>(cells, "cells")?.map_err(|(cell, index)| {
@@ -129,8 +129,8 @@ impl PyRigidBody {
         py: Python<'_>,
         density: &Bound<'_, PyAny>,
         bounds: &Bound<'_, PyAny>,
-        rtol: f64,
-        max_evaluations: i128,
+        #[pyo3(from_py_with = read_scalar)] rtol: f64,
+        #[pyo3(from_py_with = read_scalar)] max_evaluations: i128,
     ) -> PyResult<Self> {
         let _deeper = Deeper::run("from_density")?;
         callable(density)?;
@@ -185,8 +185,8 @@ impl PyRigidBody {
         py: Python<'_>,
         density: &Bound<'_, PyAny>,
         radii: &Bound<'_, PyAny>,
-        rtol: f64,
-        max_evaluations: i128,
+        #[pyo3(from_py_with = read_scalar)] rtol: f64,
+        #[pyo3(from_py_with = read_scalar)] max_evaluations: i128,
     ) -> PyResult<Self> {
         let _deeper = Deeper::run("from_radial_density")?;
         callable(density)?;

@@ -11,7 +11,7 @@ use polhode::uncertainty::of_mesh;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::arrays::read_list;
+use crate::arrays::{read_list, read_scalar};
 use crate::body::PyRigidBody;
 use crate::errors::to_py;
 use crate::figure::{MOST_FACES, Outline, alone};
@@ -115,7 +115,7 @@ impl PyRigidBody {
         faces: &Bound<'_, PyAny>,
         density: Option<Weight>,
         mass: Option<Weight>,
-        closure: Option<&str>,
+        #[pyo3(from_py_with = read_scalar)] closure: Option<&str>,
         orient: bool,
         check: bool,
     ) -> PyResult<Self> {
@@ -237,7 +237,7 @@ impl PyRigidBody {
         areal_density: Option<Weight>,
         density: Option<Weight>,
         mass: Option<Weight>,
-        thickness: Option<f64>,
+        #[pyo3(from_py_with = read_scalar)] thickness: Option<f64>,
     ) -> PyResult<Self> {
         let [own, per_area, per_volume] =
             [&mass, &areal_density, &density].map(|weight| number(weight.as_ref()));

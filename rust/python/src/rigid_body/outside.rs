@@ -3,6 +3,7 @@
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::arrays::read_scalar;
 use crate::body::PyRigidBody;
 
 #[pymethods]
@@ -42,8 +43,8 @@ impl PyRigidBody {
     #[pyo3(signature = (mesh, *, density=None, mass=None, **options))]
     fn from_mesh_object<'py>(
         mesh: &Bound<'py, PyAny>,
-        density: Option<f64>,
-        mass: Option<f64>,
+        #[pyo3(from_py_with = read_scalar)] density: Option<f64>,
+        #[pyo3(from_py_with = read_scalar)] mass: Option<f64>,
         options: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let py = mesh.py();
@@ -76,6 +77,12 @@ impl PyRigidBody {
     /// RigidBody
     ///     The body in daltons and ångströms.
     ///
+    /// Warns
+    /// -----
+    /// UserWarning
+    ///     When bonds or fragments cross a side of the cell of ASE's atoms, along the directions of its ``pbc``
+    ///     (see :func:`polhode.molecules.cell_crossings`), or hydrogens of RDKit's molecule have no positions.
+    ///
     /// Raises
     /// ------
     /// TypeError
@@ -83,13 +90,14 @@ impl PyRigidBody {
     /// ValueError
     ///     For a molecule without a conformer.
     /// PolhodeError
-    ///     For an atom that is no element, or an element without natural isotopes.
+    ///     For an atom that is no element, an element without natural isotopes, or a conformer of RDKit that is a
+    ///     drawing in the plane.
     #[staticmethod]
     #[pyo3(signature = (atoms, *, conformer=None, masses="most_common"))]
     fn from_atoms<'py>(
         atoms: &Bound<'py, PyAny>,
-        conformer: Option<i64>,
-        masses: &str,
+        #[pyo3(from_py_with = read_scalar)] conformer: Option<i64>,
+        #[pyo3(from_py_with = read_scalar)] masses: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
         atoms
             .py()

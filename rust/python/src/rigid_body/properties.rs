@@ -11,7 +11,7 @@ use pyo3::types::PyNotImplemented;
 
 use crate::about::points;
 use crate::arrays::{
-    Argument, read, write, write_any_of, write_numbers, write_numbers_of, write_of,
+    Argument, read, read_scalar, write, write_any_of, write_numbers, write_numbers_of, write_of,
 };
 use crate::body::PyRigidBody;
 use crate::figure::Place;
@@ -310,8 +310,8 @@ impl PyRigidBody {
         &self,
         py: Python<'py>,
         other: &Self,
-        rtol: f64,
-        atol: f64,
+        #[pyo3(from_py_with = read_scalar)] rtol: f64,
+        #[pyo3(from_py_with = read_scalar)] atol: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         let grid = self.with("other", &other.bodies)?;
         let close = grid.try_map(py, |[a, b]| {

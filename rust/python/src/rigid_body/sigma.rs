@@ -10,7 +10,7 @@ use polhode::uncertainty::{Doubt, Given, Source, check_possible};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::arrays::{Numbers, floats, read};
+use crate::arrays::{Numbers, floats, read, read_scalar};
 use crate::body::PyRigidBody;
 use crate::errors::{at_row, to_py, with_prefix};
 use crate::memory;
@@ -59,7 +59,7 @@ impl PyRigidBody {
         mass: Argument<'_, '_>,
         center_of_mass: Argument<'_, '_>,
         inertia: Argument<'_, '_>,
-        source: Option<&str>,
+        #[pyo3(from_py_with = read_scalar)] source: Option<&str>,
     ) -> PyResult<Self> {
         if mass.is_none() && center_of_mass.is_none() && inertia.is_none() {
             let message = "give at least one of mass=, center_of_mass= and inertia=";
@@ -172,7 +172,7 @@ impl PyRigidBody {
         &self,
         py: Python<'_>,
         covariance: &Bound<'_, PyAny>,
-        source: Option<&str>,
+        #[pyo3(from_py_with = read_scalar)] source: Option<&str>,
     ) -> PyResult<Self> {
         let covariance = floats(covariance, "covariance")?;
         let shape = numpy::PyUntypedArrayMethods::shape(&*covariance);

@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 
 use super::ensemble::{Ensemble, Start};
 use crate::about::is_pivot;
-use crate::arrays::read;
+use crate::arrays::{read, read_scalar};
 use crate::attitudes::read_attitude_exactly;
 use crate::body::PyRigidBody;
 use crate::depth::Deeper;
@@ -81,9 +81,14 @@ impl PyRigidBody {
     /// events : callable or sequence of callables, optional
     ///     Functions ``event(t, omega, quaternion, position, velocity)`` whose passages through zero are
     ///     searched for. If the load has states, they are the sixth argument, a dict by name. All passages of
-    ///     a smooth function are found, also two within one step. For a function with jumps, corners or
-    ///     narrow peaks, two passages may be missed if the body turns by less than a quarter of a radian
-    ///     between them. The functions may have attributes as in SciPy. ``direction``: if it is positive,
+    ///     a smooth function are found, also two within one step, and however fast it is beside the body: where
+    ///     a polynomial through its values does not agree with it, a part of a step is halved. Each function may
+    ///     be evaluated 2**24 times in such parts of a run, which is enough for about 2e5 cycles of a sine. Beyond
+    ///     that the run fails, and the error says so. A function is looked at more than 64 times in a run, and
+    ///     several times in each radian of a turn. What does not show there is not found: two passages at a jump,
+    ///     a corner or a narrow peak if the body turns by less than a quarter of a radian between them, or ripples
+    ///     that are a thousand times smaller than the changes of the function in such a part.
+    ///     The functions may have attributes as in SciPy. ``direction``: if it is positive,
     ///     only passages that rise in time count; if it is negative, only those that fall. ``terminal`` True
     ///     ends the run at the first, a number n at the n-th. :class:`polhode.Event` sets them.
     /// on_failure : {"raise", "keep"}, optional
@@ -145,15 +150,15 @@ impl PyRigidBody {
         load: Given<'_, 'py>,
         position: Given<'_, 'py>,
         velocity: Given<'_, 'py>,
-        about: &str,
-        method: &str,
-        rtol: f64,
-        atol: Option<f64>,
+        #[pyo3(from_py_with = read_scalar)] about: &str,
+        #[pyo3(from_py_with = read_scalar)] method: &str,
+        #[pyo3(from_py_with = read_scalar)] rtol: f64,
+        #[pyo3(from_py_with = read_scalar)] atol: Option<f64>,
         events: Given<'_, 'py>,
-        on_failure: &str,
+        #[pyo3(from_py_with = read_scalar)] on_failure: &str,
         progress: Option<Py<PyAny>>,
         states: Given<'_, 'py>,
-        max_steps: Option<i128>,
+        #[pyo3(from_py_with = read_scalar)] max_steps: Option<i128>,
         unknown: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         hints::refuse_unknown("RigidBody.simulate", &KEYWORDS, unknown)?;

@@ -7,7 +7,7 @@ use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::{write_any_of, write_numbers_of, write_words_of};
+use crate::arrays::{read_scalar, write_any_of, write_numbers_of, write_words_of};
 use crate::body::PyRigidBody;
 
 #[pymethods]
@@ -82,7 +82,12 @@ impl PyRigidBody {
     }
 
     /// The same bodies, of atoms whose masses are `masses` and whose coordinates were rounded by at most `rounding` each.
-    fn _of_atoms(&self, py: Python<'_>, masses: &str, rounding: f64) -> PyResult<Self> {
+    fn _of_atoms(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = read_scalar)] masses: &str,
+        #[pyo3(from_py_with = read_scalar)] rounding: f64,
+    ) -> PyResult<Self> {
         let source = match masses {
             "most_common" => Source::CommonIsotopes,
             "average" => Source::AverageAtoms,
@@ -108,7 +113,11 @@ impl PyRigidBody {
     }
 
     /// The same bodies, of meshes of which so many corners were joined to others on request.
-    fn _welded(&self, py: Python<'_>, corners: usize) -> PyResult<Self> {
+    fn _welded(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = read_scalar)] corners: usize,
+    ) -> PyResult<Self> {
         let welded = |body: &RigidBody| {
             let provenance = Provenance {
                 welded: corners,

@@ -6,7 +6,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arrays::{floats, numpy, real_numbers};
+use crate::arrays::{floats, numpy, read_scalar, real_numbers};
 use crate::errors::to_py;
 use crate::hints::refuse_unknown;
 use crate::shape::tuple;
@@ -80,7 +80,7 @@ impl PyUncertain {
         value: &Bound<'_, PyAny>,
         sigma: Option<&Bound<'_, PyAny>>,
         covariance: Option<&Bound<'_, PyAny>>,
-        source: Option<String>,
+        #[pyo3(from_py_with = read_scalar)] source: Option<String>,
         unknown: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         let known = ["value", "sigma", "covariance", "source"];
@@ -253,7 +253,7 @@ impl PyUncertain {
         value: Py<PyAny>,
         sigma: Option<Py<PyAny>>,
         covariance: Option<Py<PyAny>>,
-        source: Option<String>,
+        #[pyo3(from_py_with = read_scalar)] source: Option<String>,
         variables: Vec<Vec<([u64; 2], f64)>>,
         by_sigma: bool,
     ) -> Self {

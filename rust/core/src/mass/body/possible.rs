@@ -11,7 +11,7 @@ use crate::mass::validity::{
     ROUNDING, check_mass, check_moments, check_rotation, mean_of_halves, symmetrized, trace,
 };
 use crate::numerics::eigen3::{Eigen3, eigen3};
-use crate::principal::{PrincipalAxes, principal_axes, with_sign_rule};
+use crate::principal::{PrincipalAxes, canonical, principal_axes, with_sign_rule};
 
 /// A rigid body: mass m > 0, centre of mass C, inertia tensor `I_C` about C, all in the axes of the body frame B.
 ///
@@ -50,9 +50,7 @@ impl RigidBody {
         check_mass(mass)?;
         all_finite_of_body("center_of_mass", center_of_mass)?;
         let inertia = symmetrized("inertia", inertia, rtol)?;
-        let body =
-            Self::from_symmetric(mass, inertia, center_of_mass, trace(&inertia), rtol, false)?;
-        Ok(body.with_bound(ErrorBound::default()))
+        Self::from_symmetric(mass, inertia, center_of_mass, trace(&inertia), rtol, false)
     }
 
     /// From mass, tensor about the origin O of the body frame, and the centre of mass C.
@@ -90,8 +88,24 @@ impl RigidBody {
             trace(&about_origin),
             rtol,
             true,
-        )?;
-        let rounding = ErrorBound::default().rounded(&Vector3::zeros(), trace(&about_origin));
+        )
+        .map_err(|error| match error {
+            Error::Body(BodyFault::NegativeMoment {
+                moments,
+                is_from_origin,
+                ..
+            }) => {
+                let is_possible_as_given =
+                    Self::new(mass, inertia_about_origin, center_of_mass, rtol).is_ok();
+                Error::Body(BodyFault::NegativeMoment {
+                    moments,
+                    is_from_origin,
+                    is_possible_as_given,
+                })
+            }
+            other => other,
+        })?;
+        let rounding = (body.error_bound).rounded(&Vector3::zeros(), trace(&about_origin));
         Ok(body.with_bound(rounding))
     }
 
@@ -116,14 +130,19 @@ impl RigidBody {
         let mut principal = sorted(moments, axes);
         check_moments(&principal.moments, 0.0, ROUNDING.max(rtol), false)?;
         // What was admitted as rounding below zero is zero.
+        let below = (-principal.moments[0]).max(0.0);
         principal.moments = principal.moments.map(|moment| moment.max(0.0));
         let inertia = tensor(&principal);
+        let repair = ErrorBound {
+            inertia: below,
+            ..ErrorBound::default()
+        };
         Ok(Self {
             mass,
             center_of_mass: *center_of_mass,
             inertia,
             principal,
-            error_bound: ErrorBound::default().rounded(&Vector3::zeros(), trace(&inertia)),
+            error_bound: repair.rounded(&Vector3::zeros(), trace(&inertia)),
             provenance: Provenance {
                 source: Source::PrincipalMoments,
                 elements: 1,
@@ -185,6 +204,7 @@ impl RigidBody {
                 moments,
                 deficit,
                 relative: deficit / (i1 + i2 + i3),
+                is_given: false,
             }
             .into());
         }
@@ -233,16 +253,20 @@ impl RigidBody {
         let is_repaired = (principal.moments.iter())
             .any(|&moment| moment <= ROUNDING * scale && moment.abs() > ROUNDING * own);
         let rounded_to_zero = clear_noise(&mut principal, scale);
+        let stored = if is_repaired {
+            tensor(&principal)
+        } else {
+            inertia
+        };
         Self {
             mass,
             center_of_mass: *center_of_mass,
-            inertia: if is_repaired {
-                tensor(&principal)
-            } else {
-                inertia
-            },
+            inertia: stored,
             principal,
-            error_bound: ErrorBound::default(),
+            error_bound: ErrorBound {
+                inertia: (stored - inertia).amax(),
+                ..ErrorBound::default()
+            },
             provenance: Provenance {
                 source: Source::Tensor,
                 elements: 1,
@@ -304,7 +328,7 @@ impl RigidBody {
     }
 }
 
-/// Moments in ascending order, each with its axis, under the sign rule.
+/// Moments in ascending order, each with its axis, under the sign rule; where moments are equal, the canonical axes.
 fn sorted(moments: &[f64; 3], axes: &Matrix3<f64>) -> PrincipalAxes {
     let mut order = [0, 1, 2];
     order.sort_by(|&i, &j| moments[i].total_cmp(&moments[j]));
@@ -313,10 +337,12 @@ fn sorted(moments: &[f64; 3], axes: &Matrix3<f64>) -> PrincipalAxes {
         axes.column(first).into_owned(),
         axes.column(second).into_owned(),
     );
-    PrincipalAxes {
+    let principal = PrincipalAxes {
         moments: order.map(|k| moments[k] + 0.0), // no negative zero
         axes: with_sign_rule(Matrix3::from_columns(&[u, v, u.cross(&v)])),
-    }
+    };
+    // The moments are exact: any difference is one.
+    canonical(&principal, 0.0)
 }
 
 /// Moments that a tensor with this trace cannot tell from zero, or that rounding has put below it, are zero; how many

@@ -70,7 +70,8 @@ pub fn from_density<E: From<Error>>(
         error_bound: ErrorBound {
             mass: error * total.mass + rounding * sizes.mass,
             center_of_mass,
-            inertia: 2.0 * (error * spread + rounding * sizes.spread + total.mass * reach * place),
+            inertia: 2.0
+                * (error * spread + rounding * sizes.spread + total.mass * place * (reach + place)),
         },
     })?;
     let provenance = Provenance::of_matter(Source::Density, found.evaluations, Checks::FINITE);

@@ -108,7 +108,7 @@ impl FromPeriods {
         let family = Family::of(moments, self.circled)?;
         let ratio = rotation / precession;
         let motion = family.with_ratio(ratio)?;
-        let own = motion.periods().rotation;
+        let [own, _] = motion.long_axis_periods();
         let start = at_phase(&motion, self.phase, self.sense);
         Ok(start * (own / rotation))
     }
@@ -208,8 +208,8 @@ impl Family {
     }
 
     fn ratio(&self, s: f64) -> f64 {
-        let periods = self.motion(s).periods();
-        periods.rotation / periods.precession
+        let [rotation, precession] = self.motion(s).long_axis_periods();
+        rotation / precession
     }
 
     /// The motion whose ratio of periods is given, by bisection of ln s: all digits that the ratio determines.

@@ -21,7 +21,7 @@ type Number = Complex<DoubleDouble>;
 /// What grows with time, in units of the rates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Secular {
-    /// Of ω in the body; infinite where it does not come back or does not move.
+    /// Of ω in the body; infinite where it does not come back, NaN where it does not move.
     pub(super) period: DoubleDouble,
     /// Twice ν: the rate at which the body turns about L while ω comes back, but for whole turns.
     pub(super) precession: DoubleDouble,
@@ -63,7 +63,7 @@ pub(super) fn steady(
         reach: f64::INFINITY,
     };
     let secular = Secular {
-        period: f64::INFINITY.into(),
+        period: f64::NAN.into(),
         precession: rate,
     };
     (propagator, secular)

@@ -36,7 +36,8 @@ pub struct GyrostatMotion {
     pub angular_momentum: Vector3<f64>,
     /// `½ ω·I ω`: constant. The energy but for that of the wheels in their own rotation.
     pub kinetic_energy: f64,
-    /// The time after which ω and L are again where they were in the body; infinite where they never are, or always.
+    /// The time after which ω and L are again where they were in the body; infinite where they never are, NaN where they are
+    /// constant.
     pub period: DoubleDouble,
     /// The rate in radians at which the body turns about L in the mean, seen each time when ω has come back. Known but for
     /// whole turns in a period: which of them are made is a matter of what axis of the body is looked at.
@@ -151,6 +152,7 @@ impl GyrostatMotion {
     fn free(motion: &FreeMotion, angular_momentum: Vector3<f64>, kinetic_energy: f64) -> Self {
         let mode = match motion.mode {
             free::Mode::Spherical | free::Mode::Steady => Mode::Steady,
+            free::Mode::Symmetric if motion.invariants().is_steady() => Mode::Steady,
             free::Mode::Symmetric => Mode::Circular,
             free::Mode::Separatrix => Mode::Separatrix,
             free::Mode::LongAxis | free::Mode::ShortAxis => Mode::Paired,
@@ -161,7 +163,11 @@ impl GyrostatMotion {
             rotor: [DoubleDouble::default(); 3],
             angular_momentum,
             kinetic_energy,
-            period: motion.secular.half_period.scaled(2.0),
+            period: if mode == Mode::Steady {
+                f64::NAN.into()
+            } else {
+                motion.secular.half_period.scaled(2.0)
+            },
             mean_precession: motion.secular.mean_precession,
             way: Way::Free(*motion),
         }

@@ -58,8 +58,8 @@ pub struct Nutation {
     pub path: Path,
     /// The least and the largest inclination θ of the axis (from O to C) from the upward vertical.
     pub inclination: [f64; 2],
-    /// Time from one least inclination to the next; infinite on an asymptotic path. Of regular precession that of a small
-    /// nutation about it; NaN of a steady axis.
+    /// Time from one least inclination to the next; infinite on an asymptotic path. NaN where the inclination is constant: in
+    /// regular precession and of a steady axis.
     pub period: f64,
     /// Mean of φ̇, the rate about the upward vertical; of a steady axis zero. Where the axis goes through the vertical, φ jumps by half a
     /// turn there, which counts as forward.
@@ -88,13 +88,17 @@ impl Nutation {
     ) -> Self {
         let [alpha, beta] = phases.mean();
         let rate = |turns: DoubleDouble| TAU * times(turns, motion.exponent).rounded();
+        let path = path(motion, points, phases);
         Self {
-            path: path(motion, points, phases),
+            path,
             inclination: [
                 angle(motion.bottom + points.rise, points.below_top),
                 angle(points.above_bottom, points.depth),
             ],
-            period: times_power_of_two(0.5 / phases.clock.rounded(), -motion.exponent),
+            period: match path {
+                Path::Regular => f64::NAN,
+                _ => times_power_of_two(0.5 / phases.clock.rounded(), -motion.exponent),
+            },
             precession: rate(alpha + beta),
             spin: rate(alpha - beta + drift.scaled(2.0)),
         }

@@ -81,7 +81,7 @@ pub(crate) struct Axes<'s, X: Exact> {
 
 impl<X: Exact> Axes<'_, X> {
     /// A vector of B, components in principal axes.
-    pub(super) fn principal(&self, vector: &Vector3<X>) -> Vector3<X> {
+    pub(crate) fn principal(&self, vector: &Vector3<X>) -> Vector3<X> {
         self.columns.tr_mul(vector)
     }
 

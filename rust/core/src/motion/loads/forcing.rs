@@ -6,6 +6,7 @@ use std::fmt::Debug;
 
 use super::axes::{Axes, Exact};
 use super::subject::Subject;
+use crate::motion::kinematics::Frame;
 use crate::numerics::number::Real;
 
 /// The parts of a load that go with the time, around one time; times and rates in units of the unit of rates.
@@ -83,15 +84,27 @@ pub(crate) struct When<X> {
     pub unit: f64,
 }
 
-/// A law that depends on the time.
+/// A torque that depends on the time: a cubic between two breaks.
 pub(crate) trait Timed<X: Exact>: Debug {
-    /// Adds what it does in a step to `forcing`, where torques are not yet over the moments.
-    fn force(&self, forcing: &mut Forcing<X>, axes: &Axes<'_, X>, when: &When<X>);
+    /// The frame that its components are in.
+    fn frame(&self) -> Frame;
+
+    /// The coefficients of the cubic around a time, in the body's axes or in N, in units of the unit of rates.
+    fn cubic(&self, axes: &Axes<'_, X>, when: &When<X>) -> [Vector3<X>; 4];
 
     /// About the square of the fastest rate that it makes in a segment with the time `middle` in it; `over_moment` is one over the
     /// least moment of inertia.
     fn square_of_rate(&self, subject: &Subject, middle: f64, over_moment: f64) -> f64;
 
-    /// The sizes of its torques around a time along a unit vector of B, and in all; none where they cannot be along one axis.
+    /// The sizes of its torques around a time along a unit vector of B, and in all.
     fn torques_along(&self, axis: &Vector3<f64>, middle: f64) -> Vec<(f64, f64)>;
+}
+
+/// A gravity gradient, whose torque `r×I r` has no component along an axis without a moment.
+pub(crate) trait Orbiting<X: Exact>: Debug {
+    /// Where the body is at a time.
+    fn on_orbit(&self, axes: &Axes<'_, X>, when: &When<X>) -> OnOrbit<X>;
+
+    /// About the square of the fastest rate that it makes.
+    fn square_of_rate(&self, subject: &Subject) -> f64;
 }

@@ -48,6 +48,13 @@ pub(crate) struct Formula<X: Exact> {
     pub matrix: Matrix3<X>,
 }
 
+impl<X: Exact> Formula<X> {
+    /// Whether |ω| is a step of it.
+    pub(super) fn has_speed(&self) -> bool {
+        self.steps.iter().any(|step| matches!(step, Step::Speed(_)))
+    }
+}
+
 /// A formula as a law states it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Steps {
@@ -71,7 +78,7 @@ impl Steps {
         self.scalar(Step::Square, 2)
     }
 
-    /// |ω|. Of a torque with it the law [says so](super::Parts::quadratic): where ω passes through zero, a step must end.
+    /// |ω|. Where ω passes through zero, a step must end: see [`Formula::has_speed`].
     pub(crate) fn speed(&mut self) -> Scalar {
         let square = self.square();
         self.scalar(Step::Speed(square.number), 1)
@@ -118,5 +125,10 @@ mod tests {
             Step::Times(2, 1),
         ];
         assert_eq!(formula.steps, all);
+        assert!(formula.has_speed());
+        let mut steps = Steps::default();
+        let square = steps.square();
+        let cubic = steps.times(square, OMEGA);
+        assert!(!steps.torque(Matrix3::<f64>::identity(), cubic).has_speed());
     }
 }

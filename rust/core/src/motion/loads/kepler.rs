@@ -7,10 +7,17 @@ use nalgebra::Vector3;
 
 use self::apse::{Anomaly, Apse};
 use super::stumpff::functions;
-use crate::error::{Error, all_finite, finite};
+use crate::error::{Error, MotionFault, all_finite, finite};
 use crate::numerics::double_double::{DoubleDouble, two_product};
 use crate::numerics::jet::Jet;
 use crate::numerics::number::Real;
+use crate::numerics::turns::MOST_TURNS;
+
+/// How many times its own size `2μ/r` and v² may be larger than β, of whose double-double the phases of
+/// [`MOST_TURNS`] revolutions are then still made: nearer to a parabola the period is known to fewer digits.
+const CANCELLED: f64 = 1024.0;
+/// So far an orbit without end is followed: the squares of its distances stay within the range of float64.
+const FARTHEST: f64 = 1e150;
 
 /// 2π and what it leaves out.
 const TURN: DoubleDouble = DoubleDouble {
@@ -37,6 +44,8 @@ const TURN: DoubleDouble = DoubleDouble {
 /// let (place, _) = orbit.at(orbit.period() / 4.0);
 /// assert!((place.y - radius).abs() < 1e-3);
 /// assert_eq!(orbit.mu(), mu);
+/// // The phase of 10²⁰ revolutions is known, that of 10³⁰ is not.
+/// assert!(orbit.check(1e20 * orbit.period()).is_ok() && orbit.check(1e30 * orbit.period()).is_err());
 /// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,6 +68,8 @@ pub struct Orbit {
     beta: f64,
     /// Revolutions in a unit of time; zero unless the orbit is an ellipse.
     frequency: DoubleDouble,
+    /// In units of time, how far from its epoch its state is known.
+    reach: f64,
 }
 
 impl Orbit {
@@ -104,6 +115,12 @@ impl Orbit {
         } else {
             DoubleDouble::default()
         };
+        let reach = if frequency.high > 0.0 {
+            let cancelled = 2.0 * scaled_mu / distance.high / beta.high;
+            MOST_TURNS / frequency.high / (cancelled / CANCELLED).max(1.0)
+        } else {
+            FARTHEST / length.max(1.0) / v.norm().max(1.0)
+        };
         let orbit = Self {
             mu,
             length,
@@ -117,6 +134,7 @@ impl Orbit {
             sigma: r.dot(&v),
             beta: beta.high,
             frequency,
+            reach,
         };
         Ok(if orbit.beta < 0.0 {
             orbit.at_periapsis()
@@ -174,7 +192,23 @@ impl Orbit {
         (DoubleDouble::from(1.0) / self.frequency).high * self.time
     }
 
-    /// Position and velocity at a time after the state the orbit was given with.
+    /// That the state is known a time after the one that it was given with.
+    ///
+    /// # Errors
+    /// [`MotionFault::OrbitBeyondReach`]: after 2⁸⁸ revolutions nothing is left of the phase, nearer to a parabola after fewer; the
+    /// squares of the distances of an orbit without end leave the range of float64.
+    pub fn check(&self, elapsed: f64) -> Result<(), Error> {
+        if (elapsed / self.time).abs() <= self.reach {
+            return Ok(());
+        }
+        let reach = self.reach * self.time;
+        Err(Error::Motion(MotionFault::OrbitBeyondReach {
+            elapsed,
+            reach,
+        }))
+    }
+
+    /// Position and velocity at a time after the state the orbit was given with, within its [reach](Self::check).
     ///
     /// With s from `dt = r ds` and `G_k = s^k c_k(β s²)`, `c_k(x) = Σ (−x)^j/(2j+k)!`: Kepler's equation is
     /// `t = r₀ G₁ + σ₀ G₂ + μ G₃`, the distance `r = r₀ G₀ + σ₀ G₁ + μ G₂`. Whole revolutions are taken off in double-double
@@ -264,7 +298,9 @@ impl Orbit {
         if revolutions == 0.0 {
             return t;
         }
-        ((product - revolutions) + (rest + low * t)) / high
+        // Past 2⁵³ the rest of the product has whole revolutions of its own.
+        let rest = rest + low * t;
+        ((product - revolutions) + (rest - rest.round())) / high
     }
 }
 

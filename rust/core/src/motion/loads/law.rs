@@ -72,83 +72,6 @@ pub struct Character {
     pub keeps: Kept,
     /// Whether [`Law::add_to`] states it: a method that needs series cannot serve a load without them.
     pub has_series: bool,
-    /// What the equations of its series are made of.
-    pub parts: Parts,
-}
-
-/// Which parts the equations of a series have; the others are zero, and are left out.
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "the parts come in every combination"
-)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Parts {
-    /// How many directions fixed in space its torques are made of: none, the vertical axis, or all three.
-    pub directions: usize,
-    /// As many for its forces.
-    pub directions_of_path: usize,
-    /// Whether a torque is linear in ω.
-    pub on_omega: bool,
-    /// Whether a torque is linear in the attitude's quaternion.
-    pub on_attitude: bool,
-    /// Whether a torque goes with |ω|, which changes its law where ω passes through zero.
-    pub quadratic: bool,
-    /// Whether it would with other numbers of the law.
-    pub may_be_quadratic: bool,
-    /// How many gravity gradients.
-    pub gradients: usize,
-    /// Whether parts depend on time.
-    pub is_timed: bool,
-    /// Whether a force acts on a free body.
-    pub is_pushed: bool,
-    /// How many states the laws have of their own.
-    pub own: usize,
-}
-
-impl Parts {
-    /// Those of two laws that act together.
-    #[must_use]
-    pub fn and(self, other: Self) -> Self {
-        Self {
-            directions: self.directions.max(other.directions),
-            directions_of_path: self.directions_of_path.max(other.directions_of_path),
-            on_omega: self.on_omega || other.on_omega,
-            on_attitude: self.on_attitude || other.on_attitude,
-            quadratic: self.quadratic || other.quadratic,
-            may_be_quadratic: self.may_be_quadratic || other.may_be_quadratic,
-            gradients: self.gradients + other.gradients,
-            is_timed: self.is_timed || other.is_timed,
-            is_pushed: self.is_pushed || other.is_pushed,
-            own: self.own + other.own,
-        }
-    }
-
-    /// The parts of two motions under terms of the same kinds: of these only the directions and quadratic damping depend on
-    /// the numbers in them.
-    #[must_use]
-    pub fn with(self, other: &Self) -> Self {
-        Self {
-            directions: self.directions.max(other.directions),
-            quadratic: self.quadratic || other.quadratic,
-            ..*other
-        }
-    }
-
-    /// The parts of motions under the same terms with any numbers in them.
-    #[must_use]
-    pub fn with_all_numbers(self) -> Self {
-        Self {
-            directions: if self.directions > 0 { 3 } else { 0 },
-            quadratic: self.may_be_quadratic,
-            ..self
-        }
-    }
-
-    /// Whether the law may change with the state: by the sign of a feedback, or of ω that passes through zero.
-    #[must_use]
-    pub fn may_flip(&self) -> bool {
-        self.on_attitude || self.quadratic
-    }
 }
 
 /// An analytic law of a load: one file each.
@@ -186,7 +109,7 @@ pub(super) trait Law: Sized {
     fn potential(&self, subject: &Subject, phase: &Phase) -> Option<f64>;
 
     /// Adds what it does to the equations of a series, in numbers of any precision; `side` is the sign that the law is taken
-    /// for.
+    /// for. Which [`Parts`](super::Parts) it adds depends neither on the time nor on the side: the driver has room for those.
     fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, side: f64);
 
     /// Whether its law has a sign that changes with the state.
@@ -215,14 +138,5 @@ pub(super) trait Law: Sized {
     /// What it carries along in the body. [`Self::wrench`] of a law with states is that where a motion starts.
     fn carried(&self) -> Option<&dyn Carried> {
         None
-    }
-}
-
-/// Whether a vector is along the axis 3 of its frame: how many directions of space its series take.
-pub(super) fn directions_of(vector: &Vector3<f64>) -> usize {
-    if vector.x == 0.0 && vector.y == 0.0 {
-        1
-    } else {
-        3
     }
 }

@@ -183,10 +183,13 @@ impl Path {
     /// That it is known from one time to another of a motion that began at `start`.
     ///
     /// # Errors
-    /// [`OutsideSamples`](crate::error::MotionFault::OutsideSamples); too many revolutions about an oblate attractor.
+    /// [`OutsideSamples`](crate::error::MotionFault::OutsideSamples);
+    /// [`OrbitBeyondReach`](crate::error::MotionFault::OrbitBeyondReach); too many revolutions about an oblate attractor.
     pub fn check(&self, start: f64, from: f64, to: f64) -> Result<(), Error> {
         match &self.0 {
-            Way::Kepler(..) => Ok(()),
+            Way::Kepler(orbit, epoch) => [from, to]
+                .iter()
+                .try_for_each(|t| orbit.check(t - epoch.unwrap_or(start))),
             Way::Oblate(orbit, epoch) => [from, to]
                 .iter()
                 .try_for_each(|t| orbit.check(t - epoch.unwrap_or(start))),

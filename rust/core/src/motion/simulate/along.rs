@@ -1,23 +1,40 @@
 //! All passages of a function of time and state through zero within a step.
 //!
-//! In each part of a step the function is looked at where Chebyshev polynomials are interpolated. When its polynomial shows that it is
-//! resolved, it is asked again at the extremes of the polynomial: between two looks it then rises or falls all the way, so that
-//! each passage shows in the signs, also where two are close together. Where it is not resolved the part is halved, some
-//! times: of a function that is not smooth, passages closer together than that may be missed.
+//! In each part of a step the function is looked at where Chebyshev polynomials are interpolated. It counts as resolved when the last
+//! coefficients of its polynomial are small and when it agrees with the polynomial where that has its extremes, or, where there
+//! are none, at one place more: values that a fast function has by chance at the Chebyshev points pass the first test now and then, and
+//! not the second. Between two of these looks a resolved function rises or falls all the way, so that each passage shows in
+//! the signs, also where two are close together. Where it is not resolved the part is halved, until it is, or until the time has no digits
+//! left: there the function jumps. There is a limit to the looks at halved parts in a run; beyond it the run ends with an error.
+
+use std::ops::ControlFlow;
 
 use super::stepper::Dense;
+use crate::error::{Error, MotionFault};
 use crate::motion::state::Phase;
 use crate::numerics::sign_changes::sign_changes;
 
 /// The degree of the polynomials, and the angle that a body turns through in a part at most, in radians.
 const DEGREE: usize = 8;
 const TURN: f64 = 1.2;
-/// A body that turns less than that in a part is followed by polynomials of half the degree.
+/// A body that turns less than that in a part is followed by polynomials of half the degree, where these resolve the function.
 const SHORT: f64 = 0.4;
 /// A function counts as resolved when the last two coefficients of its polynomial are smaller than that, relative to its range.
 const RESOLVED: f64 = 1e-3;
-/// How often a part is halved until its function counts as one that is not smooth.
-const HALVINGS: u32 = 6;
+/// Where in a part a polynomial without extremes is compared with its function: at no distance from the nodes that is a simple
+/// fraction of the part.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+/// A function that is so many times larger at nine places than it differs there is not followed to its zeros: of a sine that
+/// passes through zero such values are found once in 10¹⁵ times.
+const FAR: f64 = 1024.0;
+/// How often a part is halved at most, and how many units of rounding of the time it is long at least: within less, a function
+/// that is not resolved jumps.
+const DEPTH: u32 = 45;
+const INSTANT: f64 = 1024.0;
+/// A function jumps between two of nine places where all it does besides is so much less than the jump.
+const BESIDES: f64 = 1e-3;
+/// Looks at parts that were halved, for one function in one run.
+pub(super) const MOST_LOOKS: u64 = 1 << 24;
 /// How often an extreme near zero is looked for closer by.
 const POLISHINGS: usize = 12;
 
@@ -32,33 +49,67 @@ pub(super) struct Look {
 pub(super) type Function<'a, E> =
     dyn FnMut(&mut dyn Dense<Error = E>, f64, &Phase) -> Result<f64, E> + 'a;
 
+/// What is done with each look in turn; it may look closer by, and end the search.
+pub(super) type Visit<'a, E> = dyn FnMut(&mut View<'_, E>, Look) -> Result<ControlFlow<()>, E> + 'a;
+
 /// A function along one step, or a part of it.
 pub(super) struct View<'b, E> {
     pub(super) function: &'b mut Function<'b, E>,
+    /// Its number among those that a caller has, if it is one of them.
+    pub(super) event: Option<usize>,
     pub(super) stepper: &'b mut dyn Dense<Error = E>,
     /// When the span starts, and the end of the part since then.
     pub(super) start: f64,
     pub(super) end: f64,
+    /// How long a part is at most.
+    pub(super) longest: f64,
+    /// The length of the part that is looked at, where it was halved.
+    pub(super) halved: Option<f64>,
+    /// How many looks at such parts are left.
+    pub(super) left: &'b mut u64,
 }
 
-impl<E> View<'_, E> {
+impl<E: From<Error>> View<'_, E> {
     fn look(&mut self, at: f64) -> Result<Look, E> {
         let phase = if at == self.stepper.elapsed() {
             self.stepper.phase()
         } else {
             self.stepper.within(at)?
         };
-        let value = (self.function)(&mut *self.stepper, at, &phase)?;
+        let value = self.value(at, &phase)?;
         Ok(Look { at, value })
+    }
+
+    /// The function, as long as looks are left.
+    fn value(&mut self, at: f64, phase: &Phase) -> Result<f64, E> {
+        if let Some(length) = self.halved {
+            let Some(left) = self.left.checked_sub(1) else {
+                return Err(Error::Motion(MotionFault::UnresolvedFunction {
+                    event: self.event,
+                    time: self.start + at,
+                    length,
+                    looks: MOST_LOOKS,
+                })
+                .into());
+            };
+            *self.left = left;
+        }
+        (self.function)(&mut *self.stepper, at, phase)
     }
 
     /// Looks from `begin`, which is not among them, to the end of the step, in which the body turns by `turn`: so many that between
     /// two of them the function rises or falls all the way.
-    pub(super) fn looks(&mut self, begin: Look, turn: f64) -> Result<Vec<Look>, E> {
+    pub(super) fn looks(
+        &mut self,
+        begin: Look,
+        turn: f64,
+        visit: &mut Visit<'_, E>,
+    ) -> Result<(), E> {
         let degree = if turn < SHORT { DEGREE / 2 } else { DEGREE };
-        let parts = (turn / TURN).ceil().clamp(1.0, f64::from(u32::MAX));
         let (from, length) = (begin.at, self.end - begin.at);
-        let (mut looks, mut begin, mut part) = (Vec::new(), begin, 0.0);
+        let parts = (turn / TURN).max(length.abs() / self.longest);
+        let parts = parts.ceil().clamp(1.0, f64::from(u32::MAX));
+        let (mut begin, mut part) = (begin, 0.0);
         while part < parts {
             part += 1.0;
             let end = if part == parts {
@@ -66,56 +117,114 @@ impl<E> View<'_, E> {
             } else {
                 from + length * (part / parts)
             };
+            self.halved = None;
             let end = self.look(end)?;
-            self.look_through(begin, end, degree, HALVINGS, &mut looks)?;
+            if self
+                .look_through([begin, end], degree, 0, visit)?
+                .is_break()
+            {
+                break;
+            }
             begin = end;
         }
-        Ok(looks)
+        Ok(())
     }
 
-    /// Adds looks from `begin` to `end`, this one included.
+    /// Visits looks from the first of two, which is not among them, to the second, which is.
     fn look_through(
         &mut self,
-        begin: Look,
-        end: Look,
+        [begin, end]: [Look; 2],
         degree: usize,
-        halvings: u32,
-        looks: &mut Vec<Look>,
-    ) -> Result<(), E> {
-        let place = |x: f64| begin.at + (end.at - begin.at) * x;
-        let mut nodes = vec![begin];
-        for node in 1..degree {
+        depth: u32,
+        visit: &mut Visit<'_, E>,
+    ) -> Result<ControlFlow<()>, E> {
+        self.halved = (depth > 0).then_some((end.at - begin.at).abs());
+        let place = |node: usize, degree: usize| {
             // The Chebyshev points of the second kind.
             let x = 0.5 - 0.5 * (std::f64::consts::PI * node as f64 / degree as f64).cos();
-            nodes.push(self.look(place(x))?);
+            begin.at + (end.at - begin.at) * x
+        };
+        let mut nodes = vec![begin];
+        for node in 1..degree {
+            nodes.push(self.look(place(node, degree))?);
         }
         nodes.push(end);
-        let shape = Shape::of(&nodes);
-        if !shape.is_resolved && halvings > 0 && shape.is_finite {
-            let middle = nodes[degree / 2];
-            self.look_through(begin, middle, degree, halvings - 1, looks)?;
-            return self.look_through(middle, end, degree, halvings - 1, looks);
+        let mut shape = Shape::of(&nodes);
+        let mut resolved = self.resolved(&nodes, &shape)?;
+        if resolved.is_none() && degree < DEGREE && shape.may_be_followed {
+            // Every second point of the higher degree is known.
+            let mut all = vec![begin];
+            for (known, node) in nodes[1..].iter().zip((1..).step_by(2)) {
+                all.extend([self.look(place(node, DEGREE))?, *known]);
+            }
+            shape = Shape::of(&all);
+            nodes = all;
+            resolved = self.resolved(&nodes, &shape)?;
+        }
+        let is_instant = {
+            let [one, other] = [begin.at, end.at].map(|at| (self.start + at).abs());
+            (end.at - begin.at).abs() <= INSTANT * f64::EPSILON * one.max(other)
+        };
+        let looks = match resolved {
+            Some(looks) => looks,
+            None if depth < DEPTH && !is_instant && shape.may_be_followed => {
+                let middle = nodes[nodes.len() / 2];
+                for half in [[begin, middle], [middle, end]] {
+                    if self
+                        .look_through(half, DEGREE, depth + 1, visit)?
+                        .is_break()
+                    {
+                        return Ok(ControlFlow::Break(()));
+                    }
+                }
+                return Ok(ControlFlow::Continue(()));
+            }
+            None => nodes,
+        };
+        for look in &looks[1..] {
+            if visit(self, *look)?.is_break() {
+                return Ok(ControlFlow::Break(()));
+            }
+        }
+        Ok(ControlFlow::Continue(()))
+    }
+
+    /// The looks through a part between which the function rises or falls all the way, if its polynomial resolves it.
+    fn resolved(&mut self, nodes: &[Look], shape: &Shape) -> Result<Option<Vec<Look>>, E> {
+        if shape.is_constant {
+            return Ok(Some(nodes.to_vec()));
         }
         if !shape.is_resolved {
-            looks.extend(&nodes[1..]);
-            return Ok(());
+            return Ok(None);
         }
+        let [begin, end] = [nodes[0].at, nodes[nodes.len() - 1].at];
+        let place = |x: f64| begin + (end - begin) * x;
         let extremes = shape.extremes();
-        let mut between = nodes;
-        for (index, &x) in extremes.iter().enumerate() {
-            let extreme = self.look(place(x))?;
-            let before = index.checked_sub(1).map_or(0.0, |before| extremes[before]);
-            let after = extremes.get(index + 1).map_or(1.0, |after| *after);
-            let is_near = extreme.value.abs() <= shape.doubt;
-            between.push(if is_near {
-                self.polished([place(before), extreme.at, place(after)], extreme)?
-            } else {
-                extreme
-            });
+        let places = if extremes.is_empty() {
+            &[GOLDEN][..]
+        } else {
+            &extremes
+        };
+        let mut between = nodes.to_vec();
+        for &x in places {
+            let look = self.look(place(x))?;
+            let off = (look.value - shape.at(x)).abs();
+            if off.is_nan() || off > shape.tolerance {
+                return Ok(None);
+            }
+            between.push(look);
         }
-        between.sort_by(|a, b| (a.at - begin.at).abs().total_cmp(&(b.at - begin.at).abs()));
-        looks.extend(&between[1..]);
-        Ok(())
+        for (index, &x) in extremes.iter().enumerate() {
+            let extreme = between[nodes.len() + index];
+            if extreme.value.abs() <= shape.doubt {
+                let before = index.checked_sub(1).map_or(0.0, |before| extremes[before]);
+                let after = extremes.get(index + 1).map_or(1.0, |after| *after);
+                between[nodes.len() + index] =
+                    self.polished([place(before), place(x), place(after)], extreme)?;
+            }
+        }
+        between.sort_by(|a, b| (a.at - begin).abs().total_cmp(&(b.at - begin).abs()));
+        Ok(Some(between))
     }
 
     /// The extreme nearer to zero close by one that the polynomial has, by parabolas; it ends where the function has passed through
@@ -205,7 +314,7 @@ impl<E> View<'_, E> {
     /// The function along the dense output, at the end of the step too.
     fn inner(&mut self, at: f64) -> Result<f64, E> {
         let phase = self.stepper.within(at)?;
-        (self.function)(&mut *self.stepper, at, &phase)
+        self.value(at, &phase)
     }
 }
 
@@ -216,10 +325,15 @@ fn is_within(place: f64, one: f64, other: f64) -> bool {
 
 /// A function through Chebyshev points, as a polynomial.
 struct Shape {
-    is_finite: bool,
+    /// To rounding: there is nothing to resolve.
+    is_constant: bool,
     is_resolved: bool,
+    /// Whether there may be more to see of it: it is finite, zero is not far from all that is known, and that is no jump.
+    may_be_followed: bool,
     /// How far the polynomial may be off.
     doubt: f64,
+    /// How far the function may be off it where it counts as resolved.
+    tolerance: f64,
     /// The coefficients of its Chebyshev polynomials.
     chebyshev: Vec<f64>,
 }
@@ -244,18 +358,35 @@ impl Shape {
             .collect();
         let range: f64 = chebyshev[1..].iter().map(|c| c.abs()).sum();
         let doubt = chebyshev[n - 1].abs() + chebyshev[n].abs();
-        let most = nodes
-            .iter()
-            .map(|look| look.value.abs())
-            .fold(0.0, f64::max);
-        // Of what is constant to rounding there is nothing to resolve.
-        let is_constant = range <= 64.0 * f64::EPSILON * most;
+        let values = || nodes.iter().map(|look| look.value);
+        let most = values().map(f64::abs).fold(0.0, f64::max);
+        let (low, high) = values()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+                (low.min(value), high.max(value))
+            });
+        let is_far = n >= DEGREE && low.max(-high) >= FAR * (high - low);
+        let changes = || (nodes.windows(2)).map(|pair| (pair[1].value - pair[0].value).abs());
+        let (all, largest) = (changes().sum::<f64>(), changes().fold(0.0, f64::max));
+        let is_jump = n >= DEGREE && all - largest <= BESIDES * largest;
+        let rounding = 64.0 * f64::EPSILON * most;
         Self {
-            is_finite: range.is_finite(),
-            is_resolved: is_constant || doubt <= RESOLVED * range,
-            doubt: 4.0 * doubt + 64.0 * f64::EPSILON * most,
+            is_constant: range <= rounding,
+            is_resolved: doubt <= RESOLVED * range,
+            may_be_followed: range.is_finite() && !is_far && !is_jump,
+            doubt: 4.0 * doubt + rounding,
+            tolerance: 4.0 * doubt + RESOLVED * range + rounding,
             chebyshev,
         }
+    }
+
+    /// The polynomial at a place within 0..1, by Clenshaw's recurrence.
+    fn at(&self, x: f64) -> f64 {
+        let y = 2.0 * x - 1.0;
+        let (mut one, mut two) = (0.0, 0.0);
+        for coefficient in self.chebyshev[1..].iter().rev() {
+            (one, two) = (coefficient + 2.0 * y * one - two, one);
+        }
+        self.chebyshev[0] + y * one - two
     }
 
     /// Where within 0..1 the polynomial has its extremes.
@@ -319,6 +450,107 @@ mod tests {
         }
     }
 
+    /// All zeros of a function within a step of one second, in which a body turns by `turn`, and how often it was asked.
+    fn searched(
+        turn: f64,
+        left: &mut u64,
+        value: &dyn Fn(f64) -> f64,
+    ) -> Result<(Vec<f64>, usize), Error> {
+        let (mut count, mut zeros) = (0, Vec::new());
+        let mut before = Look {
+            at: 0.0,
+            value: value(0.0),
+        };
+        let mut view = View {
+            function: &mut |_, at, _| {
+                count += 1;
+                Ok(value(at))
+            },
+            event: Some(3),
+            stepper: &mut Still,
+            start: 0.0,
+            end: 1.0,
+            longest: f64::INFINITY,
+            halved: None,
+            left,
+        };
+        view.looks(before, turn, &mut |view, look| {
+            if before.value * look.value < 0.0 {
+                zeros.push(view.locate([before, look], sign(before.value))?);
+            }
+            before = look;
+            Ok(ControlFlow::Continue(()))
+        })?;
+        Ok((zeros, count))
+    }
+
+    #[test]
+    fn a_function_much_faster_than_the_body_loses_no_zero() {
+        let mut cycles = 0.37;
+        while cycles < 2e3 {
+            for phase in [0.3, 1.9, 4.4] {
+                for turn in [0.0, 1.0, 30.0] {
+                    let rate = std::f64::consts::TAU * cycles;
+                    let wave = |t: f64| (rate * t + phase).sin();
+                    let (zeros, count) =
+                        searched(turn, &mut MOST_LOOKS.clone(), &wave).expect("found");
+                    let half = std::f64::consts::PI;
+                    let want = ((rate + phase) / half).floor() - (phase / half).floor();
+                    assert_eq!(zeros.len() as f64, want, "{cycles} {phase} {turn}");
+                    for (k, zero) in zeros.iter().enumerate() {
+                        let exact = ((phase / half).floor() + 1.0 + k as f64) * half - phase;
+                        assert!(
+                            (zero * rate - exact).abs() < 1e-8 + 1e-14 * rate,
+                            "{cycles}"
+                        );
+                    }
+                    assert!(count as f64 <= 90.0 * (1.0 + cycles) + 20.0 * turn);
+                }
+            }
+            cycles *= 1.7;
+        }
+    }
+
+    #[test]
+    fn looks_at_halved_parts_are_counted_and_have_an_end() {
+        let fast = |t: f64| (6e3 * t).sin();
+        let mut left = MOST_LOOKS;
+        searched(0.0, &mut left, &fast).expect("found");
+        let needed = MOST_LOOKS - left;
+        for (mut left, is_found) in [(needed, true), (needed - 1, false)] {
+            let found = searched(0.0, &mut left, &fast);
+            assert_eq!(found.is_ok(), is_found);
+            assert_eq!(left, 0);
+            if let Err(error) = found {
+                let told = error.to_string();
+                assert!(
+                    told.starts_with("events: event 3 changes too fast"),
+                    "{told}"
+                );
+            }
+        }
+        // Rounding errors about zero; and far from it, where they are not followed.
+        let noise = |t: f64| (1e14 * t * t).sin();
+        assert!(searched(0.0, &mut 100_000, &noise).is_err());
+        let (zeros, count) = searched(0.0, &mut 0, &|t| 0.3 + 1e-5 * noise(t)).expect("far");
+        assert!(zeros.is_empty() && count < 20, "{count}");
+    }
+
+    #[test]
+    fn a_jump_is_seen_at_once_and_a_corner_soon() {
+        let (zeros, count) =
+            searched(0.0, &mut 0, &|t| if t < 0.377 { -2.0 } else { 1.0 }).expect("found");
+        assert_eq!(
+            (zeros.len(), (zeros[0] - 0.377).abs() < 1e-16, count < 130),
+            (1, true, true)
+        );
+        for (corner, level) in [(0.377, 0.1), (0.6, 1e-3), (0.21, 1e-9)] {
+            let left = &mut 1500;
+            let (zeros, _) = searched(0.0, left, &|t| (t - corner).abs() - level).expect("found");
+            assert_eq!(zeros.len(), 2, "{corner}");
+        }
+    }
+
     /// Where a function passes through zero in a step that starts at a time, and how often it was asked.
     fn located(start: f64, value: impl Fn(f64) -> f64) -> (f64, usize) {
         let mut count = 0;
@@ -336,9 +568,13 @@ mod tests {
         });
         let mut view = View {
             function: &mut function,
+            event: None,
             stepper: &mut Still,
             start,
             end: 1.0,
+            longest: 1.0,
+            halved: None,
+            left: &mut 0,
         };
         let found = view.locate(bracket, sign(bracket[0].value));
         (found.expect("a zero"), count)

@@ -1,7 +1,10 @@
 //! Where within a step a load changes its law by a sign that depends on the state.
 
-use super::along::{Look, View, sign};
+use std::ops::ControlFlow;
+
+use super::along::{Look, MOST_LOOKS, View, sign};
 use super::stepper::Dense;
+use crate::error::Error;
 use crate::motion::loads::Change;
 use crate::motion::state::Phase;
 
@@ -10,7 +13,7 @@ const LONG: f64 = 2.0;
 
 /// The first change within the step that began at `from` in the state `before`, and the time since the start of the span, which is
 /// `start`.
-pub(super) fn first<E>(
+pub(super) fn first<E: From<Error>>(
     changes: &[Change],
     stepper: &mut dyn Dense<Error = E>,
     start: f64,
@@ -66,7 +69,7 @@ fn until<E>(
     })
 }
 
-fn of<E>(
+fn of<E: From<Error>>(
     change: &Change,
     stepper: &mut dyn Dense<Error = E>,
     start: f64,
@@ -94,22 +97,30 @@ fn of<E>(
     }
     let mut view = View {
         function: &mut |stepper, at, phase| until(change, stepper, start, at, phase),
+        event: None,
         stepper,
         start,
         end: to,
+        longest: f64::INFINITY,
+        halved: None,
+        left: &mut MOST_LOOKS.clone(),
     };
     let mut last = Look {
         at: from,
         value: value.max(0.0),
     };
-    for look in view.looks(last, turn)? {
+    let mut found = None;
+    view.looks(last, turn, &mut |view, look| {
         if look.value < 0.0 {
-            if last.value <= 0.0 {
-                return Ok(Some(last.at));
-            }
-            return view.locate([last, look], sign(last.value)).map(Some);
+            found = Some(if last.value <= 0.0 {
+                last.at
+            } else {
+                view.locate([last, look], sign(last.value))?
+            });
+            return Ok(ControlFlow::Break(()));
         }
         last = look;
-    }
-    Ok(None)
+        Ok(ControlFlow::Continue(()))
+    })?;
+    Ok(found)
 }

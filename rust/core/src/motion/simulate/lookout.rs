@@ -1,6 +1,8 @@
 //! The search for events, step by step.
 
-use super::along::{Look, View, sign};
+use std::ops::ControlFlow;
+
+use super::along::{Look, MOST_LOOKS, View, sign};
 use super::events::Events;
 use super::stepper::Dense;
 use crate::error::{Error, MotionFault};
@@ -10,6 +12,8 @@ use crate::motion::state::Phase;
 
 /// How far the body turns in a part of a step, in radians.
 const STAGE: f64 = 100.0;
+/// Parts of the run in each of which every function is looked at, however still the body is.
+const PARTS: f64 = 16.0;
 
 /// The functions as a run goes on.
 pub(super) struct Lookout<'a, E> {
@@ -20,8 +24,10 @@ pub(super) struct Lookout<'a, E> {
     /// Its value where the last step ended.
     values: Vec<f64>,
     counts: Vec<u64>,
-    /// Whether the run goes forward in time.
-    forward: bool,
+    /// How many looks at parts that were halved are left for each.
+    left: Vec<u64>,
+    /// The length of the run, negative where it goes back in time.
+    span: f64,
     pub(super) crossings: Vec<Crossing>,
 }
 
@@ -30,7 +36,7 @@ impl<'a, E: From<Error>> Lookout<'a, E> {
         events: &'a mut dyn Events<Error = E>,
         t: f64,
         phase: &Phase,
-        forward: bool,
+        span: f64,
         over_limit: &dyn Fn(usize) -> f64,
     ) -> Result<Self, E> {
         let rules = events.rules().to_vec();
@@ -46,8 +52,9 @@ impl<'a, E: From<Error>> Lookout<'a, E> {
             signs: values.iter().map(|value| sign(*value)).collect(),
             values,
             counts: vec![0; rules.len()],
+            left: vec![MOST_LOOKS; rules.len()],
             rules,
-            forward,
+            span,
             crossings: Vec::new(),
         })
     }
@@ -72,42 +79,48 @@ impl<'a, E: From<Error>> Lookout<'a, E> {
         if self.rules.is_empty() {
             return Ok(None);
         }
-        let turn = stepper.turn(to - from);
-        let mut found = Vec::new();
+        // Where a function ends the run, the others are looked at no further.
+        let (mut found, mut to) = (Vec::new(), to);
         for event in 0..self.rules.len() {
-            let (events, watched) = (&mut *self.events, self.rules[event].watched);
+            let (events, rule) = (&mut *self.events, self.rules[event]);
+            let watched = rule.watched;
             if matches!(watched, Watched::Stop(_) | Watched::Slip(_)) {
                 continue; // told by the load
             }
+            let turn = stepper.turn(to - from);
             let mut view = View {
                 function: &mut |stepper, at, phase| match watched {
                     Watched::Limit(state) => Ok(stepper.over_limit(state, at, phase)),
                     _ => events.value(event, start + at, phase),
                 },
+                event: Some(event),
                 stepper: &mut *stepper,
                 start,
                 end: to,
+                longest: self.span.abs() / PARTS,
+                halved: None,
+                left: &mut self.left[event],
             };
-            let begin = Look {
+            let mut before = Look {
                 at: from,
                 value: self.values[event],
             };
-            let looks = view.looks(begin, turn)?;
-            let mut before = begin;
-            for after in looks {
-                let (was, is) = (self.signs[event], sign(after.value));
+            let (last_sign, mut count) = (&mut self.signs[event], self.counts[event]);
+            let forward = self.span > 0.0;
+            view.looks(before, turn, &mut |view, after| {
+                let (was, is) = (*last_sign, sign(after.value));
                 let bracket = [before, after];
                 before = after;
                 if was * is > 0.0 || was == 0.0 {
-                    self.signs[event] = if was == 0.0 { is } else { was };
-                    continue;
+                    *last_sign = if was == 0.0 { is } else { was };
+                    return Ok(ControlFlow::Continue(()));
                 }
-                self.signs[event] = is;
+                *last_sign = is;
                 if is.is_nan() || was.is_nan() {
-                    continue;
+                    return Ok(ControlFlow::Continue(()));
                 }
-                let rising = (was < 0.0) == self.forward;
-                let counts = match self.rules[event].direction {
+                let rising = (was < 0.0) == forward;
+                let counts = match rule.direction {
                     Direction::Any => true,
                     Direction::Rising => rising,
                     Direction::Falling => !rising,
@@ -119,8 +132,14 @@ impl<'a, E: From<Error>> Lookout<'a, E> {
                         view.locate(bracket, was)?
                     };
                     found.push((place, event));
+                    count += 1;
+                    if count == rule.last {
+                        to = place;
+                        return Ok(ControlFlow::Break(()));
+                    }
                 }
-            }
+                Ok(ControlFlow::Continue(()))
+            })?;
             self.values[event] = before.value;
         }
         found.sort_by(|(a, _), (b, _)| a.abs().total_cmp(&b.abs()));

@@ -33,7 +33,7 @@ impl<E> Run<E> {
         }
         let (start, end) = (task.times[0], bounds[bounds.len() - 1]);
         let over_limit = |state| load.over_limit(state, start, &task.initial);
-        let mut lookout = Lookout::new(events, start, &task.initial, end > start, &over_limit)?;
+        let mut lookout = Lookout::new(events, start, &task.initial, end - start, &over_limit)?;
         let mut carry = Carry::default();
         for pair in bounds.windows(2) {
             let [mut from, to] = [pair[0], pair[1]];

@@ -22,7 +22,7 @@ pub(super) fn solve<E: From<Error>>(
 ) -> Run<E> {
     let (start, end) = (task.times[0], task.times[task.times.len() - 1]);
     let mut halt = None;
-    let mut lookout = match Lookout::new(events, start, &task.initial, end > start, &|_| -1.0) {
+    let mut lookout = match Lookout::new(events, start, &task.initial, end - start, &|_| -1.0) {
         Ok(lookout) => lookout,
         Err(error) => return Run::at_start(task, End::Failed(error)),
     };

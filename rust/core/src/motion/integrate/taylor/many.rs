@@ -9,6 +9,7 @@ use super::course::parts;
 use super::job::{rows, settings};
 use super::kernels::{OneByOne, Precisely, ROWS, SideBySide};
 use crate::error::Error;
+use crate::motion::loads::variables::Fixed;
 use crate::motion::loads::{Parts, Term};
 use crate::motion::problem::{Run, Task};
 use crate::numerics::dispatch::dispatch;
@@ -113,7 +114,8 @@ impl Tasks<'_, '_> {
         let mut runs = vec![None; count];
         let mut common = Parts::default();
         for row in some {
-            common = common.with(&parts((self.terms)(row), example.subject.pivoted));
+            let (terms, subject) = ((self.terms)(row), &example.subject);
+            common = common.of_both(parts::<f64>(terms, subject, Fixed, !subject.pivoted));
         }
         let settings = settings(&example, common);
         let begin = |row: usize| {

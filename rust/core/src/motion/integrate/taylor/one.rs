@@ -8,6 +8,7 @@ use super::job::{job, settings};
 use super::kernels::{OneByOne, Precisely};
 use crate::error::Error;
 use crate::motion::loads::Term;
+use crate::motion::loads::variables::Fixed;
 use crate::motion::problem::{End, Run, Task};
 use crate::numerics::dispatch::dispatch;
 
@@ -33,7 +34,9 @@ fn go(
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
     see: Option<See>,
 ) {
-    let settings = settings(task, parts(terms, task.subject.pivoted));
+    let subject = &task.subject;
+    let parts = parts::<f64>(terms, subject, Fixed, !subject.pivoted);
+    let settings = settings(task, parts);
     // How the run ended stands in it.
     if task.tolerance.is_beyond_doubles() {
         let jobs = &mut job(task, terms, run).into_iter();

@@ -4,7 +4,7 @@ use std::iter::once;
 use std::ops::ControlFlow;
 
 use super::almanac::Almanac;
-use super::course::{Course, parts_of};
+use super::course::{Course, parts};
 use super::derived::Derived;
 use super::drive::{Job, Settings, Tell, drive};
 use super::row::ORDER;
@@ -39,7 +39,8 @@ pub(in crate::motion::integrate) fn run_varied(
         next = k + 1;
         tell(k, state, own);
     };
-    let parts = parts_of(terms, task.subject.pivoted, block);
+    // The path of the body is left out.
+    let parts = parts::<Varied>(terms, &task.subject, block, false);
     let settings = Settings::of_derivatives(ORDER, parts);
     let job = Job {
         course,

@@ -150,3 +150,32 @@ fn derivatives_are_those_of_neighbours() {
         }
     }
 }
+
+#[test]
+fn a_state_is_known_up_to_the_reach_and_beyond_it_to_nobody() {
+    let orbit =
+        |speed: f64| Orbit::new(1.0, &Vector3::x(), &(Vector3::y() * speed)).expect("orbit");
+    for speed in [1.0, 1.3, 1.41, 2.0_f64.sqrt(), 1.5] {
+        let one = orbit(speed);
+        let reach = one.reach * one.time;
+        for sense in [1.0, -1.0] {
+            assert!(one.check(sense * reach).is_ok());
+            assert!(one.check(sense * reach.next_up()).is_err());
+            let (r, v) = one.at(sense * reach);
+            assert!(
+                r.iter().chain(&v).all(|x| x.is_finite()),
+                "{speed}: {r} {v}"
+            );
+            // The energy shows whether the state is one of the orbit, wherever on it.
+            let energy = 0.5 * v.norm_squared() - 1.0 / r.norm();
+            assert!(
+                (energy - 0.5 * speed * speed + 1.0).abs() < 1e-13,
+                "{speed} {energy}"
+            );
+        }
+        assert!(one.check(f64::INFINITY).is_err() && one.check(f64::NAN).is_err());
+    }
+    // A circle: 2⁸⁸ revolutions.
+    let turns = orbit(1.0).reach * orbit(1.0).time / orbit(1.0).period();
+    assert!((turns / 2.0_f64.powi(88) - 1.0).abs() < 0.01, "{turns:e}");
+}

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use crate::error::{Error, all_finite};
 use crate::motion::kinematics::Frame;
 use crate::motion::loads::axes::{Axes, Exact};
-use crate::motion::loads::law::{Character, Kept, Law, Parts, directions_of};
+use crate::motion::loads::law::{Character, Kept, Law};
 use crate::motion::loads::linear::Linear;
 use crate::motion::loads::parameter::Parameter;
 use crate::motion::loads::subject::Subject;
@@ -79,18 +79,6 @@ impl Law for ConstantForce {
                 Frame::Body => Kept::Nothing,
             },
             has_series: true,
-            parts: Parts {
-                directions: match self.frame {
-                    Frame::Space if self.turns(pivoted) => directions_of(&self.vector),
-                    _ => 0,
-                },
-                directions_of_path: match self.frame {
-                    Frame::Body if !pivoted => 3,
-                    _ => 0,
-                },
-                is_pushed: !pivoted,
-                ..Parts::default()
-            },
         }
     }
 
@@ -144,14 +132,14 @@ impl Law for ConstantForce {
         match self.frame {
             Frame::Body => {
                 linear.constant += axes.principal(&arm.cross(&vector));
-                linear.thrust += axes.principal(&vector);
+                linear.add_thrust(&axes.principal(&vector));
             }
             Frame::Space => {
                 if self.turns(axes.subject.pivoted) {
                     let lever = cross_matrix(&axes.principal(&arm));
                     linear.on_space.push((vector, lever));
                 }
-                linear.force += vector;
+                linear.add_force(&vector);
             }
         }
     }

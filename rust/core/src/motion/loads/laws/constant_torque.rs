@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use crate::error::{Error, all_finite};
 use crate::motion::kinematics::Frame;
 use crate::motion::loads::axes::{Axes, Exact};
-use crate::motion::loads::law::{Character, Kept, Law, Parts, directions_of};
+use crate::motion::loads::law::{Character, Kept, Law};
 use crate::motion::loads::linear::Linear;
 use crate::motion::loads::parameter::Parameter;
 use crate::motion::loads::subject::Subject;
@@ -50,13 +50,6 @@ impl Law for ConstantTorque {
             needs_epoch: false,
             keeps: Kept::Nothing,
             has_series: true,
-            parts: Parts {
-                directions: match self.frame {
-                    Frame::Body => 0,
-                    Frame::Space => directions_of(&self.vector),
-                },
-                ..Parts::default()
-            },
         }
     }
 

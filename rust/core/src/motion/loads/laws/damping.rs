@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use crate::error::{Error, all_finite};
 use crate::motion::loads::axes::{Axes, Exact};
 use crate::motion::loads::formula::{OMEGA, Steps};
-use crate::motion::loads::law::{Character, Kept, Law, Parts};
+use crate::motion::loads::law::{Character, Kept, Law};
 use crate::motion::loads::linear::Linear;
 use crate::motion::loads::parameter::Parameter;
 use crate::motion::loads::subject::Subject;
@@ -67,12 +67,6 @@ impl Law for Damping {
             needs_epoch: false,
             keeps: Kept::Nothing,
             has_series: true,
-            parts: Parts {
-                on_omega: true,
-                quadratic: self.quadratic != Matrix3::zeros(),
-                may_be_quadratic: true,
-                ..Parts::default()
-            },
         }
     }
 
@@ -111,7 +105,7 @@ impl Law for Damping {
     }
 
     fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
-        linear.on_omega -= axes.tensor(&axes.matrix(&self.linear, 0));
+        linear.add_on_omega(&-axes.tensor(&axes.matrix(&self.linear, 0)));
         if self.quadratic != Matrix3::zeros() || axes.varies(9, 9) {
             let mut steps = Steps::default();
             let speed = steps.speed();

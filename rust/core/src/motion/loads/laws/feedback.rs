@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Matrix3x4, UnitQuaternion, Vector3, Vector4};
 use crate::error::{Error, all_finite};
 use crate::motion::loads::aim::Aim;
 use crate::motion::loads::axes::{Axes, Exact};
-use crate::motion::loads::law::{Character, Kept, Law, Parts};
+use crate::motion::loads::law::{Character, Kept, Law};
 use crate::motion::loads::linear::Linear;
 use crate::motion::loads::now::Now;
 use crate::motion::loads::parameter::Parameter;
@@ -111,11 +111,6 @@ impl Law for Feedback {
             needs_epoch: self.aim.needs_epoch(),
             keeps: Kept::Nothing,
             has_series: self.aim.fixed().is_some(),
-            parts: Parts {
-                on_omega: true,
-                on_attitude: true,
-                ..Parts::default()
-            },
         }
     }
 
@@ -166,11 +161,11 @@ impl Law for Feedback {
     }
 
     fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, side: f64) {
-        linear.on_omega -= axes.tensor(&axes.matrix(&self.damping, 9));
+        linear.add_on_omega(&-axes.tensor(&axes.matrix(&self.damping, 9)));
         let stiffness = (axes.columns).tr_mul(&axes.matrix(&self.stiffness, 0));
         let columns = self.error_columns(axes);
         let vector = Matrix3x4::from_columns(&columns.map(|[x, y, z, _]| Vector3::new(x, y, z)));
-        linear.on_attitude -= stiffness * vector * X::from(side);
+        linear.add_on_attitude(&-(stiffness * vector * X::from(side)));
     }
 
     fn may_switch(&self) -> bool {

@@ -5,9 +5,9 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::slug::positive;
 use crate::error::{Error, MotionFault};
 use crate::motion::loads::axes::{Axes, Exact};
-use crate::motion::loads::forcing::{Forcing, OnOrbit, Timed, When};
+use crate::motion::loads::forcing::{OnOrbit, Orbiting, When};
 use crate::motion::loads::kepler::Orbit;
-use crate::motion::loads::law::{Character, Kept, Law, Parts};
+use crate::motion::loads::law::{Character, Kept, Law};
 use crate::motion::loads::linear::Linear;
 use crate::motion::loads::parameter::Parameter;
 use crate::motion::loads::path::Path;
@@ -139,10 +139,6 @@ impl Law for GravityGradient {
             needs_epoch: self.path.needs_epoch(),
             keeps: Kept::Nothing,
             has_series: self.path.as_kepler().is_some(),
-            parts: Parts {
-                gradients: 1,
-                ..Parts::default()
-            },
         }
     }
 
@@ -190,18 +186,15 @@ impl Law for GravityGradient {
     }
 
     fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
-        linear.timed.push((axes.first, self));
+        linear.gradients.push((axes.first, self));
     }
 }
 
-impl<X: Exact> Timed<X> for GravityGradient {
-    fn force(&self, forcing: &mut Forcing<X>, axes: &Axes<'_, X>, when: &When<X>) {
-        if forcing.has_orbits {
-            return;
-        }
+impl<X: Exact> Orbiting<X> for GravityGradient {
+    fn on_orbit(&self, axes: &Axes<'_, X>, when: &When<X>) -> OnOrbit<X> {
         // Others have no series.
         let Some((orbit, epoch)) = self.path.as_kepler() else {
-            return forcing.orbits.push(OnOrbit::none());
+            return OnOrbit::none();
         };
         let elapsed = when.time - epoch.unwrap_or(axes.subject.start);
         let (r, v) = (axes.variables).on_orbit(orbit, elapsed, axes.first);
@@ -209,22 +202,18 @@ impl<X: Exact> Timed<X> for GravityGradient {
         let cube = distance * distance * distance * unit * unit;
         let mu = axes.number(self.mu(), 0);
         let more = (mu - X::from(self.mu())) * X::from(3.0 * self.strength); // zero, but its derivatives are not
-        forcing.orbits.push(OnOrbit {
+        OnOrbit {
             position: r / distance,
             velocity: v / (distance * unit),
             pull: mu / cube,
             strength: (X::from(self.coefficient()) + more) / cube,
-        });
+        }
     }
 
-    fn square_of_rate(&self, subject: &Subject, _: f64, _: f64) -> f64 {
+    fn square_of_rate(&self, subject: &Subject) -> f64 {
         let (r, v) = self.orbit_at(subject, subject.start);
         let distance = r.norm();
         let pull = self.coefficient().abs().max(self.mu()) / distance.powi(3);
         pull.max((v.norm() / distance).powi(2))
-    }
-
-    fn torques_along(&self, _: &Vector3<f64>, _: f64) -> Vec<(f64, f64)> {
-        Vec::new() // r×I r has no component along an axis without a moment
     }
 }

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 use crate::error::{Error, MotionFault, all_finite, finite};
 use crate::motion::loads::axes::{Axes, Exact};
-use crate::motion::loads::law::{Character, Kept, Law, Parts, directions_of};
+use crate::motion::loads::law::{Character, Kept, Law};
 use crate::motion::loads::linear::Linear;
 use crate::motion::loads::parameter::Parameter;
 use crate::motion::loads::path::Path;
@@ -223,10 +223,6 @@ impl Law for Magnetic {
                 Source::Sampled(_) | Source::Dipole { .. } => Kept::Nothing,
             },
             has_series: self.constant().is_some(),
-            parts: Parts {
-                directions: self.constant().map_or(0, directions_of),
-                ..Parts::default()
-            },
         }
     }
 

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use crate::error::{Error, all_finite};
 use crate::motion::loads::axes::{Axes, Exact};
 use crate::motion::loads::carried::Carried;
-use crate::motion::loads::law::{Character, Kept, Law, Parts};
+use crate::motion::loads::law::{Character, Kept, Law};
 use crate::motion::loads::linear::Linear;
 use crate::motion::loads::now::Now;
 use crate::motion::loads::parameter::Parameter;
@@ -51,10 +51,6 @@ impl Law for Rotor {
             needs_epoch: false,
             keeps: Kept::All,
             has_series: true,
-            parts: Parts {
-                on_omega: true,
-                ..Parts::default()
-            },
         }
     }
 
@@ -92,7 +88,7 @@ impl Law for Rotor {
         let [x, y, z] = axes.principal(&axes.vector(&self.momentum, 0)).into();
         let o = X::zero();
         // h × ω.
-        linear.on_omega += Matrix3::new(o, -z, y, z, o, -x, -y, x, o);
+        linear.add_on_omega(&Matrix3::new(o, -z, y, z, o, -x, -y, x, o));
     }
 
     fn carried(&self) -> Option<&dyn Carried> {

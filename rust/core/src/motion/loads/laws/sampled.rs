@@ -8,8 +8,8 @@ use nalgebra::Vector3;
 use crate::error::Error;
 use crate::motion::kinematics::Frame;
 use crate::motion::loads::axes::{Axes, Exact, exact};
-use crate::motion::loads::forcing::{Forcing, Timed, When};
-use crate::motion::loads::law::{Character, Kept, Law, Parts};
+use crate::motion::loads::forcing::{Timed, When};
+use crate::motion::loads::law::{Character, Kept, Law};
 use crate::motion::loads::linear::Linear;
 use crate::motion::loads::parameter::Parameter;
 use crate::motion::loads::spline::{Spline, pieces};
@@ -161,14 +161,6 @@ impl Law for Sampled {
             needs_epoch: false,
             keeps: Kept::Nothing,
             has_series: true,
-            parts: Parts {
-                directions: match self.frame {
-                    Frame::Body => 0,
-                    Frame::Space => 3,
-                },
-                is_timed: true,
-                ..Parts::default()
-            },
         }
     }
 
@@ -210,7 +202,11 @@ impl Law for Sampled {
 }
 
 impl<X: Exact> Timed<X> for Sampled {
-    fn force(&self, forcing: &mut Forcing<X>, axes: &Axes<'_, X>, when: &When<X>) {
+    fn frame(&self) -> Frame {
+        self.frame
+    }
+
+    fn cubic(&self, axes: &Axes<'_, X>, when: &When<X>) -> [Vector3<X>; 4] {
         let (from, [c0, c1, c2, c3]) = self.varied_piece(axes, when.middle);
         let x = when.elapsed + X::pair(when.start, -from);
         let (two, three) = (X::from(2.0), X::from(3.0));
@@ -220,15 +216,11 @@ impl<X: Exact> Timed<X> for Sampled {
             c2 + c3 * (three * x),
             c3,
         ];
-        let mut scale = 1.0 / when.unit / when.unit;
-        for (k, torque) in centered.iter().enumerate() {
-            let torque = torque * X::from(scale);
-            match self.frame {
-                Frame::Body => forcing.in_body[k] += axes.principal(&torque),
-                Frame::Space => forcing.in_space[k] += torque,
-            }
+        let mut scale = 1.0 / when.unit;
+        centered.map(|torque| {
             scale /= when.unit;
-        }
+            torque * X::from(scale)
+        })
     }
 
     /// From the largest that the torque may be between two samples. The rate of a torque that hardly moves the body is still not

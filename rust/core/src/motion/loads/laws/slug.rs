@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use crate::error::{Error, MotionFault, finite};
 use crate::motion::loads::axes::{Axes, Exact};
 use crate::motion::loads::carried::Carried;
-use crate::motion::loads::law::{Character, Kept, Law, Parts};
+use crate::motion::loads::law::{Character, Kept, Law};
 use crate::motion::loads::linear::{Linear, Own};
 use crate::motion::loads::now::Now;
 use crate::motion::loads::parameter::Parameter;
@@ -64,11 +64,6 @@ impl Law for Slug {
             needs_epoch: false,
             keeps: Kept::All,
             has_series: true,
-            parts: Parts {
-                on_omega: true,
-                own: 3,
-                ..Parts::default()
-            },
         }
     }
 
@@ -108,7 +103,7 @@ impl Law for Slug {
     fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
         let (inertia, damping) = (axes.number(self.inertia, 0), axes.number(self.damping, 1));
         let rate = damping / inertia;
-        linear.on_omega -= Matrix3::from_diagonal_element(damping);
+        linear.add_on_omega(&Matrix3::from_diagonal_element(-damping));
         let first = linear.own.len();
         for component in 0..3 {
             let unit = Vector3::from_fn(|i, _| if i == component { X::one() } else { X::zero() });

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::error::{Error, all_finite};
 use crate::motion::loads::axes::{Axes, Exact};
-use crate::motion::loads::law::{Character, Kept, Law, Parts, directions_of};
+use crate::motion::loads::law::{Character, Kept, Law};
 use crate::motion::loads::linear::Linear;
 use crate::motion::loads::parameter::Parameter;
 use crate::motion::loads::subject::Subject;
@@ -49,15 +49,6 @@ impl Law for UniformGravity {
                 Kept::All
             },
             has_series: true,
-            parts: Parts {
-                directions: if pivoted {
-                    directions_of(&self.gravity)
-                } else {
-                    0
-                },
-                is_pushed: !pivoted,
-                ..Parts::default()
-            },
         }
     }
 
@@ -105,6 +96,6 @@ impl Law for UniformGravity {
             let lever = cross_matrix(&axes.principal(&lever));
             linear.on_space.push((gravity, lever));
         }
-        linear.force += gravity * mass;
+        linear.add_force(&(gravity * mass));
     }
 }

@@ -8,7 +8,7 @@ use crate::error::{Error, MotionFault, finite};
 use crate::motion::loads::axes::{Axes, Exact, exact};
 use crate::motion::loads::carried::Carried;
 use crate::motion::loads::drive::Drive;
-use crate::motion::loads::law::{Character, Kept, Law, Parts};
+use crate::motion::loads::law::{Character, Kept, Law};
 use crate::motion::loads::linear::{Linear, Own};
 use crate::motion::loads::now::Now;
 use crate::motion::loads::parameter::Parameter;
@@ -162,12 +162,6 @@ impl Law for Wheel {
             has_series: !matches!(self.drive, Drive::Limited(..))
                 && self.bearing().is_none()
                 && (self.feedback()).is_none_or(|law| law.aim.fixed().is_some()),
-            parts: Parts {
-                on_omega: true,
-                on_attitude: self.feedback().is_some(),
-                own: 1,
-                ..Parts::default()
-            },
         }
     }
 
@@ -263,8 +257,9 @@ impl Law for Wheel {
             Drive::Feedback(law) | Drive::Limited(law, _) => {
                 let mut asked = Linear::default();
                 law.add_to(&mut asked, &axes.part(DRIVE), side);
-                own.on_omega = -asked.on_omega.tr_mul(&a);
-                own.on_attitude = -asked.on_attitude.tr_mul(&a);
+                own.on_omega = -asked.on_omega().tr_mul(&a);
+                own.on_attitude = -asked.on_attitude().tr_mul(&a);
+                linear.add_on_attitude(&-(a * own.on_attitude.transpose()));
             }
         }
         if !self.has_speed() {
@@ -274,8 +269,7 @@ impl Law for Wheel {
         }
         // −a ḣ.
         linear.constant -= a * own.constant;
-        linear.on_omega -= a * own.on_omega.transpose();
-        linear.on_attitude -= a * own.on_attitude.transpose();
+        linear.add_on_omega(&-(a * own.on_omega.transpose()));
         own.torque = -(a * own.on_itself);
         linear.own.push(own);
     }

@@ -5,8 +5,11 @@ use nalgebra::{Matrix3, Vector3};
 use super::segments::Course;
 use crate::motion::integrate::taylor::field::Field;
 use crate::motion::integrate::taylor::frame::Precision;
-use crate::motion::loads::variables::{Block, MASS, Variables};
-use crate::motion::loads::{Forcing, Formula, Own, Parts, Term, When};
+use crate::motion::kinematics::Frame;
+use crate::motion::loads::variables::{MASS, Variables};
+use crate::motion::loads::{
+    Axes, Exact, Forcing, Formula, Linear, Own, Parts, Subject, Term, When,
+};
 use crate::numerics::number::Real;
 use crate::numerics::power_of_two::power_below;
 
@@ -28,7 +31,7 @@ impl<X: Precision> Course<'_, X> {
             (linear.constant.map(X::rounded))
                 .component_mul(&inverse)
                 .amax(),
-            linear.on_attitude.map(X::rounded).amax() * over_moment,
+            linear.on_attitude().map(X::rounded).amax() * over_moment,
         ];
         let on_space = linear.on_space.iter();
         let on_space = on_space.map(|(vector, matrix)| {
@@ -36,7 +39,10 @@ impl<X: Precision> Course<'_, X> {
         });
         let middle = self.middle();
         let timed = (linear.timed.iter())
-            .map(|(_, timed)| timed.square_of_rate(&self.task.subject, middle, over_moment));
+            .map(|(_, torque)| torque.square_of_rate(&self.task.subject, middle, over_moment));
+        let gradients = (linear.gradients.iter())
+            .map(|(_, gradient)| gradient.square_of_rate(&self.task.subject));
+        let timed = timed.chain(gradients);
         let (mut momentum, mut torque, mut decay) = (Vector3::zeros(), Vector3::zeros(), 0.0_f64);
         for (state, &value) in linear.own.iter().zip(own) {
             momentum += state.momentum.map(X::rounded) * value.rounded();
@@ -48,7 +54,7 @@ impl<X: Precision> Course<'_, X> {
         let square = (squares.chain(on_space).chain(timed)).fold(0.0, f64::max);
         let rate = Vector3::from(*omega)
             .amax()
-            .max(linear.on_omega.map(X::rounded).amax() * over_moment)
+            .max(linear.on_omega().map(X::rounded).amax() * over_moment)
             .max(momentum.amax() * over_moment)
             .max(decay)
             .max(square.sqrt());
@@ -61,8 +67,8 @@ impl<X: Precision> Course<'_, X> {
         let linear = &self.linear;
         let inverse = Matrix3::from_diagonal(&self.inverse_moments);
         let rate = X::from(1.0 / self.unit);
-        let on_omega = inverse * linear.on_omega * rate;
-        let on_attitude = inverse * linear.on_attitude * rate * rate;
+        let on_omega = inverse * linear.on_omega() * rate;
+        let on_attitude = inverse * linear.on_attitude() * rate * rate;
         // What the wheels that turn freely add to the tensor, along the axes and across them.
         let (along, across) = (linear.turning.diagonal(), linear.turning);
         let pulled = [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
@@ -79,8 +85,8 @@ impl<X: Precision> Course<'_, X> {
             on_omega: rows(&on_omega),
             on_attitude: [0, 1, 2].map(|n| [0, 1, 2, 3].map(|i| on_attitude[(n, i)])),
             on_space: [[[X::zero(); 3]; 3]; B],
-            force: (linear.force / mass * rate * rate).into(),
-            thrust: (linear.thrust / mass * rate * rate).into(),
+            force: (linear.force() / mass * rate * rate).into(),
+            thrust: (linear.thrust() / mass * rate * rate).into(),
         };
         let directions = Self::directions::<B>();
         for (vector, matrix) in &linear.on_space {
@@ -135,8 +141,20 @@ impl<X: Precision> Course<'_, X> {
             middle: self.middle(),
             unit: self.unit,
         };
-        for (first, timed) in &self.linear.timed {
-            timed.force(forcing, &self.principal_axes(*first), &when);
+        for (first, torque) in &self.linear.timed {
+            let axes = self.principal_axes(*first);
+            for (k, torque_k) in torque.cubic(&axes, &when).iter().enumerate() {
+                match torque.frame() {
+                    Frame::Body => forcing.in_body[k] += axes.principal(torque_k),
+                    Frame::Space => forcing.in_space[k] += torque_k,
+                }
+            }
+        }
+        if !forcing.has_orbits {
+            for (first, gradient) in &self.linear.gradients {
+                let on_orbit = gradient.on_orbit(&self.principal_axes(*first), &when);
+                forcing.orbits.push(on_orbit);
+            }
         }
         for torque in &mut forcing.in_body {
             torque.component_mul_assign(&self.inverse_moments);
@@ -153,37 +171,30 @@ impl<X: Precision> Course<'_, X> {
     }
 }
 
-/// What kind of equations a sum of terms leads to. Apart from quadratic damping, which may be zero, and directions, which
-/// may all be vertical, it does not depend on the numbers in them.
-pub(in crate::motion::integrate::taylor) fn parts(terms: &[Term], pivoted: bool) -> Parts {
-    let parts = terms.iter().map(|term| term.character(pivoted).parts);
-    let parts = parts.fold(Parts::default(), Parts::and);
-    Parts {
-        directions: parts.directions.max(parts.directions_of_path),
-        ..parts
-    }
-}
-
-/// As [`parts`], where the variables of a block are varied: a number that is zero may be one of them. The path of the body is
-/// left out.
-pub(in crate::motion::integrate::taylor) fn parts_of(
+/// What the equations of a motion of `subject` under these terms are made of, in numbers of which `variables` are varied: what
+/// they add, switched on or not. The principal axes do not matter for it. `has_path` where the path of the body is part of the
+/// motion.
+pub(in crate::motion::integrate::taylor) fn parts<X: Exact>(
     terms: &[Term],
-    pivoted: bool,
-    block: Block,
+    subject: &Subject,
+    variables: X::Variables,
+    has_path: bool,
 ) -> Parts {
-    let firsts = block.columns(&mut terms.iter().map(Term::count));
-    let parts = terms.iter().zip(firsts).map(|(term, first)| {
-        let parts = term.character(pivoted).parts;
-        if block.varies(first..first + term.count()) {
-            parts.with_all_numbers()
-        } else {
-            parts
-        }
-    });
-    Parts {
-        is_pushed: false,
-        ..parts.fold(Parts::default(), Parts::and)
+    let (zero, one) = (X::zero(), X::one());
+    let mut linear = Linear::default();
+    let firsts = variables.columns(&mut terms.iter().map(Term::count));
+    for (k, term) in terms.iter().enumerate() {
+        let axes = Axes {
+            subject,
+            columns: &Matrix3::identity(),
+            q_bp: &[zero, zero, zero, one],
+            variables,
+            first: firsts.get(k).copied().unwrap_or(0),
+            middle: subject.start,
+        };
+        term.add_to(&mut linear, &axes, 1.0);
     }
+    linear.parts(has_path)
 }
 
 fn rows<X: Real>(matrix: &Matrix3<X>) -> [[X; 3]; 3] {

@@ -12,6 +12,6 @@ mod segments;
 mod state;
 mod times;
 
-pub(super) use equations::{parts, parts_of};
+pub(super) use equations::parts;
 pub(super) use segments::Course;
 pub(super) use state::Besides;

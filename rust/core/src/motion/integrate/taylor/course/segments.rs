@@ -143,7 +143,7 @@ impl<'a, X: Precision> Course<'a, X> {
                 side = switch.side;
                 let mut own = Linear::default();
                 term.add_to(&mut own, &axes, side);
-                switch.torque = own.on_attitude;
+                switch.torque = own.on_attitude();
                 let states = (linear.own.len()..).zip(&own.own);
                 switch.own = states.map(|(i, state)| (i, state.on_attitude)).collect();
                 switches.push(switch);
@@ -175,8 +175,8 @@ impl<'a, X: Precision> Course<'a, X> {
                 continue;
             }
             let constant = linear.constant.map(X::rounded);
-            let on_omega = linear.on_omega.map(X::rounded);
-            let on_attitude = linear.on_attitude.map(X::rounded);
+            let on_omega = linear.on_omega().map(X::rounded);
+            let on_attitude = linear.on_attitude().map(X::rounded);
             let mut turned = on_omega;
             // ω along the axis is constant; where it is zero, what it would do does not matter.
             if state[n].rounded() == 0.0 {
@@ -203,8 +203,8 @@ impl<'a, X: Precision> Course<'a, X> {
                 parts.push((across.norm(), momentum.norm()));
             }
             let axis = self.axes.column(n).map(X::rounded);
-            for (_, timed) in &linear.timed {
-                parts.extend(timed.torques_along(&axis, self.middle()));
+            for (_, torque) in &linear.timed {
+                parts.extend(torque.torques_along(&axis, self.middle()));
             }
             if let Some(&(torque, _)) = parts.iter().find(|(part, all)| *part > ROUNDING * all) {
                 return Err(Error::Motion(MotionFault::TorqueAlongMasslessAxis {

@@ -1,0 +1,311 @@
+"""Where the parts of an assembly share space, so that matter counts twice.
+
+Compared are solids and closed meshes. What two spheres share has a closed form; else manifold3d (extra
+``union``) computes it from the triangles of both. Round solids are taken with two numbers of facets, and the
+volume is extrapolated to smooth ones: their facets differ by the square of their size.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from polhode._scene.solids import solid_surface
+from polhode.assembly.result import Overlap
+from polhode.errors import MeshError
+from polhode.files.components import Part, overlaps
+from polhode.files.union import has_union, is_closed, shared_volume
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from typing import Any
+
+    from numpy.typing import NDArray
+
+    from polhode._core import RigidBody
+    from polhode.assembly.placing import Place
+
+    Floats = NDArray[np.float64]
+    Integers = NDArray[np.int64]
+    Surface = tuple[Floats, Integers]
+
+__all__ = ["Form", "Placed", "find_overlaps", "words_of"]
+
+_FINE, _COARSE = 64, 32
+"""Facets around a round solid."""
+_LITTLE: Final = 1e-3
+"""What is shared by less than this, of the smaller part, is contact."""
+_MOST_PARTS: Final = 3000
+_MOST_TRIANGLES: Final = 400_000
+"""Of the parts that are compared, counted once for each pair."""
+_MOST_TOLD: Final = 8
+_FLAT: Final = ("box", "cube", "prism", "pyramid", "tetrahedron", "wedge")
+
+
+class Form:
+    """The shape of a part in its own axes, in metres.
+
+    Parameters
+    ----------
+    solid : str
+        Name of a shape; "" for a mesh.
+    arguments : mapping
+        Of that shape.
+    mesh : (vertices, faces), optional
+    """
+
+    def __init__(self, solid: str, arguments: Mapping[str, Any], mesh: Surface | None = None) -> None:
+        self.solid = solid
+        self._mesh = mesh if mesh is None or _volume_of(mesh) > 0.0 else (mesh[0], mesh[1][:, ::-1])
+        self._numbers = np.concatenate([np.ravel(value) for value in arguments.values()] or [np.empty(0)])
+        self._known: dict[int, Surface | None] = {}
+
+    @property
+    def is_round(self) -> bool:
+        """Whether its facets only stand for it."""
+        return self._mesh is None and self.solid not in _FLAT
+
+    @property
+    def radius(self) -> float | None:
+        """Of a sphere."""
+        return float(self._numbers[0]) if self.solid == "sphere" else None
+
+    def surface(self, segments: int = _FINE) -> Surface | None:
+        """Give its triangles, outward; None where it has no volume that triangles bound."""
+        if self._mesh is not None:
+            return self._mesh
+        if segments not in self._known:
+            name = "cuboid" if self.solid == "box" else self.solid
+            found = solid_surface(name, self._numbers, segments)
+            if self.solid == "hollow_sphere" and found is not None:  # the picture shows no cavity
+                inner, outer = self._numbers
+                points, corners = found
+                cavity = corners[:, ::-1] + len(points)
+                found = np.concatenate([points, points * (inner / outer)]), np.concatenate([corners, cavity])
+            self._known[segments] = found
+        return self._known[segments]
+
+    @cached_property
+    def volume(self) -> float:
+        """In m^3; not a number where it has none."""
+        surface = self.surface()
+        if surface is None:
+            return math.nan
+        if self.radius is not None:
+            return 4.0 / 3.0 * math.pi * self.radius**3
+        if not self.is_round:
+            return _volume_of(surface)
+        return _smooth(_volume_of(surface), _volume_of(self.surface(_COARSE) or surface))[0]
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        """What differs between forms that differ."""
+        return self.solid, self._numbers.tobytes(), 0 if self._mesh is None else len(self._mesh[1])
+
+    @cached_property
+    def box(self) -> tuple[Floats, Floats] | None:
+        """Opposite corners of the box around it; None where it cannot be compared."""
+        surface = self.surface()
+        if surface is None or not len(surface[1]) or not self.volume > 0.0 or not is_closed(surface[1]):
+            return None
+        corners = surface[0][surface[1]]
+        low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+        # Facets lie within what is round, by less than a hundredth of it.
+        more = 0.01 * (high - low) if self.is_round else 0.0
+        return (low - more, high + more) if np.isfinite(low).all() and np.isfinite(high).all() else None
+
+
+class Placed(NamedTuple):
+    """A part at its place."""
+
+    name: str
+    body: RigidBody
+    place: Place
+    form: Form | None
+
+
+def find_overlaps(parts: Sequence[Placed]) -> tuple[list[Overlap], list[str]]:
+    """Find the parts that share space, and say which were not compared.
+
+    Parameters
+    ----------
+    parts : sequence of Placed
+
+    Returns
+    -------
+    overlaps : list of Overlap
+        The largest first, those of which the volume is not known at the end.
+    notes : list of str
+    """
+    found, twins = _at_one_place(parts)
+    shown = [part for k, part in enumerate(parts) if k not in twins and part.form and part.form.box]
+    notes = []
+    if len(shown) > _MOST_PARTS:
+        notes.append(
+            f"{len(shown)} parts with volumes are more than {_MOST_PARTS}: they were not searched for overlaps"
+        )
+        shown = []
+    left, unseen = _MOST_TRIANGLES, 0
+    for i, k in _meeting(shown):
+        one, other = shown[i], shown[k]
+        volume = _of_spheres(one, other)
+        if volume is None:
+            count = _triangles(one) + _triangles(other)
+            if count > left:
+                unseen += 1
+                continue
+            left -= count
+            shared = _shared(one, other)
+        else:
+            shared = _told(one, other, volume, 0.0)
+        if shared is not None:
+            found.append(shared)
+    if unseen:
+        notes.append(
+            f"{unseen} pairs of parts whose boxes meet were not compared: they have more than "
+            f"{_MOST_TRIANGLES} triangles"
+        )
+    found.sort(key=lambda each: -each.volume if math.isfinite(each.volume) else math.inf)
+    return found, notes
+
+
+def _at_one_place(parts: Sequence[Placed]) -> tuple[list[Overlap], set[int]]:
+    """Find parts that are the same as an earlier one, bit for bit, at the same place."""
+    first: dict[tuple[object, ...], int] = {}
+    found, twins = [], set()
+    for k, part in enumerate(parts):
+        body = part.body
+        key = (float(body.mass), body.center_of_mass.tobytes(), body.inertia.tobytes())
+        key += part.form.key if part.form is not None else ()
+        if key in first:
+            twins.add(k)
+            volume = part.form.volume if part.form is not None else math.nan
+            found.append(Overlap("same", parts[first[key]].name, part.name, volume))
+        else:
+            first[key] = k
+    return found, twins
+
+
+def _meeting(parts: Sequence[Placed]) -> list[tuple[int, int]]:
+    """Give the pairs whose boxes along the axes of the whole meet, the larger one first."""
+    if not parts:
+        return []
+    boxes = np.array([part.form.box for part in parts if part.form])  # of shape (n, 2, 3)
+    turns = np.array([part.place.rotation for part in parts])
+    shifts = np.array([part.place.displacement for part in parts])
+    middles = np.einsum("nij,nj->ni", turns, boxes.mean(axis=1)) + shifts
+    reach = np.einsum("nij,nj->ni", np.abs(turns), np.ptp(boxes, axis=1) / 2.0)
+    volumes = np.array([part.form.volume for part in parts if part.form])
+    pairs = []
+    order = np.argsort(-volumes, kind="stable")
+    middles, reach = middles[order], reach[order]
+    for i in range(len(order)):
+        meet = (np.abs(middles[i + 1 :] - middles[i]) < reach[i + 1 :] + reach[i]).all(axis=1)
+        pairs += [(int(order[i]), int(order[i + 1 + k])) for k in np.flatnonzero(meet)]
+    return pairs
+
+
+def _triangles(part: Placed) -> int:
+    surface = part.form.surface() if part.form else None
+    return len(surface[1]) if surface else 0
+
+
+def _of_spheres(one: Placed, other: Placed) -> float | None:
+    """What two spheres share, in closed form; None for other solids."""
+    if one.form is None or other.form is None or one.form.radius is None or other.form.radius is None:
+        return None
+    a, b = one.form.radius, other.form.radius
+    d = float(np.linalg.norm(one.place.displacement - other.place.displacement))
+    if d >= a + b:
+        return 0.0
+    if d <= abs(a - b):
+        return 4.0 / 3.0 * math.pi * min(a, b) ** 3
+    # Two caps of heights h on both sides of the plane in which the spheres cut each other.
+    volume = 0.0
+    for r, s in ((a, b), (b, a)):
+        h = r - (d * d + r * r - s * s) / (2.0 * d)
+        volume += math.pi * h * h * (3.0 * r - h) / 3.0
+    return volume
+
+
+def _shared(one: Placed, other: Placed) -> Overlap | None:
+    """Compare two parts by their triangles."""
+    assert one.form is not None  # parts without a form are not compared
+    assert other.form is not None
+    if not has_union():
+        pair = [
+            Part(part.name, *_placed(part, _FINE), part.form.volume, 0)
+            for part in (one, other)
+            if part.form is not None
+        ]
+        (told,) = overlaps(pair, [(0, 1)]) or (None,)
+        if told is None:
+            return None
+        return Overlap("inside" if told.is_inside else "across", told.one, told.other, told.volume)
+    fine = _volume(one, other, _FINE)
+    if not (one.form.is_round or other.form.is_round):
+        return _told(one, other, fine, 0.0)
+    return _told(one, other, *_smooth(fine, _volume(one, other, _COARSE)))
+
+
+def _told(one: Placed, other: Placed, volume: float, doubt: float) -> Overlap | None:
+    assert other.form is not None
+    small = other.form.volume
+    if volume <= max(_LITTLE * small, doubt):
+        return None
+    is_inside = volume >= (1.0 - _LITTLE) * small
+    return Overlap("inside" if is_inside else "across", one.name, other.name, volume)
+
+
+def _volume(one: Placed, other: Placed, segments: int) -> float:
+    try:
+        return shared_volume(_placed(one, segments), _placed(other, segments))
+    except MeshError:
+        return math.nan
+
+
+def _smooth(fine: float, coarse: float) -> tuple[float, float]:
+    """Extrapolate a volume to more and more facets; with it how much it has changed by as many again."""
+    return fine + (fine - coarse) / 3.0, abs(fine - coarse)
+
+
+def _volume_of(surface: Surface) -> float:
+    a, b, c = np.moveaxis(surface[0][surface[1]], 1, 0)
+    return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0
+
+
+def _placed(part: Placed, segments: int) -> Surface:
+    surface = part.form.surface(segments) if part.form else None
+    assert surface is not None
+    vertices, faces = surface
+    return vertices @ part.place.rotation.T + part.place.displacement, faces
+
+
+def words_of(found: Sequence[Overlap]) -> list[str]:
+    """Say which parts overlap, the first of them one by one."""
+    same: dict[str, list[str]] = {}
+    for each in found:
+        if each.kind == "same":
+            same.setdefault(each.one, []).append(each.other)
+    lines = []
+    for one, others in [*same.items()][:_MOST_TOLD]:
+        names = ", ".join(others[:_MOST_TOLD]) + (" and more" if len(others) > _MOST_TOLD else "")
+        are = f"part {names} is" if len(others) == 1 else f"parts {names} are"
+        lines.append(
+            f"{are} the same as {one}, at the same place: the mass counts {len(others) + 1} times; position, "
+            "step or turn moves a part"
+        )
+    crossing = [each for each in found if each.kind != "same"]
+    for kind, one, other, volume in crossing[:_MOST_TOLD]:
+        much = f"{volume:.4g} m^3" if math.isfinite(volume) else "what they share"
+        how = f"part {other} lies within {one}" if kind == "inside" else f"parts {one} and {other} overlap"
+        lines.append(f"{how}: {much} counts twice")
+    left = max(len(crossing) - _MOST_TOLD, 0) + max(len(same) - _MOST_TOLD, 0)
+    if left:
+        lines.append(f"{left} more parts overlap others")
+    if any(not math.isfinite(each.volume) for each in crossing) and not has_union():
+        lines.append('pip install "polhode[union]" tells how much they share')
+    return lines
