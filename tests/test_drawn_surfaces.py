@@ -261,7 +261,8 @@ KEYS = """(() => {
     one.remove();
     return found;
   };
-  return [Object.values(polhode.colors).flat().map(seen), [...document.querySelectorAll(".key")].map(colorOf)];
+  const lines = Object.values(polhode.colors).flat().map(seen);
+  return [lines, [...document.querySelectorAll(".key")].map(colorOf)];
 })()"""
 CAPTIONS = """["space", "second"].map((name) => [document.getElementById(`${name}-caption`).textContent,
   document.getElementById(name).getAttribute("aria-label")])"""

@@ -29,14 +29,11 @@ class Part:
         The part by itself.
     states : tuple of str
         What its states are called in those of the whole.
-    is_scheduled : bool
-        Whether it acts in windows of time alone.
     """
 
     made_by: str
     load: _core.Load
     states: tuple[str, ...]
-    is_scheduled: bool
     _arguments: tuple[Any, ...]
     _picks: tuple[tuple[list[int], Any], ...]
 
@@ -58,7 +55,7 @@ class Part:
         return values
 
     def options(self, position: int) -> dict[str, Any]:
-        """Give its keyword arguments, which are one of the arguments that it was made of."""
+        """Return its keyword arguments, which are one of the arguments that it was made of."""
         return cast("dict[str, Any]", self._arguments[position])
 
 
@@ -80,12 +77,10 @@ def parts_of(load: _core.Load) -> list[Part]:
         one = _core.Load._from_parts([recipe])
         made_by, arguments = recipe
         picks: list[tuple[list[int], Any]] = []
-        is_scheduled = False
         while made_by.startswith("_"):  # what was done to it after it was made
             if made_by == "_picked":
                 picks.insert(0, arguments[1:3])
-            is_scheduled |= made_by == "_scheduled"
             made_by, arguments = arguments[0]
         states = tuple(next(names) for _ in one.states)
-        parts.append(Part(made_by, one, states, is_scheduled, arguments, tuple(picks)))
+        parts.append(Part(made_by, one, states, arguments, tuple(picks)))
     return parts

@@ -187,7 +187,7 @@ def _gyrostat_motion(trajectory: Trajectory) -> GyrostatMotion | None:
     rest, wheels = np.zeros(3), []
     parts = parts_of(trajectory.load) if trajectory.load is not None else []
     for part in parts:
-        if part.made_by == "rotor" and not part.is_scheduled:
+        if part.made_by == "rotor":
             rest = rest + part.load.carried(0.0, np.zeros(3))[0]
         elif part.made_by == "wheel" and (mode := _mode(part)) is not None:
             axis, inertia = part.number(0, axes=1), float(part.number(1))
@@ -206,7 +206,7 @@ def _gyrostat_motion(trajectory: Trajectory) -> GyrostatMotion | None:
 
 
 def _mode(part: Part) -> Literal["free", "held"] | None:
-    """Tell whether a wheel turns freely or at a constant rate; None where a motor or friction acts."""
+    """Find whether a wheel turns freely or at a constant rate; None where a motor or friction acts."""
     options = part.options(3)
     if options["speed"] is not None:
         return "held" if options["times"] is None else None

@@ -107,7 +107,7 @@ def _start(scene: Scene) -> dict[str, list[float]] | None:
 
 
 def _surface(surface: Surface) -> dict[str, Any]:
-    """Give what the path in the body lies on: the kind of motion, and the marks and curves of a gyrostat."""
+    """Return what the path in the body lies on: the kind of motion, marks and curves of a gyrostat."""
     return {
         "kind": surface.kind,
         "momentum": None if surface.momentum is None else surface.momentum.tolist(),
