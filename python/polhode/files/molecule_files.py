@@ -133,6 +133,8 @@ def _pdb_atom(line: str) -> _PdbAtom:
 
 def _one_place_each(atoms: list[_PdbAtom]) -> list[_PdbAtom]:
     """Choose one residue of each site that has alternatives, and one place of each atom that has some."""
+    if not any(atom.alternate for atom in atoms):
+        return atoms
     residues: dict[tuple[str, ...], _PdbAtom] = {}
     for atom in atoms:
         if atom.alternate and (best := residues.get(atom.site, atom)).occupancy <= atom.occupancy:
