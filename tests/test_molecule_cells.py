@@ -240,6 +240,7 @@ class TestWhereItIsSaid:
             body = RigidBody.from_file(path)
         assert body.principal_moments[2] == pytest.approx(1.00782503 / 2 * 9.26**2, rel=1e-6)
         molecule = load(path).molecule
+        assert molecule.cell is not None
         assert cell_crossings(molecule.labels, molecule.positions, molecule.cell).bonds[0].shift == (1, 0, 0)
 
     def test_in_any_unit(self, tmp_path: Path) -> None:

@@ -202,7 +202,8 @@ class TestAlternatePlaces:
         )
 
     def places(self, text: str, tmp_path: Path) -> list[float]:
-        return load(written(tmp_path / "a.pdb", text)).molecule.positions[:, 0].tolist()
+        found: list[float] = load(written(tmp_path / "a.pdb", text)).molecule.positions[:, 0].tolist()
+        return found
 
     def test_of_each_atom_the_likeliest(self, tmp_path: Path) -> None:
         assert self.places(self.lines(self.SERINE), tmp_path) == [0.0, 1.9, 3.3]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, BinaryIO, Final, NamedTuple
 
 import numpy as np
@@ -13,7 +14,7 @@ from polhode.files.reading import with_way_out
 from polhode.files.xyz import Molecule, lines_of, molecule_from, number_of, numbers_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
     from decimal import Decimal
     from pathlib import Path
 
@@ -33,6 +34,13 @@ _NO_HYDROGENS: Final = "the file holds no hydrogens: mass and moments are withou
 _GEOMETRY: Final = (
     "make a geometry in space with all hydrogens first, for example with Open Babel: "
     "obabel drawing.mol -O molecule.mol -h --gen3d"
+)
+_CRYST1: Final = ((6, 15), (15, 24), (24, 33), (33, 40), (40, 47), (47, 54))
+"""Columns of three lengths and three angles."""
+_WORD: Final = re.compile(r'(?:"(?:[^"]|"")*"|\([^)]*\)|\[[^\]]*\]|[^\s"(\[])+')
+"""Of an atom of V3000: quoted texts and lists may hold spaces."""
+_LIST: Final = (
+    "an atom stands for a list of elements, a group or any atom, which has no mass; write its atoms there"
 )
 
 
@@ -133,10 +141,13 @@ def _pdb_atom(line: str) -> _PdbAtom:
 
 def _one_place_each(atoms: list[_PdbAtom]) -> list[_PdbAtom]:
     """Choose one residue of each site that has alternatives, and one place of each atom that has some."""
+    if not any(atom.alternate for atom in atoms):
+        return atoms
     residues: dict[tuple[str, ...], _PdbAtom] = {}
     for atom in atoms:
-        if atom.alternate and (best := residues.get(atom.site, atom)).occupancy <= atom.occupancy:
-            residues[atom.site] = atom if best.occupancy < atom.occupancy else best
+        best = residues.get(atom.site)
+        if atom.alternate and (best is None or best.occupancy < atom.occupancy):
+            residues[atom.site] = atom
     rest = [atom for atom in atoms if not atom.alternate or residues[atom.site].residue == atom.residue]
     has_alternatives = {(atom.site, atom.residue, atom.name) for atom in rest if atom.alternate}
     places: dict[tuple[tuple[str, ...], str, str], _PdbAtom] = {}
@@ -166,30 +177,30 @@ def _element(line: str) -> str:
     field = f"{line[12:16]:4}".upper()
     name, residue = field.strip(), line[17:20].strip().upper()
     if not field[:1].isalpha():
-        first = name.lstrip("0123456789")[:1]
+        symbol = name.lstrip("0123456789")[:1]
         if len(name) == 2 and name == residue and name in _ELEMENTS:
             raise _FaultError(
-                f"the name {field!r} is {first} by its column and {name.capitalize()} by its residue; "
+                f"the name {field!r} is {symbol} by its column and {name.capitalize()} by its residue; "
                 f"{_COLUMNS_77}"
             )
     elif not field[1].isalpha() or (len(name) == 4 and field[0] in "HD"):
         # The latter are hydrogens whose names take all four columns.
-        first = field[0]
+        symbol = field[0]
     elif field[:2] not in _ELEMENTS:
         raise _FaultError(f"the name {field!r} begins with no element of two letters; {_COLUMNS_77}")
     else:
-        is_one_letter = field[0] in _ELEMENTS and (
+        may_be_one_letter = field[0] in _ELEMENTS and (
             len(name) == 4 or field[2].isalpha() or (field[0] == "H" and residue in _BIOPOLYMER)
         )
-        if is_one_letter:
+        if may_be_one_letter:
             raise _FaultError(
                 f"the name {field!r} of residue {residue!r} may be {field[:2].capitalize()} or {field[0]}; "
                 f"{_COLUMNS_77}"
             )
-        first = field[:2]
-    if first not in _ELEMENTS:
+        symbol = field[:2]
+    if symbol not in _ELEMENTS:
         raise _FaultError(f"the atom {name!r} names no element; {_COLUMNS_77}")
-    return first.capitalize()
+    return symbol.capitalize()
 
 
 def _crystal_cell(line: str) -> NDArray[np.float64] | None:
@@ -213,10 +224,9 @@ def _crystal_cell(line: str) -> NDArray[np.float64] | None:
     cell = np.array(
         [[a, 0.0, 0.0], [b * gamma, b * sine, 0.0], [c * beta, c * across, c * float(np.sqrt(height))]]
     )
-    return cell if 1.0 / np.linalg.norm(np.linalg.inv(cell), axis=0).max() > _LEAST_CELL else None
-
-
-_CRYST1: Final = ((6, 15), (15, 24), (24, 33), (33, 40), (40, 47), (47, 54))
+    with np.errstate(all="ignore"):  # of lengths beyond all bounds
+        least = 1.0 / np.linalg.norm(np.linalg.inv(cell), axis=0).max()
+    return cell if least > _LEAST_CELL else None
 
 
 def read_mol(stream: BinaryIO, file: Path) -> Molecule:
@@ -260,7 +270,7 @@ def _of_v2000(lines: list[str], notes: list[str]) -> tuple[list[str], list[list[
         raise _FaultError(f"line 4 promises {count} atoms, or 'M  END' is missing; is it cut short?")
     symbols, rows, differences = [], [], []
     for number, line in enumerate(lines[4 : 4 + count], start=5):
-        with _Line(number):
+        with _line(number):
             if "\t" in line:
                 raise _FaultError("the line holds a tab, but V2000 counts columns; write spaces")
             rows.append(_coordinates(line[:10], line[10:20], line[20:30]))
@@ -273,7 +283,7 @@ def _of_v2000(lines: list[str], notes: list[str]) -> tuple[list[str], list[list[
     place = 4 + count + bonds
     while place < len(lines) and not (line := lines[place]).startswith("M  END"):
         place += 1
-        with _Line(place):
+        with _line(place):
             if line.startswith(("A  ", "G  ")):  # the next line is a text
                 if place < len(lines) and (atom := _whole_number(line[3:6])) and atom <= count:
                     shown = lines[place].strip()[:40]
@@ -293,18 +303,13 @@ def _of_v2000(lines: list[str], notes: list[str]) -> tuple[list[str], list[list[
     return [_label(symbol, mass) for symbol, mass in zip(symbols, masses, strict=True)], rows
 
 
-class _Line:
+@contextmanager
+def _line(number: int) -> Iterator[None]:
     """Let a fault name the line."""
-
-    def __init__(self, number: int) -> None:
-        self.number = number
-
-    def __enter__(self) -> None:
-        pass
-
-    def __exit__(self, _: object, error: BaseException | None, __: object) -> None:
-        if isinstance(error, _FaultError):
-            raise _FaultError(f"line {self.number}: {error}") from None
+    try:
+        yield
+    except _FaultError as error:
+        raise _FaultError(f"line {number}: {error}") from None
 
 
 def _isotope_line(line: str, count: int) -> Iterable[tuple[int, int]]:
@@ -356,9 +361,6 @@ def _mass_number(number: int, symbol: str, difference: int, stated: int | None, 
         raise _FaultError(f"line {4 + number}: {error}") from None
 
 
-_ATOM: Final = re.compile(r'(?:"(?:[^"]|"")*"|\([^)]*\)|\[[^\]]*\]|[^\s"(\[])+')
-
-
 def _of_v3000(lines: list[str]) -> tuple[list[str], list[list[Decimal]]]:
     inside = False
     labels: list[str] = []
@@ -373,8 +375,8 @@ def _of_v3000(lines: list[str]) -> tuple[list[str], list[list[Decimal]]]:
         elif words[:2] == ["END", "ATOM"]:
             inside = False
         elif inside:
-            with _Line(number):
-                words = _ATOM.findall(line)
+            with _line(number):
+                words = _WORD.findall(line)
                 if len(words) < 6:
                     raise _FaultError(f"expected 'M  V30 index symbol x y z map', got {line[:60]!r}")
                 rows.append(_coordinates(*words[2:5]))
@@ -416,11 +418,6 @@ def _stated_mass(value: str) -> int:
     if match is None or len(match[1]) > 3:
         raise _FaultError(f"expected MASS= and the mass number of an isotope, got {value[:20]!r}")
     return int(match[1])
-
-
-_LIST: Final = (
-    "an atom stands for a list of elements, a group or any atom, which has no mass; write its atoms there"
-)
 
 
 def _symbol(text: str) -> str:
