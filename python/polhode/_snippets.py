@@ -96,6 +96,14 @@ def to_text(body: RigidBody, program: str) -> str:
     Returns
     -------
     str
+        Numbers with all their digits. The moments of a body on the edge I1 + I2 = I3, such as a lamina, are
+        larger by less than 6e-15 of their sum, all three alike, so that the rounding of an engine does not
+        make it impossible.
+
+    Raises
+    ------
+    PolhodeError
+        For ``"mjcf"`` and ``"mujoco"``, if the mass or a moment is up to 1e-15, which MuJoCo refuses.
 
     Examples
     --------
