@@ -152,6 +152,12 @@ def test_what_is_not_followed_is_an_error(method: Any) -> None:
     assert "go on from its end with resume" in str(failure)
 
 
+@pytest.mark.long
+def test_two_hundred_thousand_cycles() -> None:
+    run = BODY.simulate([0, 1], STILL, events=lambda t, *_: math.sin(math.tau * 2e5 * t + 0.1))
+    assert len(run.events.t) == 400_000
+
+
 def test_a_terminal_event_ends_the_search() -> None:
     """No function is asked beyond where another one has ended the run, but within the part of the step."""
     calls = [0]

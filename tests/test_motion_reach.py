@@ -11,7 +11,7 @@ from mpmath import mp, mpf
 from oracles.jacobi import JacobiMotion
 from oracles.lagrange import LagrangeTop
 from oracles.motion_cases import angle, relative_error, unit_floats
-from polhode import RigidBody, loads
+from polhode import RigidBody, loads, orbits
 from polhode.errors import PolhodeError
 
 MOMENTS, OMEGA = (1.0, 2.0, 2.5), (0.3, 0.2, 1.1)
@@ -213,3 +213,79 @@ def test_integrations_out_of_range_are_refused(method: Any) -> None:
         heavy = RigidBody.from_principal(1.0, np.array(MOMENTS) * inertia)
         with pytest.raises(PolhodeError, match="largest moment over the square of the span of t"):
             heavy.simulate([0.0, 2.0 / rate], np.array(OMEGA) * rate, method=method)
+
+
+class TestOrbits:
+    """States of Kepler orbits, against sixty digits, until nothing is left of the phase."""
+
+    @staticmethod
+    def exact(orbit: Any, t: float) -> tuple[Any, Any, Any]:
+        """Position, the largest speed on the orbit, and the revolutions made."""
+        r, v = ([mpf(float(x)) for x in part] for part in (orbit.position, orbit.velocity))
+        mu = mpf(orbit.mu)
+        distance, sigma = mp.sqrt(mp.fdot(r, r)), mp.fdot(r, v) / mp.sqrt(mu)
+        a = 1 / (2 / distance - mp.fdot(v, v) / mu)
+        cosine, sine = 1 - distance / a, sigma / mp.sqrt(a)
+        eccentricity, first = mp.hypot(cosine, sine), mp.atan2(sine, cosine)
+        rate = mp.sqrt(mu / a**3)
+        mean = first - sine + rate * mpf(t)
+        mean -= 2 * mp.pi * mp.nint(mean / (2 * mp.pi))
+        low, high = mean - 2, mean + 2
+        for _ in range(220):
+            middle = (low + high) / 2
+            low, high = (middle, high) if middle - eccentricity * mp.sin(middle) < mean else (low, middle)
+        turn = low - first
+        f = 1 - a / distance * (1 - mp.cos(turn))
+        g = (sigma * a * (1 - mp.cos(turn)) + distance * mp.sqrt(a) * mp.sin(turn)) / mp.sqrt(mu)
+        speed = mp.sqrt(mu / a * (1 + eccentricity) / (1 - eccentricity))
+        place = [f * one + g * other for one, other in zip(r, v, strict=True)]
+        return place, speed, rate * mpf(t) / (2 * mp.pi)
+
+    @pytest.mark.parametrize("seed", range(8))
+    def test_ellipses(self, seed: int) -> None:
+        rng = np.random.default_rng(seed)
+        orbit = orbits.kepler(4e14, rng.normal(size=3) * 7e6, rng.normal(size=3) * 2e3)
+        times = orbit.period * 10.0 ** rng.uniform(0, 26.4, 5) * rng.choice([-1.0, 1.0], 5)
+        found = orbit.at(times)
+        with mp.workdps(60):
+            for t, place in zip(times, found.position, strict=True):
+                want, speed, turns = self.exact(orbit, t)
+                off = mp.norm([mpf(float(x)) - y for x, y in zip(place, want, strict=True)])
+                late = mpf(2) ** -90 * abs(turns) * mpf(float(orbit.period))
+                assert off < late * speed + 1e-8, (orbit, t)
+
+    @pytest.mark.parametrize("eccentricity", [0.0, 0.3, 0.9, 0.99999999, 1.0, 1.5])
+    def test_beyond_the_reach_they_are_refused(self, eccentricity: float) -> None:
+        orbit = orbits.from_elements(4e14, eccentricity=eccentricity, periapsis=7e6)
+        with pytest.raises(PolhodeError, match="beyond the reach of this orbit") as caught:
+            orbit.at([1.0, 1e200])
+        reach = float(str(caught.value).split("orbit, ")[1].split(":")[0])
+        if eccentricity < 0.95:
+            assert reach / orbit.period == pytest.approx(2.0**88, rel=0.01)
+        known = orbit.at([0.999 * reach, -0.999 * reach])
+        assert np.isfinite(known.position).all()
+        assert np.isfinite(orbit.frame([0.999 * reach, -0.999 * reach]).quaternion).all()
+        body = RigidBody.from_principal(1.0, MOMENTS)
+        gradient = loads.gravity_gradient(orbit)
+        field = loads.magnetic((0, 0, 1), orbit.dipole_field((0, 0, 1e15)))
+        down = loads.feedback(K=1.0, D=1.0, target=orbit)
+        for t in (1.001 * reach, -1.001 * reach):
+            for ask in (orbit.at, orbit.frame, orbit.dipole_field((0, 0, 1.0)).at):
+                with pytest.raises(PolhodeError, match=r"give the state of the orbit at a later epoch"):
+                    ask(t)
+            for load in (gradient, field, down) if eccentricity < 1.0 else ():
+                with pytest.raises(PolhodeError, match="beyond the reach of this orbit"):
+                    body.simulate([0.0, t], OMEGA, load=load, method="dop853")
+        assert np.isnan(orbit.at([np.nan, np.inf]).position).all()
+
+    def test_absurd_times(self) -> None:
+        circle = orbits.kepler(1.0, (1.0, 0, 0), (0, 1.0, 0))
+        for t in (1e40, 1e300, -1e300):
+            with pytest.raises(PolhodeError, match="beyond the reach of this orbit"):
+                circle.at(t)
+        oblate = orbits.kepler(1.0, (1.0, 0, 0), (0, 1.0, 0), j2=1e-3, radius=0.9)
+        with pytest.raises(PolhodeError, match="30 000 revolutions"):
+            oblate.at(1e40)
+        table = orbits.sampled(1.0, [0.0, 1.0, 2.0], [(1.0, 0, 0), (0, 1.0, 0), (-1.0, 0, 0)])
+        with pytest.raises(PolhodeError, match="known from t = 0"):
+            table.at(1e40)
