@@ -103,7 +103,8 @@ class TestWhatIsNotListed:
         monkeypatch.setattr(trimesh, "load_scene", pytest.fail)
         path = tmp_path / f"part{suffix}"
         path.write_bytes(bz2.compress(bytes(1 << 20)))
-        with pytest.raises(FileFormatError, match=r"are not read; use one of \.stl, \.obj, .*\.glb, "):
+        way_out = r"use one of \.stl, \.obj, .*\.glb, |export it as \.step"
+        with pytest.raises(FileFormatError, match=f"are not read; ({way_out})"):
             read_mesh(path)
 
     def test_what_is_listed_is_read(self) -> None:
