@@ -19,7 +19,7 @@ __all__ = ["Isotope", "Masses", "isotopes", "names_of", "uncertain_masses"]
 
 Masses: TypeAlias = Literal["most_common", "average"]
 
-_LABEL: Final = re.compile(r"(?P<mass_number>\d+)?(?P<symbol>[A-Za-z]{1,2})|(?P<number>\d+)")
+_LABEL: Final = re.compile(r"(?P<mass_number>\d{1,4})?(?P<symbol>[A-Za-z]{1,2})|(?P<number>\d{1,4})")
 _HYDROGEN: Final = {"D": 2, "T": 3}
 
 
@@ -82,7 +82,7 @@ def isotopes(labels: Sequence[str], masses: Masses = "most_common") -> list[Isot
 def _isotope(table: Any, label: str, masses: Masses) -> Isotope:
     match = _LABEL.fullmatch(label)
     if match is None:
-        raise PolhodeError(f"{label!r} is not an element; write a symbol (O), isotope (18O) or number (8)")
+        raise PolhodeError(f"{label[:40]!r} is not an element; write a symbol (O), isotope (18O) or number (8)")
     mass_number = int(match["mass_number"]) if match["mass_number"] else None
     symbol = (match["symbol"] or "").capitalize()
     if symbol in _HYDROGEN and mass_number is None:

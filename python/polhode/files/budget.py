@@ -32,12 +32,15 @@ LIMITS: Final[Mapping[str, Limit]] = {
     "atoms": Limit(1_000_000, 0.125, "divide the file"),
     "placements": Limit(50_000, 0.0625, "place fewer parts"),
     "triangles": Limit(1_000_000, 1.0, "place fewer parts, or coarser ones"),
+    "points or cells": Limit(1_000_000, 1.0, "divide the file"),
     "numbers": Limit(10_000_000, 2.0, "let each part name an array of its own"),
     "words": Limit(10_000_000, 1.0, "divide the file"),
     "files": Limit(1000, 0.0, "divide the model"),
     "included bytes": Limit(1 << 28, 0.0, "divide the model"),
-    "links": Limit(100_000, 0.0, "divide the model"),
+    "links": Limit(50_000, 0.0, "divide the model"),
     "copies": Limit(10_000, 0.0, "lower the count"),
+    "levels": Limit(5000, 0.0, "nest parts in fewer levels"),
+    "shared errors": Limit(200_000, 20.0, "name fewer sources, or nest parts in fewer levels"),
     "elements in copies": Limit(50_000, 0.0, "lower the count"),
 }
 """By kind: so many, and so many more for each byte of the file."""
@@ -56,10 +59,12 @@ class Budget:
         Of the file, for errors.
     size : int
         In bytes, as it lies on the disk.
+    unit : str
+        In what a table that is no file has its size.
     """
 
-    def __init__(self, name: str, size: int) -> None:
-        self.name = name
+    def __init__(self, name: str, size: int, unit: str = "bytes of file") -> None:
+        self.name, self._unit = name, unit
         self._size = size
         self._spent = dict.fromkeys(LIMITS, 0)
 
@@ -97,5 +102,5 @@ class Budget:
         if self._spent[kind] <= (most := self.most(kind)):
             return
         _, per_byte, way_out = LIMITS[kind]
-        of = f", the most for {self._size} bytes of file" if per_byte else ""
+        of = f", the most for {self._size} {self._unit}" if per_byte else ""
         raise LimitError(f"{where or self.name}: there are more than {most} {kind}{of}; {way_out}")
