@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -27,6 +28,9 @@ __all__ = ["read"]
 MOST_MEMBERS: Final = 100_000
 """Parts and groups of an assembly, copies counted."""
 _MOST_TEXT: Final = 1 << 26
+_MOST_NAMES: Final = 50
+_PIECES: Final = re.compile(r"[=,\[\]{}\n]")
+_DOTTED: Final = re.compile(r"[\w\"'-]\s*\.\s*[\w\"'-]")
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,12 +122,22 @@ def _file(path: Path, known: dict[Path, _Unit], inside: tuple[Path, ...]) -> _Un
         raise PolhodeError(f"{path}: an assembly cannot be part of itself: {circle}; take one out")
     if real not in known:
         text = read_text(path, "an assembly in TOML", _MOST_TEXT)
+        _check_toml(text, path)
         try:
             table = tomllib.loads(text)
         except (tomllib.TOMLDecodeError, RecursionError) as error:
             raise FileFormatError(f"{path}: not TOML: {error}; correct the line") from None
         known[real] = _tree(table, path.parent, Scope(str(path)), known, (*inside, real))
     return known[real]
+
+
+def _check_toml(text: str, path: Path) -> None:
+    """Refuse keys of many names, for which Python's reader takes a time that grows with their square."""
+    for piece in _PIECES.split(text):
+        if piece.count(".") > _MOST_NAMES and len(_DOTTED.findall(piece)) > _MOST_NAMES:
+            raise FileFormatError(
+                f"{path}: a key has more than {_MOST_NAMES} names with dots between them; write tables"
+            )
 
 
 def _tree(
