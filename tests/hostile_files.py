@@ -47,7 +47,8 @@ def zipped(members: dict[str, str | bytes], method: int = zipfile.ZIP_DEFLATED) 
 def dae(nodes: str, scene: str, geometry: str = "", numbers: str = TETRAHEDRON) -> bytes:
     count = len(numbers.split())
     geometry = geometry or (
-        '<triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/>' + f"<p>{FACES}</p></triangles>"
+        '<triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/>'
+        + f"<p>{FACES}</p></triangles>"
     )
     return f"""<COLLADA><library_geometries><geometry id="g"><mesh><source id="s">
 <float_array id="a" count="{count}">{numbers}</float_array><technique_common>
@@ -79,9 +80,7 @@ def collada() -> dict[str, Files]:
         "a node shown again and again": {"a.dae": dae(f'<node id="n0">{SHOWN}</node>', START * 20_000)},
         "a node of many children": {"a.dae": dae(children, START * 15_000)},
         "groups of one source": {"a.dae": dae("", f"<node>{SHOWN}</node>", GROUP * 5_000, many)},
-        "a geometry shown by many nodes": {
-            "a.dae": dae("", f"<node>{SHOWN}</node>" * 15_000, GROUP * 4_000)
-        },
+        "a geometry shown by many nodes": {"a.dae": dae("", f"<node>{SHOWN}</node>" * 15_000, GROUP * 4_000)},
         "transforms": {"a.dae": dae("", f"<node>{'<translate>0 0 0</translate>' * 30_000}{SHOWN}</node>")},
         "polygons whose sum wraps": {
             "a.dae": dae("", f"<node>{SHOWN}</node>", vcount.format(f"{2**62} {2**62} {2**62} {2**62}", ""))
@@ -101,7 +100,9 @@ def collada() -> dict[str, Files]:
         },
         "unclosed comments": {"a.dae": b"<COLLADA>" + b"<!--" * 240_000},
         "attributes": {"a.dae": b"<COLLADA " + b" ".join(b"a%d=''" % i for i in range(90_000)) + b"/>"},
-        "a packed text of zeros": {"a.dae.gz": packed(dae("", f"<node>{SHOWN}</node>", numbers="0 " * 22_000_000))},
+        "a packed text of zeros": {
+            "a.dae.gz": packed(dae("", f"<node>{SHOWN}</node>", numbers="0 " * 22_000_000))
+        },
         "packed elements": {"a.dae.gz": packed(b"<COLLADA>" + b"<a/>" * 11_000_000 + b"</COLLADA>")},
     }
 
@@ -178,7 +179,9 @@ def gltf() -> dict[str, Files]:
             "a.gltf": text(**scene(one, bufferViews=[{"buffer": 0, "byteLength": 36, "byteStride": 10**18}]))
         },
         "negative offsets": {
-            "a.gltf": text(**scene(one, bufferViews=[{"buffer": 0, "byteLength": 10**9, "byteOffset": -(10**9)}]))
+            "a.gltf": text(
+                **scene(one, bufferViews=[{"buffer": 0, "byteLength": 10**9, "byteOffset": -(10**9)}])
+            )
         },
         "nested": {"a.gltf": b'{"asset":' + b"[" * 400_000},
         "long numbers": {"a.gltf": b'{"asset":' + b"1" * 900_000 + b"}"},
@@ -210,9 +213,13 @@ MODEL = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
 RELATIONS = f'<Relationships><Relationship Type="{MODEL}" Target="/m.model"/></Relationships>'
 MESH = (
     "<mesh><vertices>"
-    + "".join(f'<vertex x="{x}" y="{y}" z="{z}"/>' for x, y, z in ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)))
+    + "".join(
+        f'<vertex x="{x}" y="{y}" z="{z}"/>' for x, y, z in ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1))
+    )
     + "</vertices><triangles>"
-    + "".join('<triangle v1="{}" v2="{}" v3="{}"/>'.format(*f) for f in ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)))
+    + "".join(
+        '<triangle v1="{}" v2="{}" v3="{}"/>'.format(*f) for f in ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3))
+    )
     + "</triangles></mesh>"
 )
 
@@ -228,7 +235,7 @@ def packages() -> dict[str, Files]:
         f'<object id="{i}"><components>' + f'<component objectid="{i - 1}"/>' * 10 + "</components></object>"
         for i in range(1, 40)
     )
-    many = f'<object id="0"><mesh><vertices><vertex x="0" y="0" z="0"/></vertices><triangles>{{}}</triangles></mesh></object>'
+    many = '<object id="0"><mesh><vertices><vertex x="0" y="0" z="0"/></vertices><triangles>{}</triangles></mesh></object>'
     triangles = many.format('<triangle v1="0" v2="0" v3="0"/>' * 300_000)
     stored = io.BytesIO()
     with zipfile.ZipFile(stored, "w") as archive:
@@ -247,7 +254,9 @@ def packages() -> dict[str, Files]:
         "packed blanks": {"a.3mf": three_mf(" " * 200_000_000, "")},
         "packed elements": {"a.3mf": three_mf("<a/>" * 11_000_000, "")},
         "packed vertices": {
-            "a.3mf": three_mf('<object id="0"><mesh>' + '<vertex x="0" y="0" z="0"/>' * 1_500_000 + "</mesh></object>", "")
+            "a.3mf": three_mf(
+                '<object id="0"><mesh>' + '<vertex x="0" y="0" z="0"/>' * 1_500_000 + "</mesh></object>", ""
+            )
         },
         "one long token": {"a.3mf": three_mf(f'<object id="{"a" * 40_000_000}"/>', "")},
         "nested": {"a.3mf": three_mf("<a>" * 5_000_000, "")},
@@ -301,12 +310,22 @@ def meshes() -> dict[str, Files]:
     return {
         "STL: solids without facets": {"a.stl": b"solid facet\nendsolid facet\n" * 35_000},
         "STL: a long line": {"a.stl": b"solid facet " + b"a" * 900_000 + b"\nendsolid\n"},
-        "STL: huge numbers": {"a.stl": b"solid a\n" + facet.replace(b"vertex 0", b"vertex 1e5000") + b"endsolid\n"},
-        "STL: long numbers": {"a.stl": b"solid facet\n" + facet.replace(b"vertex 0", b"vertex " + b"1" * 200_000) + b"endsolid\n"},
+        "STL: huge numbers": {
+            "a.stl": b"solid a\n" + facet.replace(b"vertex 0", b"vertex 1e5000") + b"endsolid\n"
+        },
+        "STL: long numbers": {
+            "a.stl": b"solid facet\n"
+            + facet.replace(b"vertex 0", b"vertex " + b"1" * 200_000)
+            + b"endsolid\n"
+        },
         "STL: packed facets": {"a.stl.gz": packed(b"solid a\n" + facet * 500_000 + b"endsolid\n")},
-        "STL: packed triangles": {"a.stl.gz": packed(bytes(80) + struct.pack("<I", 900_000) + bytes(50 * 900_000))},
+        "STL: packed triangles": {
+            "a.stl.gz": packed(bytes(80) + struct.pack("<I", 900_000) + bytes(50 * 900_000))
+        },
         "STL: a huge count": {"a.stl": bytes(80) + struct.pack("<I", 2**32 - 1) + bytes(1000)},
-        "OBJ: continued lines": {"a.obj": tetrahedron + b"f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4" + b" \\\n" * 300_000},
+        "OBJ: continued lines": {
+            "a.obj": tetrahedron + b"f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4" + b" \\\n" * 300_000
+        },
         "OBJ: a large polygon": {"a.obj": fan},
         "OBJ: huge numbers": {"a.obj": b"v 1e5000 0 0\n" + fan[:1000]},
         "OBJ: far indices": {"a.obj": tetrahedron + b"f 1 2 99999999999999999999999\n"},
@@ -316,10 +335,17 @@ def meshes() -> dict[str, Files]:
         "PLY: huge counts": {"a.ply": ply % (10**15, 10**15)},
         "PLY: binary, huge counts": {"a.ply": binary % (10**15, 10**15) + bytes(100)},
         "PLY: a list that is long": {
-            "a.ply": binary.replace(b"uchar int", b"uint int") % (3, 2) + bytes(36) + b"\xff" * 4 + bytes(800_000)
+            "a.ply": binary.replace(b"uchar int", b"uint int") % (3, 2)
+            + bytes(36)
+            + b"\xff" * 4
+            + bytes(800_000)
         },
         "PLY: many properties": {"a.ply": wide + b"end_header\n" + bytes(100_000)},
-        "PLY: a large polygon": {"a.ply": (ply % (3, 1)).replace(b"uchar", b"uint") + b"0 0 0\n1 0 0\n0 1 0\n400000 " + b"0 " * 400_000},
+        "PLY: a large polygon": {
+            "a.ply": (ply % (3, 1)).replace(b"uchar", b"uint")
+            + b"0 0 0\n1 0 0\n0 1 0\n400000 "
+            + b"0 " * 400_000
+        },
         "PLY: packed words": {"a.ply.gz": packed(ply % (7_000_000, 0) + b"0 0 0\n" * 7_000_000)},
         "OFF: huge counts": {"a.off": b"OFF\n999999999999999 9999999999999 0\n0 0 0\n"},
         "OFF: long numbers": {"a.off": b"OFF\n" + b"1" * 900_000 + b" 1 0\n"},
@@ -420,7 +446,8 @@ def robots() -> dict[str, Files]:
     stl = bytes(80) + struct.pack("<I", 2_000) + bytes(50 * 2_000)
     mesh = '<collision><geometry><mesh filename="m.stl" scale="1 1 {}"/></geometry></collision>'
     joints = "".join(
-        f'<joint name="j{i}" type="fixed"><parent link="l{i}"/><child link="l{i + 1}"/></joint>' for i in range(3_000)
+        f'<joint name="j{i}" type="fixed"><parent link="l{i}"/><child link="l{i + 1}"/></joint>'
+        for i in range(3_000)
     )
     links = "".join(f'<link name="l{i}">{INERTIAL}</link>' for i in range(3_001))
     return {
@@ -431,10 +458,16 @@ def robots() -> dict[str, Files]:
             "r.urdf": f"<robot><link>{INERTIAL}{''.join(map(mesh.format, range(1, 5_000)))}</link></robot>".encode(),
             "m.stl": stl,
         },
-        "URDF: huge numbers": {"r.urdf": f"<robot><link>{INERTIAL.replace('1', '1e5000')}</link></robot>".encode()},
-        "URDF: long numbers": {"r.urdf": f"<robot><link>{INERTIAL.replace('1', '1' * 100_000)}</link></robot>".encode()},
+        "URDF: huge numbers": {
+            "r.urdf": f"<robot><link>{INERTIAL.replace('1', '1e5000')}</link></robot>".encode()
+        },
+        "URDF: long numbers": {
+            "r.urdf": f"<robot><link>{INERTIAL.replace('1', '1' * 100_000)}</link></robot>".encode()
+        },
         "URDF: entities": {
-            "r.urdf": b"<!DOCTYPE a [<!ENTITY a 'aaaa'>" + b"<!ENTITY b '&a;&a;&a;'>" + b"]><robot name='&b;'/>"
+            "r.urdf": b"<!DOCTYPE a [<!ENTITY a 'aaaa'>"
+            + b"<!ENTITY b '&a;&a;&a;'>"
+            + b"]><robot name='&b;'/>"
         },
         "SDF: models of models": {
             "r.sdf": f'<sdf><model name="m"><link/>{include("a.sdf", 10)}</model></sdf>'.encode(),
@@ -453,7 +486,10 @@ def robots() -> dict[str, Files]:
             "r.xml": mjcf(
                 '<body><geom class="c149"/></body>' * 1_000,
                 "<default>"
-                + "".join(f'<default class="c{i}"><geom {" ".join(map(attribute, range(300)))}/>' for i in range(150))
+                + "".join(
+                    f'<default class="c{i}"><geom {" ".join(map(attribute, range(300)))}/>'
+                    for i in range(150)
+                )
                 + "</default>" * 151,
             )
         },
@@ -473,9 +509,7 @@ def assemblies() -> dict[str, Files]:
 
     cube = 'solid="cube"\nside=1\nmass=1'
     stl = bytes(80) + struct.pack("<I", 8_000) + bytes(50 * 8_000)
-    box = (
-        b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
-    )
+    box = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
     return {
         "tens of tens": {
             "a.toml": nested("b.toml", 10).encode(),
@@ -604,8 +638,12 @@ def cad() -> dict[str, Files]:
         "IGES: nothing but huge numbers": {"a.igs": iges("110," + "1E999999" + ";")},
         "STEP: a huge number": {"a.step": step("#1=CARTESIAN_POINT('',(1.E5000,0.,0.));")},
         "STEP: unclosed": {"a.step": step(unclosed)},
-        "STEP: nested lists": {"a.step": step("#1=CARTESIAN_POINT('',(" + "(" * 400_000 + ")" * 400_000 + "));")},
-        "STEP: itself": {"a.step": step("#1=PRODUCT('a','a','',(#1));\n#2=SHAPE_REPRESENTATION('',(#2),#2);")},
+        "STEP: nested lists": {
+            "a.step": step("#1=CARTESIAN_POINT('',(" + "(" * 400_000 + ")" * 400_000 + "));")
+        },
+        "STEP: itself": {
+            "a.step": step("#1=PRODUCT('a','a','',(#1));\n#2=SHAPE_REPRESENTATION('',(#2),#2);")
+        },
         "STEP: packed": {"a.step.gz": packed(step("#1=A();\n" * 5_000_000))},
     }
 

@@ -169,7 +169,10 @@ class TestNpz:
             for _ in range(5):
                 member.write(bytes(1 << 24))
         used = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-        with pytest.raises(FileFormatError, match=r"there are more than \d+ unpacked bytes, the most for \d+ bytes of file; unpack it"):
+        with pytest.raises(
+            FileFormatError,
+            match=r"there are more than \d+ unpacked bytes, the most for \d+ bytes of file; unpack it",
+        ):
             RigidBody.load(path)
         assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - used < 50_000
 

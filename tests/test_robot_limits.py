@@ -176,13 +176,22 @@ class TestCopies:
     @pytest.mark.parametrize(
         ("text", "says"),
         [
-            ('<replicate count="9999">{2000}</replicate>', "line 2: there are more than 50000 elements in copies"),
+            (
+                '<replicate count="9999">{2000}</replicate>',
+                "line 2: there are more than 50000 elements in copies",
+            ),
             (
                 '<replicate count="9">\n<replicate count="9">{2000}</replicate></replicate>',
                 "line 2: there are more than 50000 elements in copies",
             ),
-            (25 * '<replicate count="2">' + "{1}" + 25 * "</replicate>", "line 2: there are more than 10000 copies"),
-            (12 * '<replicate count="2">' + "{100}" + 12 * "</replicate>", "more than 50000 elements in copies"),
+            (
+                25 * '<replicate count="2">' + "{1}" + 25 * "</replicate>",
+                "line 2: there are more than 10000 copies",
+            ),
+            (
+                12 * '<replicate count="2">' + "{100}" + 12 * "</replicate>",
+                "more than 50000 elements in copies",
+            ),
             ('<replicate count="1e40">{1}</replicate>', "line 2: there are more than 10000 copies"),
             (11 * '<replicate count="1000">{1}</replicate>', "line 2: there are more than 10000 copies"),
         ],
@@ -201,7 +210,9 @@ class TestCopies:
         limited(monkeypatch, "elements in copies", 60)
         assert len(parsed(text).links) == 6
         limited(monkeypatch, "elements in copies", 59)
-        with pytest.raises(FileFormatError, match="line 6: there are more than 59 elements in copies; lower the count"):
+        with pytest.raises(
+            FileFormatError, match="line 6: there are more than 59 elements in copies; lower the count"
+        ):
             parsed(text)
 
     def test_below_the_limits_all_are_made(self) -> None:

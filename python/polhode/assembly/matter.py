@@ -229,7 +229,9 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
     solid = solid_of(loaded, scale=metres, **options)
     is_whole = options.keys().isdisjoint(("union", "closure", "repair", "weld"))
     if loaded.cad is not None or not is_whole or solid.faces > MOST_FACES:
-        return Matter(solid.body, metres, notes=loaded.notes)  # of solids of CAD their file tells what overlaps
+        return Matter(
+            solid.body, metres, notes=loaded.notes
+        )  # of solids of CAD their file tells what overlaps
     mesh = loaded.mesh.vertices * metres, loaded.mesh.faces
     lines = overlapping(*mesh)
     lines += ["union = true counts what components share once"] if lines else []

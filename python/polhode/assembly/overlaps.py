@@ -229,9 +229,7 @@ def _meeting(parts: Sequence[Placed]) -> tuple[list[tuple[int, int]], int]:
     pairs: list[tuple[int, int]] = []
     more = 0
     for i in range(len(parts) - 1):
-        meet = np.flatnonzero(
-            (np.abs(middles[i + 1 :] - middles[i]) < reach[i + 1 :] + reach[i]).all(axis=1)
-        )
+        meet = np.flatnonzero((np.abs(middles[i + 1 :] - middles[i]) < reach[i + 1 :] + reach[i]).all(axis=1))
         taken = meet[: _MOST_PAIRS - len(pairs)]
         pairs += [(i, i + 1 + k) for k in taken.tolist()]
         more += len(meet) - len(taken)

@@ -32,9 +32,7 @@ _WORDS_PER_BLOCK: Final = 4096 * _WORDS_PER_FACET
 _LONGEST_LINE: Final = 1 << 20
 
 
-def read_ascii_stl(
-    stream: BinaryIO, file: Path
-) -> tuple[NDArray[np.float64], tuple[tuple[str, int], ...]]:
+def read_ascii_stl(stream: BinaryIO, file: Path) -> tuple[NDArray[np.float64], tuple[tuple[str, int], ...]]:
     """Read the corners of every triangle of every solid in an ASCII STL file.
 
     Parameters

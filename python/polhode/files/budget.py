@@ -35,6 +35,8 @@ LIMITS: Final[Mapping[str, Limit]] = {
     "points or cells": Limit(1_000_000, 1.0, "divide the file"),
     "numbers": Limit(10_000_000, 2.0, "let each part name an array of its own"),
     "words": Limit(10_000_000, 1.0, "divide the file"),
+    "readings of files": Limit(2000, 0.002, "count says how often a part is there"),
+    "bytes read": Limit(1 << 24, 32.0, "count says how often a part is there"),
     "files": Limit(1000, 0.0, "divide the model"),
     "included bytes": Limit(1 << 28, 0.0, "divide the model"),
     "links": Limit(50_000, 0.0, "divide the model"),
@@ -67,10 +69,13 @@ class Budget:
         self.name, self._unit = name, unit
         self._size = size
         self._spent = dict.fromkeys(LIMITS, 0)
+        self._files: set[str] = set()
 
-    def add_file(self, size: int) -> None:
-        """Count the bytes of another file that belongs to this one, once for each file."""
-        self._size += size
+    def add_file(self, size: int, name: str = "") -> None:
+        """Count the bytes of another file that belongs to this one; of a file with a name once."""
+        if not name or name not in self._files:
+            self._size += size
+            self._files.add(name)
 
     def most(self, kind: str) -> int:
         """Return how many of a kind may be made in all."""

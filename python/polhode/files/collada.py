@@ -221,8 +221,10 @@ class _Document:
                 raise _FaultError(f"{group.where}: polygons with holes are not read; export triangles")
             texts = [p.text for p in _all(group, "p")]
             rows = [_integers(text, group)[offset::stride] for text in texts]
-            return source, points, _fans(
-                np.concatenate([[], *rows]).astype(np.int64), [len(row) for row in rows], group
+            return (
+                source,
+                points,
+                _fans(np.concatenate([[], *rows]).astype(np.int64), [len(row) for row in rows], group),
             )
         stored = _one(group, "p")
         flat = _integers(stored.text, group) if stored is not None else np.empty(0, dtype=np.int64)

@@ -196,9 +196,7 @@ class _Build:
             for kind, count in self._left_out.items()
         ]
         unit = _UNITS[root.unit]
-        return Package(
-            scene.mesh("3MF"), unit, root.states_unit, scene.groups, (*notes, *self._notes)
-        )
+        return Package(scene.mesh("3MF"), unit, root.states_unit, scene.groups, (*notes, *self._notes))
 
     def _start(self) -> str:
         found: list[str] = []
@@ -301,9 +299,7 @@ class _Build:
         self._parse(path, start)
         return found
 
-    def _place(
-        self, path: str, name: str, place: Floats, scene: Scene, depth: int, called: str = ""
-    ) -> None:
+    def _place(self, path: str, name: str, place: Floats, scene: Scene, depth: int, called: str = "") -> None:
         self._budget.spend("placements")
         if depth > _DEEPEST:
             raise _FaultError("its objects place one another without end")
@@ -343,7 +339,9 @@ class _Build:
         placed = {other for _, other, _ in thing.components}
         stray = next((part for part in parts if part not in placed and parts[part].role != _MATTER), None)
         if stray is not None:
-            raise _FaultError(f"a part {stray[:40]!r} of its settings is none that object {name[:40]!r} places")
+            raise _FaultError(
+                f"a part {stray[:40]!r} of its settings is none that object {name[:40]!r} places"
+            )
         for way, other, moved in thing.components:
             part = parts.get(other, _Volume(_MATTER))
             if part.role in (_MATTER, _NEGATIVE):

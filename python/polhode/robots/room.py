@@ -96,9 +96,7 @@ def _beyond(body: RigidBody, low: Floats, high: Floats, reason: str) -> Finding:
     is_outside = bool(((body.center_of_mass < low) | (body.center_of_mass > high)).any())
     if MOST < factor <= FAR and not is_outside:
         much = f"{times(factor)} the box around it filled"
-        return Finding(
-            "suspect", reason, f"{much}: identified tensors are so at times, --strict fails them"
-        )
+        return Finding("suspect", reason, f"{much}: identified tensors are so at times, --strict fails them")
     middle = body.translated((low + high) / 2.0 - body.center_of_mass)
     has_room = not is_outside and fit_in_box(middle, low, high).possible
     why = "about its middle the shape has room: look at the centre of mass" if has_room else ""
