@@ -127,7 +127,7 @@ def test_the_limits_of_files_are_those_that_the_page_states() -> None:
     for text, value in (
         ("1000 included files", LIMITS["files"].least),
         ("256 MiB", LIMITS["included bytes"].least >> 20),
-        ("100,000 links", LIMITS["links"].least),
+        ("50,000 links", LIMITS["links"].least),
         ("10,000 copies", LIMITS["copies"].least),
         ("50,000 elements in them", LIMITS["elements in copies"].least),
     ):

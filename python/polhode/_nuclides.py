@@ -92,7 +92,9 @@ def isotopes(labels: Sequence[str], masses: Masses = "most_common") -> list[Isot
 def _isotope(table: Any, label: str, masses: Masses) -> Isotope:
     match = _LABEL.fullmatch(label)
     if match is None:
-        raise PolhodeError(f"{label!r} is not an element; write a symbol (O), isotope (18O) or number (8)")
+        raise PolhodeError(
+            f"{label[:40]!r} is not an element; write a symbol (O), isotope (18O) or number (8)"
+        )
     mass_number = int(match["mass_number"]) if match["mass_number"] else None
     symbol = (match["symbol"] or "").capitalize()
     if symbol in _HYDROGEN and mass_number is None:

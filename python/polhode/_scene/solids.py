@@ -53,17 +53,13 @@ def _turned(profile: Floats, segments: int) -> Surface:
         [np.outer(np.cos(angles), r), np.outer(np.sin(angles), r), np.tile(z, (segments, 1))], axis=-1
     )
     count = len(profile)
-    faces = []
-    for k in range(segments):
-        here, there = k * count, (k + 1) % segments * count
-        for i in range(count - 1):
-            a, b, c, d = here + i, there + i, there + i + 1, here + i + 1
-            if r[i] > 0.0:
-                faces.append((a, b, c))
-            if r[i + 1] > 0.0:
-                faces.append((a, c, d))
+    here, row = np.arange(segments)[:, None] * count, np.arange(count - 1)
+    a, b = here + row, np.roll(here, -1, axis=0) + row
+    # Two triangles between neighbouring points and their copies a turn further; one of them at the axis.
+    faces = np.stack([np.stack([a, b, b + 1], axis=-1), np.stack([a, b + 1, a + 1], axis=-1)], axis=2)
+    is_there = np.broadcast_to(np.stack([r[:-1] > 0.0, r[1:] > 0.0], axis=-1), faces.shape[:3])
     vertices, index = np.unique(rings.reshape(-1, 3) + 0.0, axis=0, return_inverse=True)
-    return vertices, index.reshape(-1)[np.array(faces, dtype=np.int64).reshape(-1, 3)].astype(np.int64)
+    return vertices, index.reshape(-1)[faces[is_there]].astype(np.int64)
 
 
 def _cylinder(radius: float, height: float) -> Floats:

@@ -35,6 +35,10 @@ __all__ = ["SAVED", "Matter", "body_of_part", "kind_of"]
 SAVED: Final = (".json", ".npz")
 """Of bodies that ``RigidBody.save`` wrote, and of reports."""
 _SHAPES: Final = {name: getattr(room, name) for room in (solids, laminae, rods) for name in room.__all__}
+_PARAMETERS: Final = {
+    name: [key for key in inspect.signature(shape).parameters if key != "degrees"]  # numbers have units
+    for name, shape in _SHAPES.items()
+}
 _NO_LENGTHS: Final = {"angle": "rad", "sides": "1"}
 """Arguments of shapes that are no lengths, with their units."""
 _SWITCHES: Final = ("orient", "union", "repair")
@@ -50,12 +54,7 @@ def kind_of(table: Mapping[str, Any], where: str) -> str:
         every = {
             *COMMON,
             *FILE,
-            *(
-                name
-                for shape in _SHAPES.values()
-                for name in inspect.signature(shape).parameters
-                if name != "degrees"
-            ),
+            *(name for parameters in _PARAMETERS.values() for name in parameters),
         }
         check_keys(table, sorted(every), where)
     found = f"got {' and '.join(kinds)}" if kinds else "got none"
@@ -129,7 +128,7 @@ def _solid(table: Mapping[str, Any], scope: Scope) -> Matter:
             f"{scope.where}: solid: there is no {name!r}; write one of {', '.join(sorted(_SHAPES))}"
         )
     shape: Callable[..., RigidBody] = _SHAPES[name]
-    taken = [key for key in inspect.signature(shape).parameters if key != "degrees"]  # numbers have units
+    taken = _PARAMETERS[name]
     check_keys(table, (*COMMON, *taken), f"{scope.where} ({name})")
     own = [key for key in taken if key not in ("mass", "density")]
     missing = [key for key in own if key not in table]

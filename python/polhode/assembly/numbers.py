@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["Scope"]
 
 _SHOWN: Final = 60
+_LONGEST: Final = 10_000
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,7 @@ class Scope:
         count : int, optional
             How many there have to be.
         """
-        option = f"{self.where}: {key}" if self.where else key
+        option = self._option(key, value)
         if isinstance(value, list | tuple):
             found = [self._number(option, item, unit, bare) for item in value]
         elif isinstance(value, str) and (count or "," in value or len(value.split()) > 1):
@@ -92,10 +93,16 @@ class Scope:
 
     def amount(self, key: str, value: Any, unit: str) -> float | _core.Uncertain:
         """Read a mass or a density, which may have a sigma."""
-        option = f"{self.where}: {key}" if self.where else key
+        option = self._option(key, value)
         if isinstance(value, str):
             return amount(value, unit, option)
         return self._number(option, value, unit, 1.0)
+
+    def _option(self, key: str, value: Any) -> str:
+        option = f"{self.where}: {key}" if self.where else key
+        if isinstance(value, str) and len(value) > _LONGEST:
+            raise PolhodeError(f"{option}: {_shown(value)} has more than {_LONGEST} letters; write a number")
+        return option
 
     def _number(self, option: str, value: Any, unit: str, bare: float) -> float:
         if isinstance(value, str):

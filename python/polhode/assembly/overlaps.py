@@ -39,6 +39,10 @@ _FINE, _COARSE = 64, 32
 _LITTLE: Final = 1e-3
 """What is shared by less than this, of the smaller part, is contact."""
 _MOST_PARTS: Final = 3000
+_MOST_PAIRS: Final = 20_000
+_MOST_SURFACES: Final = 300
+"""Of solids, which are made when something is near."""
+_MOST_SIDES: Final = 1000
 _MOST_TRIANGLES: Final = 400_000
 """Of the parts that are compared, counted once for each pair."""
 _MOST_TOLD: Final = 8
@@ -77,6 +81,8 @@ class Form:
         """Give its triangles, outward; None where it has no volume that triangles bound."""
         if self._mesh is not None:
             return self._mesh
+        if self.solid == "prism" and self._numbers[0] > _MOST_SIDES:
+            return None
         if segments not in self._known:
             name = "cuboid" if self.solid == "box" else self.solid
             found = solid_surface(name, self._numbers, segments)
@@ -104,6 +110,21 @@ class Form:
     def key(self) -> tuple[object, ...]:
         """What differs between forms that differ."""
         return self.solid, self._numbers.tobytes(), 0 if self._mesh is None else len(self._mesh[1])
+
+    @cached_property
+    def reach(self) -> tuple[Floats, Floats]:
+        """Opposite corners of a box that is wide enough, which costs little."""
+        if self._mesh is None:  # a solid with its centre of mass at the origin is within the sum of its sizes
+            size = float(np.abs(self._numbers[1 if self.solid == "prism" else 0 :]).sum())
+            return np.full(3, -size), np.full(3, size)
+        vertices, faces = self._mesh
+        corners = vertices[faces.reshape(-1)] if len(faces) else np.zeros((1, 3))
+        return corners.min(axis=0), corners.max(axis=0)
+
+    @property
+    def is_made(self) -> bool:
+        """Whether its triangles are there."""
+        return self._mesh is not None or _FINE in self._known
 
     @cached_property
     def box(self) -> tuple[Floats, Floats] | None:
@@ -141,32 +162,41 @@ def find_overlaps(parts: Sequence[Placed]) -> tuple[list[Overlap], list[str]]:
     notes : list of str
     """
     found, twins = _at_one_place(parts)
-    shown = [part for k, part in enumerate(parts) if k not in twins and part.form and part.form.box]
+    shown = [
+        part
+        for k, part in enumerate(parts)
+        if k not in twins and part.form and np.isfinite(part.form.reach).all()
+    ]
     notes = []
     if len(shown) > _MOST_PARTS:
         notes.append(
             f"{len(shown)} parts with volumes are more than {_MOST_PARTS}: they were not searched for overlaps"
         )
         shown = []
-    left, unseen = _MOST_TRIANGLES, 0
-    for i, k in _meeting(shown):
-        one, other = shown[i], shown[k]
-        volume = _of_spheres(one, other)
-        if volume is None:
-            count = _triangles(one) + _triangles(other)
-            if count > left:
-                unseen += 1
-                continue
-            left -= count
-            shared = _shared(one, other)
-        else:
-            shared = _told(one, other, volume, 0.0)
-        if shared is not None:
-            found.append(shared)
+    left, unmade = _MOST_TRIANGLES, _MOST_SURFACES
+    pairs, unseen = _meeting(shown)
+    for i, k in pairs:
+        pair = shown[i], shown[k]
+        if (volume := _of_spheres(*pair)) is not None:
+            found += _told(*pair, volume, 0.0)
+            continue
+        making = sum(not part.form.is_made for part in pair if part.form)
+        if making > unmade:
+            unseen += 1
+            continue
+        unmade -= making
+        if not _near(*pair):
+            continue
+        count = sum(map(_triangles, pair))
+        if count > left:
+            unseen += 1
+            continue
+        left -= count
+        found += _shared(*pair)
     if unseen:
         notes.append(
-            f"{unseen} pairs of parts whose boxes meet were not compared: they have more than "
-            f"{_MOST_TRIANGLES} triangles"
+            f"{unseen} pairs of parts that may be near each other were not compared: there are more than "
+            f"{_MOST_PAIRS} pairs, {_MOST_SURFACES} solids or {_MOST_TRIANGLES} triangles"
         )
     found.sort(key=lambda each: -each.volume if math.isfinite(each.volume) else math.inf)
     return found, notes
@@ -182,30 +212,45 @@ def _at_one_place(parts: Sequence[Placed]) -> tuple[list[Overlap], set[int]]:
         key += part.form.key if part.form is not None else ()
         if key in first:
             twins.add(k)
-            volume = part.form.volume if part.form is not None else math.nan
+            form = parts[first[key]].form
+            volume = form.volume if form is not None else math.nan
             found.append(Overlap("same", parts[first[key]].name, part.name, volume))
         else:
             first[key] = k
     return found, twins
 
 
-def _meeting(parts: Sequence[Placed]) -> list[tuple[int, int]]:
-    """Give the pairs whose boxes along the axes of the whole meet, the larger one first."""
+def _meeting(parts: Sequence[Placed]) -> tuple[list[tuple[int, int]], int]:
+    """Give pairs that may be near each other, by wide boxes along the axes of the whole; and how many more."""
     if not parts:
-        return []
-    boxes = np.array([part.form.box for part in parts if part.form])  # of shape (n, 2, 3)
+        return [], 0
+    boxes = np.array([part.form.reach for part in parts if part.form])  # of shape (n, 2, 3)
+    middles, reach = _boxes(parts, boxes)
+    pairs: list[tuple[int, int]] = []
+    more = 0
+    for i in range(len(parts) - 1):
+        meet = np.flatnonzero((np.abs(middles[i + 1 :] - middles[i]) < reach[i + 1 :] + reach[i]).all(axis=1))
+        taken = meet[: _MOST_PAIRS - len(pairs)]
+        pairs += [(i, i + 1 + k) for k in taken.tolist()]
+        more += len(meet) - len(taken)
+    return pairs, more
+
+
+def _near(one: Placed, other: Placed) -> bool:
+    """Tell whether the boxes around the triangles of two parts meet."""
+    known = [part.form.box for part in (one, other) if part.form]
+    if None in known:
+        return False
+    middles, reach = _boxes((one, other), np.array(known))
+    return bool((np.abs(middles[1] - middles[0]) < reach[0] + reach[1]).all())
+
+
+def _boxes(parts: Sequence[Placed], boxes: Floats) -> tuple[Floats, Floats]:
+    """Give the middles and half sides of boxes along the axes of the whole around boxes of parts."""
     turns = np.array([part.place.rotation for part in parts])
     shifts = np.array([part.place.displacement for part in parts])
     middles = np.einsum("nij,nj->ni", turns, boxes.mean(axis=1)) + shifts
-    reach = np.einsum("nij,nj->ni", np.abs(turns), np.ptp(boxes, axis=1) / 2.0)
-    volumes = np.array([part.form.volume for part in parts if part.form])
-    pairs = []
-    order = np.argsort(-volumes, kind="stable")
-    middles, reach = middles[order], reach[order]
-    for i in range(len(order)):
-        meet = (np.abs(middles[i + 1 :] - middles[i]) < reach[i + 1 :] + reach[i]).all(axis=1)
-        pairs += [(int(order[i]), int(order[i + 1 + k])) for k in np.flatnonzero(meet)]
-    return pairs
+    return middles, np.einsum("nij,nj->ni", np.abs(turns), np.ptp(boxes, axis=1) / 2.0)
 
 
 def _triangles(part: Placed) -> int:
@@ -231,7 +276,7 @@ def _of_spheres(one: Placed, other: Placed) -> float | None:
     return volume
 
 
-def _shared(one: Placed, other: Placed) -> Overlap | None:
+def _shared(one: Placed, other: Placed) -> list[Overlap]:
     """Compare two parts by their triangles."""
     assert one.form is not None  # parts without a form are not compared
     assert other.form is not None
@@ -241,23 +286,24 @@ def _shared(one: Placed, other: Placed) -> Overlap | None:
             for part in (one, other)
             if part.form is not None
         ]
-        (told,) = overlaps(pair, [(0, 1)]) or (None,)
-        if told is None:
-            return None
-        return Overlap("inside" if told.is_inside else "across", told.one, told.other, told.volume)
+        return [
+            Overlap("inside" if each.is_inside else "across", each.one, each.other, each.volume)
+            for each in overlaps(sorted(pair, key=lambda part: -part.volume), [(0, 1)])
+        ]
     fine = _volume(one, other, _FINE)
     if not (one.form.is_round or other.form.is_round):
         return _told(one, other, fine, 0.0)
     return _told(one, other, *_smooth(fine, _volume(one, other, _COARSE)))
 
 
-def _told(one: Placed, other: Placed, volume: float, doubt: float) -> Overlap | None:
-    assert other.form is not None
-    small = other.form.volume
-    if volume <= max(_LITTLE * small, doubt):
-        return None
-    is_inside = volume >= (1.0 - _LITTLE) * small
-    return Overlap("inside" if is_inside else "across", one.name, other.name, volume)
+def _told(one: Placed, other: Placed, volume: float, doubt: float) -> list[Overlap]:
+    """Say that two parts share so much, unless it is contact."""
+    large, small = sorted((one, other), key=lambda part: -(part.form.volume if part.form else 0.0))
+    whole = small.form.volume if small.form else math.nan
+    if volume <= max(_LITTLE * whole, doubt):
+        return []
+    is_inside = volume >= (1.0 - _LITTLE) * whole
+    return [Overlap("inside" if is_inside else "across", large.name, small.name, volume)]
 
 
 def _volume(one: Placed, other: Placed, segments: int) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -16,6 +17,7 @@ from polhode.assembly.overlaps import Form, Placed, find_overlaps, overlap_notes
 from polhode.assembly.placing import HERE, Place, copies, place_of
 from polhode.assembly.result import Assembly, Member
 from polhode.errors import FileFormatError, PolhodeError
+from polhode.files.budget import Budget
 from polhode.files.reading import read_text, words_of
 from polhode.uncertainty.ledger import ledger_of_bodies
 
@@ -27,6 +29,9 @@ __all__ = ["read"]
 MOST_MEMBERS: Final = 100_000
 """Parts and groups of an assembly, copies counted."""
 _MOST_TEXT: Final = 1 << 26
+_MOST_NAMES: Final = 50
+_PIECES: Final = re.compile(r"[=,\[\]{}\n]")
+_DOTTED: Final = re.compile(r"[\w\"'-]\s*\.\s*[\w\"'-]")
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,13 +109,13 @@ def read(
     array([-0.06  ,  0.1039,  0.22  ])
     """
     if isinstance(assembly, Mapping):
-        whole = _tree(dict(assembly), Path(folder), Scope(""), {}, ())
+        whole = _tree(dict(assembly), Path(folder), Scope(""), {}, (), Budget("assembly", 0))
     else:
-        whole = _file(Path(assembly), {}, ())
+        whole = _file(Path(assembly), {}, (), Budget(str(assembly), 0))
     return _assembled(whole)
 
 
-def _file(path: Path, known: dict[Path, _Unit], inside: tuple[Path, ...]) -> _Unit:
+def _file(path: Path, known: dict[Path, _Unit], inside: tuple[Path, ...], budget: Budget) -> _Unit:
     """Read a file once; `inside` are the files that are being read, the outermost first."""
     real = Path(os.path.realpath(path))
     if real in inside:
@@ -118,16 +123,32 @@ def _file(path: Path, known: dict[Path, _Unit], inside: tuple[Path, ...]) -> _Un
         raise PolhodeError(f"{path}: an assembly cannot be part of itself: {circle}; take one out")
     if real not in known:
         text = read_text(path, "an assembly in TOML", _MOST_TEXT)
+        budget.add_file(len(text))
+        _check_toml(text, path)
         try:
             table = tomllib.loads(text)
-        except (tomllib.TOMLDecodeError, RecursionError) as error:
+        except (ValueError, RecursionError) as error:  # of TOML, or of a number of very many digits
             raise FileFormatError(f"{path}: not TOML: {error}; correct the line") from None
-        known[real] = _tree(table, path.parent, Scope(str(path)), known, (*inside, real))
+        known[real] = _tree(table, path.parent, Scope(str(path)), known, (*inside, real), budget)
     return known[real]
 
 
+def _check_toml(text: str, path: Path) -> None:
+    """Refuse keys of many names, for which Python's reader takes a time that grows with their square."""
+    for piece in _PIECES.split(text):
+        if piece.count(".") > _MOST_NAMES and len(_DOTTED.findall(piece)) > _MOST_NAMES:
+            raise FileFormatError(
+                f"{path}: a key has more than {_MOST_NAMES} names with dots between them; write tables"
+            )
+
+
 def _tree(
-    table: dict[str, Any], folder: Path, scope: Scope, known: dict[Path, _Unit], inside: tuple[Path, ...]
+    table: dict[str, Any],
+    folder: Path,
+    scope: Scope,
+    known: dict[Path, _Unit],
+    inside: tuple[Path, ...],
+    budget: Budget,
 ) -> _Unit:
     where = scope.where or "assembly"
     check_keys(table, TOP, where)
@@ -152,7 +173,7 @@ def _tree(
         if own in seen:
             raise PolhodeError(f"{where}: {at}: the name is there twice; give each part its own")
         seen.add(own)
-        child = _part(own, row, folder, scope.within(at, row.get("length_unit")), known, inside)
+        child = _part(own, row, folder, scope.within(at, row.get("length_unit")), known, inside, budget)
         members += child[1].members
         notes += child[1].notes
         if members > MOST_MEMBERS:
@@ -170,6 +191,7 @@ def _part(
     scope: Scope,
     known: dict[Path, _Unit],
     inside: tuple[Path, ...],
+    budget: Budget,
 ) -> tuple[Place, _Unit]:
     """Read a part: one, or a group of its copies."""
     kind = kind_of(row, scope.where)
@@ -183,13 +205,15 @@ def _part(
             )
         check_keys(row, COMMON, scope.where)
         try:
-            inner = _file(folder / text_of(row, "assembly", scope.where), known, inside)
+            inner = _file(folder / text_of(row, "assembly", scope.where), known, inside, budget)
         except OSError as error:
             raise PolhodeError(f"{scope.where}: {words_of(error)}") from error
         one = _Unit(
             name, comment or inner.comment, children=inner.children, members=inner.members, notes=inner.notes
         )
     else:
+        if file is not None:
+            _count_reading(file, scope.where, budget)
         body, metres, arguments, told, mesh = body_of_part(kind, row, scope, folder)
         shape = text_of(row, "solid", scope.where)
         form = Form(shape, arguments, mesh) if shape or mesh is not None else None
@@ -206,6 +230,15 @@ def _part(
         (move.of(place), replace(one, name=f"{k}", notes=())) for k, move in enumerate(moves, start=1)
     )
     return HERE, _Unit(name, comment, children=group, members=members, notes=one.notes)
+
+
+def _count_reading(file: Path, where: str, budget: Budget) -> None:
+    """Count the reading of a part's file, which many parts may name."""
+    if file.is_file():  # else its reader says what is wrong
+        size = file.stat().st_size
+        budget.add_file(size, os.path.realpath(file))
+        budget.spend("readings of files", 1, where)
+        budget.spend("bytes read", size, where)
 
 
 def _check_name(name: str, where: str) -> None:

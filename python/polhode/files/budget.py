@@ -32,12 +32,17 @@ LIMITS: Final[Mapping[str, Limit]] = {
     "atoms": Limit(1_000_000, 0.125, "divide the file"),
     "placements": Limit(50_000, 0.0625, "place fewer parts"),
     "triangles": Limit(1_000_000, 1.0, "place fewer parts, or coarser ones"),
+    "points or cells": Limit(1_000_000, 1.0, "divide the file"),
     "numbers": Limit(10_000_000, 2.0, "let each part name an array of its own"),
     "words": Limit(10_000_000, 1.0, "divide the file"),
+    "readings of files": Limit(2000, 0.002, "count says how often a part is there"),
+    "bytes read": Limit(1 << 24, 32.0, "count says how often a part is there"),
     "files": Limit(1000, 0.0, "divide the model"),
     "included bytes": Limit(1 << 28, 0.0, "divide the model"),
-    "links": Limit(100_000, 0.0, "divide the model"),
+    "links": Limit(50_000, 0.0, "divide the model"),
     "copies": Limit(10_000, 0.0, "lower the count"),
+    "levels": Limit(5000, 0.0, "nest parts in fewer levels"),
+    "shared errors": Limit(200_000, 20.0, "name fewer sources, or nest parts in fewer levels"),
     "elements in copies": Limit(50_000, 0.0, "lower the count"),
 }
 """By kind: so many, and so many more for each byte of the file."""
@@ -56,16 +61,21 @@ class Budget:
         Of the file, for errors.
     size : int
         In bytes, as it lies on the disk.
+    unit : str
+        In what a table that is no file has its size.
     """
 
-    def __init__(self, name: str, size: int) -> None:
-        self.name = name
+    def __init__(self, name: str, size: int, unit: str = "bytes of file") -> None:
+        self.name, self._unit = name, unit
         self._size = size
         self._spent = dict.fromkeys(LIMITS, 0)
+        self._files: set[str] = set()
 
-    def add_file(self, size: int) -> None:
-        """Count the bytes of another file that belongs to this one, once for each file."""
-        self._size += size
+    def add_file(self, size: int, name: str = "") -> None:
+        """Count the bytes of another file that belongs to this one; of a file with a name once."""
+        if not name or name not in self._files:
+            self._size += size
+            self._files.add(name)
 
     def most(self, kind: str) -> int:
         """Return how many of a kind may be made in all."""
@@ -97,5 +107,5 @@ class Budget:
         if self._spent[kind] <= (most := self.most(kind)):
             return
         _, per_byte, way_out = LIMITS[kind]
-        of = f", the most for {self._size} bytes of file" if per_byte else ""
+        of = f", the most for {self._size} {self._unit}" if per_byte else ""
         raise LimitError(f"{where or self.name}: there are more than {most} {kind}{of}; {way_out}")

@@ -257,7 +257,7 @@ def _load(file: Path, suffix: str, index_base: int, budget: Budget) -> Loaded:
         if suffix in (".vtk", ".vtu", ".vtp"):
             from polhode.files.vtk import read_vtk
 
-            return Loaded(file, "VTK", _mesh=read_vtk(file))
+            return Loaded(file, "VTK", _mesh=read_vtk(file, budget))
         if suffix in (".glb", ".gltf"):
             from polhode.files.gltf import read_gltf
 

@@ -35,6 +35,8 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Integers = NDArray[np.int64]
     Start = Callable[[str, dict[str, str]], None]
+    _Placement = tuple[str, str, str | None]
+    """The model and the object that is placed, and its transform as it is written."""
 
 __all__ = ["Package", "read_three_mf"]
 
@@ -143,7 +145,7 @@ class _Object:
     def __init__(self, name: str, kind: str) -> None:
         self.name, self.kind = name, kind
         self.numbers, self.corners = array("d"), array("q")
-        self.components: list[tuple[str, str, Floats]] = []
+        self.components: list[_Placement] = []
 
     def triangles(self, name: str) -> tuple[Floats, Integers]:
         vertices = np.array(self.numbers).reshape(-1, 3)
@@ -159,7 +161,7 @@ class _Model:
     def __init__(self) -> None:
         self.unit, self.states_unit = "millimeter", False
         self.objects: dict[str, _Object] = {}
-        self.items: list[tuple[str, str, Floats]] = []
+        self.items: list[_Placement] = []
 
 
 class _Volume:
@@ -185,7 +187,7 @@ class _Build:
     def whole(self) -> Package:
         root, scene = self._model(self._root), Scene(self._budget)
         for path, name, place in root.items:
-            self._place(path or self._root, name, place, scene, 0)
+            self._place(path or self._root, name, _transform(place), scene, 0)
         if not scene.groups:
             raise _FaultError("its build places no triangles")
         notes = [
@@ -258,7 +260,7 @@ class _Build:
                 if kind == "item" and _attribute(attributes, "printable") == "0":
                     self._left_out["item that is not to be printed"] += 1
                     return
-                placed = (way, attributes["objectid"], _transform(attributes.get("transform")))
+                placed = (way, attributes["objectid"], attributes.get("transform"))
                 (current[0].components if kind == "component" else model.items).append(placed)
             elif kind == "model":
                 model.unit, model.states_unit = attributes.get("unit", "millimeter"), "unit" in attributes
@@ -317,7 +319,9 @@ class _Build:
             if name not in self._cut:
                 solid, negative = Scene(self._budget), Scene(self._budget)
                 self._place_volumes(path, name, np.eye(4), solid, negative, depth, thing.name)
-                cut, notes = subtracted(solid.mesh("3MF"), negative.mesh("3MF"))
+                cut, notes = solid.mesh("3MF"), []
+                if solid.groups and negative.groups:
+                    cut, notes = subtracted(cut, negative.mesh("3MF"))
                 self._notes |= dict.fromkeys(notes)
                 self._cut[name] = cut.vertices, cut.faces
             scene.place(*self._cut[name], place, thing.name)
@@ -342,7 +346,7 @@ class _Build:
             part = parts.get(other, _Volume(_MATTER))
             if part.role in (_MATTER, _NEGATIVE):
                 scene = solid if part.role == _MATTER else negative
-                self._place(way or path, other, place @ moved, scene, depth + 1, part.name)
+                self._place(way or path, other, place @ _transform(moved), scene, depth + 1, part.name)
             else:
                 self._left_out[part.role] += 1
         if (path, name) not in self._meshes:

@@ -94,13 +94,12 @@ def _beyond(body: RigidBody, low: Floats, high: Floats, reason: str) -> Finding:
     """
     sides = high - low
     spread = float(np.trace(body.inertia)) / 2.0 / float(body.mass)
-    factor = spread / (float(sides @ sides) / 12.0)
+    filled = float(sides @ sides) / 12.0
+    factor = spread / filled if filled > 0.0 else np.inf  # shapes of no extent have room for nothing
     is_outside = bool(((body.center_of_mass < low) | (body.center_of_mass > high)).any())
     if MOST < factor <= FAR and not is_outside:
-        filled = f"{times(factor)} the box around it filled"
-        return Finding(
-            "suspect", reason, f"{filled}: identified tensors are so at times, --strict fails them"
-        )
+        much = f"{times(factor)} the box around it filled"
+        return Finding("suspect", reason, f"{much}: identified tensors are so at times, --strict fails them")
     middle = body.translated((low + high) / 2.0 - body.center_of_mass)
     has_room = not is_outside and fit_in_box(middle, low, high).possible
     why = "about its middle the shape has room: look at the centre of mass" if has_room else ""

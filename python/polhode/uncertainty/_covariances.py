@@ -6,9 +6,12 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from polhode.files.budget import Budget
 from polhode.uncertainty._rollup import groups, pack, roll_covariances, shift, shift_row, unpack
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
     from polhode.uncertainty._parts import Parts
@@ -50,9 +53,11 @@ class Covariances:
     tree : Tree
     values : Values
     parts : Parts
+    name : str
+        Of the table, for errors.
     """
 
-    def __init__(self, tree: Tree, values: Values, parts: Parts) -> None:
+    def __init__(self, tree: Tree, values: Values, parts: Parts, name: str) -> None:
         self._tree, self._values, self._names = tree, values, parts.source
         self._sigma = tree.by_place(parts.sigma)
         rows, self._draws = parts.correlated
@@ -69,9 +74,11 @@ class Covariances:
         packed[:, self._slot[own]] = _squared(self._of(own))
         self._packed = roll_covariances(tree, values, self._sigma, is_dense, packed)
         if len(self._shared):
+            budget = Budget(name, len(tree.order), "rows")
             for pairs, draws in _rolled_draws(
                 tree, values.arm, self._of(self._shared), self._shared, self._codes
             ):
+                budget.spend("shared errors", len(pairs))
                 order = np.argsort(pairs, kind="stable")
                 nodes, starts, _ = groups(pairs[order])
                 squares = _squared(draws[:, :, order])
@@ -157,15 +164,14 @@ def _shared_leaves(tree: Tree, names: list[str]) -> tuple[Integers, Integers]:
 
 def _rolled_draws(
     tree: Tree, arm: Floats, draws: Floats, leaves: Integers, codes: Integers
-) -> list[tuple[Integers, Floats]]:
+) -> Iterator[tuple[Integers, Floats]]:
     """Roll up the effect of shared draws, which add before they are squared.
 
-    Returns
-    -------
-    list of (places, draws)
+    Yields
+    ------
+    places, draws : numpy.ndarray
         Of each level: a node as often as there are shared sources in it, with the effect of each.
     """
-    found = []
     most = int(codes.max()) + 1
     nodes, sources, effect = np.empty(0, np.intp), np.empty(0, np.intp), np.empty((10, 10, 0))
     for places in reversed(tree.levels):
@@ -175,15 +181,14 @@ def _rolled_draws(
         effect = np.concatenate([effect, draws[:, :, here]], axis=2)
         if not len(nodes):
             continue
-        found.append((nodes, effect))
+        yield nodes, effect
         if places.start == 0:
-            break
+            return
         key = tree.above[nodes] * most + sources
         order = np.argsort(key, kind="stable")
         keys, starts, _ = groups(key[order])
         effect = np.add.reduceat(shift(effect, arm[:, nodes])[:, :, order], starts, axis=2)
         nodes, sources = keys // most, keys % most
-    return found
 
 
 def _squared(draws: Floats) -> Floats:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from polhode.errors import PolhodeError
+from polhode.files.budget import Budget
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -129,6 +130,7 @@ def make_tree(ids: Sequence[str], parents: Sequence[str], where: Callable[[int],
     order, bounds = _by_levels(parent)
     if len(order) < len(ids):
         _refuse_circle(ids, parent, order, where)
+    Budget("", 0).spend("levels", len(bounds) - 1, where(int(order[-1])))
     place = np.empty_like(order)
     place[order] = np.arange(len(order))
     above = np.where(parent[order] < 0, -1, place[parent[order]])

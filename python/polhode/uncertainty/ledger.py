@@ -144,7 +144,7 @@ def ledger(
     is_part[made.order] = made.is_leaf
     parts = read_parts(read, is_part, where, overwrite=overwrite, rtol=rtol)
     words = {name: tuple(read.words(name)) for name in ("name", "comment") if name in read}
-    return _rolled(made, tuple(parents), is_part, parts, words, rtol)
+    return _rolled(made, tuple(parents), is_part, parts, words, rtol, read.name or "table")
 
 
 def ledger_of_bodies(
@@ -166,7 +166,7 @@ def ledger_of_bodies(
     made = make_tree(ids, parents, lambda row: repr(ids[row]))
     is_part = np.array([body is not None for body in bodies])
     parts = parts_of_bodies(ids, bodies)
-    return _rolled(made, tuple(parents), is_part, parts, {"comment": tuple(comments)}, None)
+    return _rolled(made, tuple(parents), is_part, parts, {"comment": tuple(comments)}, None, "assembly")
 
 
 def _rolled(
@@ -176,12 +176,13 @@ def _rolled(
     parts: Parts,
     words: dict[str, tuple[str, ...]],
     rtol: float | None,
+    name: str,
 ) -> Ledger:
     """Roll the parts up to every level."""
     is_uncertain = parts.sigma[:, is_part].any() or parts.correlated[1].any()
     with np.errstate(over="ignore", invalid="ignore"):
         values = roll_values(made, *map(made.by_place, (parts.mass, parts.center, parts.inertia)))
-        covariances = Covariances(made, values, parts) if is_uncertain else None
+        covariances = Covariances(made, values, parts, name) if is_uncertain else None
     _refuse_infinite(made, (values.mass[None], values.center, values.inertia), "numbers")
     if covariances is not None:
         _refuse_infinite(made, (covariances.sigma,), "sigmas")
