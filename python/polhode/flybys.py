@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, TypeVar, cast
 import numpy as np
 
 from polhode import _core, distributions, loads
+from polhode._hints import check_kind
 from polhode._repr import short
 from polhode.ensembles.call import ensemble
 from polhode.errors import PolhodeError
@@ -182,6 +183,7 @@ def clones(
         If the orbit is closed, or nearer to the centre of the planet than its radius; and as for
         :meth:`polhode.RigidBody.free_motion_from_periods`.
     """
+    check_kind(body, "body", "RigidBody")
     long, spread = _number(span, "span"), _number(pole_sigma, "pole_sigma")
     if not long > 0.0:
         raise ValueError(f"span: must be positive, got {long}")
@@ -273,6 +275,7 @@ def flyby(
     >>> bool(found.spin_ratio.min() < 0.8), bool(found.spin_ratio.max() > 1.2)
     (True, True)
     """
+    check_kind(body, "body", "RigidBody")
     for name in ("reduce", "outputs"):
         if name in options:
             raise TypeError(

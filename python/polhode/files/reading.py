@@ -10,7 +10,7 @@ from contextvars import ContextVar
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, Final
 
-from polhode.errors import FileFormatError
+from polhode.errors import FileFormatError, PolhodeError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -23,6 +23,7 @@ __all__ = [
     "note_read",
     "read_bytes",
     "read_text",
+    "status_of",
     "text_of",
     "whole_of",
     "with_way_out",
@@ -60,6 +61,15 @@ def note_read(path: str | os.PathLike[str]) -> None:
         read.append(Path(path))
 
 
+def status_of(path: str | os.PathLike[str]) -> os.stat_result:
+    """Read the status of a file; a name that no file can have is refused with the reason."""
+    try:
+        return Path(path).stat()
+    except ValueError as error:  # a NUL, or half of a surrogate pair
+        reason = error.reason if isinstance(error, UnicodeError) else str(error)
+        raise PolhodeError(f"path: {path!r} cannot be the name of a file ({reason}); correct it") from None
+
+
 def check_ordinary(path: str | os.PathLike[str]) -> None:
     """Refuse a pipe, a device or a folder before it is opened: reading a pipe waits, a device never ends.
 
@@ -75,7 +85,7 @@ def check_ordinary(path: str | os.PathLike[str]) -> None:
     OSError
         If there is no such file.
     """
-    mode = Path(path).stat().st_mode
+    mode = status_of(path).st_mode
     for is_that, words in _OTHERS:
         if is_that(mode):
             raise FileFormatError(f"{os.fspath(path)}: {words}")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from polhode import _core
+from polhode._hints import check_kind
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.files.fields import numbers, read_json, write_json
 from polhode.files.record import array_schema, in_json, read_record, record_suffix, required, write_npz
@@ -84,6 +85,7 @@ def save_body(body: RigidBody, path: str | PathLike[str]) -> None:
     path : str or os.PathLike
         Ends in ``.json`` or ``.npz``.
     """
+    check_kind(body, "body", "RigidBody")
     file = Path(path)
     fields = body_fields(body)
     if record_suffix(file) == ".json":

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from polhode._hints import check_kind
 from polhode.errors import FileFormatError
 from polhode.files.fields import counts, numbers, write_json
 from polhode.files.record import WORDS, array_schema, check_names, in_json, read_record, required, write_npz
@@ -138,6 +139,7 @@ def save_trajectory_json(trajectory: Trajectory, path: Path) -> None:
     trajectory : Trajectory
     path : pathlib.Path
     """
+    check_kind(trajectory, "trajectory", "Trajectory")
     check_has_bodies(trajectory.body, path)
     fields: dict[str, Any] = {"format": _FORMAT}
     fields["body"] = in_json(body_fields(trajectory.body), path)
@@ -157,6 +159,7 @@ def save_trajectory_npz(trajectory: Trajectory, path: Path) -> None:
     trajectory : Trajectory
     path : pathlib.Path
     """
+    check_kind(trajectory, "trajectory", "Trajectory")
     arrays = {name: getattr(trajectory, name) for name in _FIELDS}
     arrays[_LOADED] = np.array(trajectory._is_loaded())
     arrays |= _carried_of(trajectory) | _began_of(trajectory)

@@ -13,6 +13,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Final
 
+from polhode.files.reading import status_of
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -105,7 +107,7 @@ def write_bytes(path: str | os.PathLike[str], data: bytes) -> None:
 def _old(path: str | os.PathLike[str]) -> os.stat_result | None:
     """Give the status of the old file, if any; an error where nothing can be written."""
     try:
-        old = Path(path).stat()
+        old = status_of(path)
     except FileNotFoundError:
         return None
     if stat.S_ISDIR(old.st_mode):

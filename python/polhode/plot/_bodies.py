@@ -8,7 +8,7 @@ import numpy as np
 
 from polhode import _core
 from polhode._extras import require
-from polhode._hints import with_hints
+from polhode._hints import check_kind, with_hints
 from polhode._scene.style import AXIS_COLORS, OUTLINE_COLOR
 from polhode._scene.triangles import cut, unit_normals
 from polhode.plot._style import axes_3d, show_around
@@ -128,6 +128,7 @@ def principal_axes(
     -------
     mpl_toolkits.mplot3d.axes3d.Axes3D
     """
+    check_kind(rigid_body, "rigid_body", "RigidBody")
     origin = _core.real_numbers(rigid_body.center_of_mass if center is None else center, "center")
     toward = toward_viewer(ax)
     for color, direction, label in zip(AXIS_COLORS, rigid_body.principal.axes.T, labels, strict=True):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode import _core
+from polhode._hints import check_kind
 from polhode._lengths import lengths
 from polhode._scene.sampling import drawn_times
 from polhode._scene.shape import check_one
@@ -41,6 +42,7 @@ def cones(motion: FreeMotion, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
     -------
     mpl_toolkits.mplot3d.axes3d.Axes3D
     """
+    check_kind(motion, "motion", "FreeMotion")
     check_one(motion.shape, "motion")
     momentum = motion.angular_momentum
     size = float(lengths(momentum))

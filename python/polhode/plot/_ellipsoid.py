@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode import _core
-from polhode._hints import with_hints
+from polhode._hints import check_kind, with_hints
 from polhode._scene.ellipsoid import inertia_semi_axes, principal_circles
 from polhode._scene.sampling import drawn_times, once_round
 from polhode._scene.shape import check_one
@@ -76,6 +76,7 @@ def ellipsoid(
     -------
     mpl_toolkits.mplot3d.axes3d.Axes3D
     """
+    check_kind(body, "body", "RigidBody")
     check_one(body.shape, "body")
     new = ax is None or not ax.has_data()
     ax = axes_3d(ax)
@@ -126,6 +127,7 @@ def polhodes(
     -------
     mpl_toolkits.mplot3d.axes3d.Axes3D
     """
+    check_kind(body, "body", "RigidBody")
     check_one(body.shape, "body")
     moments = body.principal.moments
     if moments[0] == 0.0:
@@ -193,6 +195,7 @@ def polhode(
     -------
     mpl_toolkits.mplot3d.axes3d.Axes3D
     """
+    check_kind(motion, "motion", "FreeMotion", "GyrostatMotion")
     check_one(motion.shape, "motion")
     if isinstance(motion, _core.GyrostatMotion):
         inertia = np.asarray(motion.gyrostat.inertia)
@@ -257,6 +260,7 @@ def poinsot(
     -------
     mpl_toolkits.mplot3d.axes3d.Axes3D
     """
+    check_kind(motion, "motion", "FreeMotion")
     check_one(motion.shape, "motion")
     times = drawn_times(motion, t)
     found = motion.poinsot(times)

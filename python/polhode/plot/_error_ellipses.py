@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from polhode._hints import check_kind
 from polhode._rounding import at_most
 from polhode._scene.doubt import angle_covariance, axis_scatter
 from polhode._scene.ellipsoid import principal_circles
@@ -45,6 +46,7 @@ def error_ellipses(
     enlarged : float
         How many times larger the ellipses are drawn.
     """
+    check_kind(body, "body", "RigidBody")
     if not 0.0 < coverage < 1.0:
         raise ValueError(f"coverage: {coverage} is not between 0 and 1; it is a probability, as 0.95")
     if not 0.0 < enlarged < np.inf:

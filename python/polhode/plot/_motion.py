@@ -8,7 +8,7 @@ import numpy as np
 
 from polhode import _core
 from polhode._drift import changes
-from polhode._hints import with_hints
+from polhode._hints import check_kind, with_hints
 from polhode._lengths import lengths
 from polhode._scene.sampling import drawn_times
 from polhode._scene.shape import check_one
@@ -83,6 +83,7 @@ def angular_velocity(
     -------
     matplotlib.axes.Axes
     """
+    check_kind(trajectory, "trajectory", "Trajectory", "FreeMotion", "HeavyTop", "GyrostatMotion")
     if isinstance(trajectory, _core.FreeMotion | _core.HeavyTop | _core.GyrostatMotion):
         trajectory = _until(trajectory, end)
     elif end is not None:
@@ -138,6 +139,7 @@ def angular_momentum(
     -------
     matplotlib.axes.Axes
     """
+    check_kind(trajectory, "trajectory", "Trajectory")
     trajectory._check_series("angular_momentum")
     ax = axes_2d(ax)
     spin = trajectory.angular_momentum(frame).spin
@@ -182,6 +184,7 @@ def euler_angles(
     -------
     matplotlib.axes.Axes
     """
+    check_kind(trajectory, "trajectory", "Trajectory")
     trajectory._check_series("euler_angles")
     ax = axes_2d(ax)
     angles = np.rad2deg(trajectory.euler_angles(sequence, "nan", unwrap=unwrap))
@@ -221,6 +224,7 @@ def invariants(trajectory: Trajectory, ax: Axes | None = None, *, time_label: st
     ValueError
         If the load conserves neither.
     """
+    check_kind(trajectory, "trajectory", "Trajectory")
     kept = trajectory.invariants()
     if kept.energy is None and kept.angular_momentum is None:
         raise ValueError(

@@ -9,6 +9,7 @@ import numpy as np
 
 from polhode import _core
 from polhode._extras import require
+from polhode._hints import check_kind
 from polhode._scene.sampling import once_round
 from polhode._scene.shape import check_one
 from polhode._scene.style import AXIS_COLORS, AXIS_DASHES, MOMENTUM_COLOR
@@ -74,6 +75,7 @@ def portrait(
     -------
     mpl_toolkits.mplot3d.axes3d.Axes3D
     """
+    check_kind(gyrostat, "gyrostat", "Gyrostat", "GyrostatMotion")
     check_one(gyrostat.shape, "gyrostat")
     if levels < 0:
         raise ValueError(f"levels: {levels} is negative")
@@ -140,6 +142,7 @@ def portraits(
     -------
     numpy.ndarray of mpl_toolkits.mplot3d.axes3d.Axes3D
     """
+    check_kind(gyrostat, "gyrostat", "Gyrostat")
     check_one(gyrostat.shape, "gyrostat")
     size = float(np.linalg.norm(gyrostat.momentum))
     if not size > 0.0:

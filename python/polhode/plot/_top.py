@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from polhode._hints import with_hints
+from polhode._hints import check_kind, with_hints
 from polhode._scene.sampling import axis_times, drawn_times
 from polhode._scene.shape import check_one
 from polhode._scene.style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR
@@ -44,6 +44,7 @@ def effective_potential(top: HeavyTop, ax: Axes | None = None, *, energy_label: 
     -------
     matplotlib.axes.Axes
     """
+    check_kind(top, "top", "HeavyTop")
     check_one(top.shape, "top")
     ax = axes_2d(ax)
     low, high = top.nutation_limits
@@ -95,6 +96,7 @@ def nutation(top: HeavyTop, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
     -------
     mpl_toolkits.mplot3d.axes3d.Axes3D
     """
+    check_kind(top, "top", "HeavyTop")
     check_one(top.shape, "top")
     arm = float(np.linalg.norm(top.body.center_of_mass))
     weight = float(np.linalg.norm(top.gravity))

@@ -132,6 +132,10 @@ def parse_robot(
     >>> [(link.name, link.inertial.mass) for link in robot.links]
     [('arm', 2.0)]
     """
+    if not isinstance(source, bytes):
+        raise TypeError(
+            f"source: expected the bytes of a file, got {type(source).__name__}; read_robot(path) reads a file"
+        )
     if not source.strip():
         raise FileFormatError(f"{name}: the file is empty; check the file")
     body_format, _ = content_format(source[:4096], len(source))

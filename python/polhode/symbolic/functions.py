@@ -41,6 +41,11 @@ def function(expression: Any, arguments: Iterable[Any]) -> Callable[..., NDArray
     array([[0.6, 0.6, 0.6],
            [1.5, 1.5, 0.6]])
     """
+    if not hasattr(expression, "free_symbols"):
+        raise TypeError(
+            f"expression: expected an expression or a matrix of SymPy, got {type(expression).__name__}; "
+            "sympy.sympify makes one"
+        )
     given = list(arguments)
     is_matrix = hasattr(expression, "shape")
     unknown = expression.free_symbols - set(given)

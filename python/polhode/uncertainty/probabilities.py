@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
+from polhode._hints import check_kind
 from polhode._repr import short
 from polhode._tangents import changes_in_principal_axes
 from polhode.uncertainty.motions import each_motion
@@ -97,6 +98,7 @@ def axis_probabilities(body: RigidBody) -> AxisProbabilities:
     >>> axis_probabilities(weighed).intermediate.round(3)
     array([0.079, 0.921, 0.   ])
     """
+    check_kind(body, "body", "RigidBody")
     changes = changes_in_principal_axes(body)
     if changes is None:
         message = "body: it carries no covariance; give it one by with_sigma, with_covariance or Uncertain"
@@ -148,6 +150,7 @@ def mode_probabilities(motion: FreeMotion) -> ModeProbabilities:
     >>> round(float(mode_probabilities(brick.free_motion(omega)).short_axis), 3)
     0.992
     """
+    check_kind(motion, "motion", "FreeMotion")
 
     def excess(body: RigidBody, omega: Any) -> Any:
         momentum = body.inertia @ omega

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
 
 import numpy as np
 
+from polhode._hints import check_kind
 from polhode._progress import watched
 from polhode._repr import short
 from polhode.errors import PolhodeError
@@ -138,6 +139,7 @@ def propagate(
     >>> bool(found.linear), round(float(found.value), 4), round(float(found.sigma), 6)
     (True, 1.6379, 0.000409)
     """
+    check_kind(body, "body", "RigidBody", "NoneType")
     if not isinstance(arguments, list | tuple):
         message = f"arguments: expected a list of numbers with a sigma, got {type(arguments).__name__}"
         raise TypeError(message)

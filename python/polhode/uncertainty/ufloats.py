@@ -10,6 +10,7 @@ import numpy as np
 
 from polhode import _core
 from polhode._extras import require
+from polhode._hints import check_kind
 from polhode._repr import short
 from polhode.errors import PolhodeError
 
@@ -108,6 +109,7 @@ def to_ufloats(body: RigidBody) -> TenNumbers:
     >>> to_ufloats(solids.sphere(1.0, mass=mass)).mass - mass  # doctest: +SKIP
     0.0+/-0
     """
+    check_kind(body, "body", "RigidBody")
     if body.shape != ():
         message = f"body: expected one body, got a stack of shape {body.shape}"
         raise ValueError(message)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from polhode import _core
-from polhode._hints import with_hints
+from polhode._hints import check_kind, with_hints
 from polhode._scene.ellipsoid import inertia_semi_axes, principal_circles
 from polhode._scene.shape import body_shape, check_one, given_shape, longest
 from polhode._scene.style import AXIS_COLORS, OUTLINE_COLOR
@@ -109,6 +109,7 @@ def principal_axes(
     -------
     pyvista.Plotter
     """
+    check_kind(rigid_body, "rigid_body", "RigidBody")
     check_one(rigid_body.shape, "body")
     plotter = new_plotter() if plotter is None else plotter
     origin = _core.real_numbers(rigid_body.center_of_mass if center is None else center, "center")
@@ -153,6 +154,7 @@ def ellipsoid(
     -------
     pyvista.Plotter
     """
+    check_kind(body, "body", "RigidBody")
     check_one(body.shape, "body")
     plotter = new_plotter() if plotter is None else plotter
     middle = _core.real_numbers(body.center_of_mass if center is None else center, "center")
@@ -201,6 +203,7 @@ def rigid_body(
     -------
     pyvista.Plotter
     """
+    check_kind(body, "body", "RigidBody")
     check_one(body.shape, "body")
     plotter = new_plotter() if plotter is None else plotter
     if shape is None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from polhode import _core
-from polhode._hints import with_hints
+from polhode._hints import check_kind, with_hints
 from polhode._scene.footage import RATE
 from polhode._scene.scene import Scene
 from polhode._scene.shape import longest
@@ -100,6 +100,7 @@ def motion(
     >>> racket = solids.box((3, 2, 1), mass=1.0).simulate(np.linspace(0, 20, 1001), omega=(0.01, 3, 0))
     >>> view.motion(racket).show()  # doctest: +SKIP
     """
+    check_kind(trajectory, "trajectory", "Trajectory", "FreeMotion", "HeavyTop", "GyrostatMotion")
     options: dict[str, Any] = {"shape": shape, "title": title, "duration": duration, "time_unit": time_label}
     if not isinstance(trajectory, _core.FreeMotion | _core.HeavyTop | _core.GyrostatMotion):
         if end is not None:
