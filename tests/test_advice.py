@@ -12,6 +12,7 @@ import re
 import shutil
 import sys
 from decimal import Decimal
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -69,7 +70,7 @@ def test_a_tolerance_is_named_where_rounding_may_have_broken_the_law() -> None:
     for _ in range(1000):
         texts = printed(rng)
         moments = [float(text) for text in texts]
-        error = refused(lambda moments=moments: RigidBody.from_principal(1.0, moments))
+        error = refused(partial(RigidBody.from_principal, 1.0, moments))
         if error is None:
             continue
         found = RTOL.search(str(error))
@@ -123,11 +124,7 @@ def test_a_tensor_about_the_origin_is_taken_for_one_about_the_centre_where_it_ma
     for _ in range(300):
         moments = rng.uniform(0.2, 1.0, 3) * (1.0, 1.0, 1.7)
         center = rng.normal(size=3)
-        error = refused(
-            lambda moments=moments, center=center: BODY(
-                2.0, inertia_about_origin=np.diag(moments), center_of_mass=center
-            )
-        )
+        error = refused(partial(BODY, 2.0, inertia_about_origin=np.diag(moments), center_of_mass=center))
         if error is None or "no negative principal moment" not in str(error):
             continue
         is_possible = 2.0 * moments.max() <= moments.sum()

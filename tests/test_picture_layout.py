@@ -55,7 +55,7 @@ CORNERS = np.array([(x, y, z) for x in (0.0, 1.0) for y in (0.0, 2.0) for z in (
 
 def faces_of(corners: np.ndarray) -> np.ndarray:
     hull = ConvexHull(corners)
-    faces = hull.simplices.copy()
+    faces: np.ndarray = np.array(hull.simplices)
     a, b, c = np.moveaxis(corners[faces], 1, 0)
     is_inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), hull.equations[:, :3]) < 0.0
     faces[is_inward] = faces[is_inward, ::-1]
@@ -167,7 +167,8 @@ def test_every_text_is_within_the_figure(name: str, size: tuple[float, float]) -
 @pytest.mark.parametrize("factors", [(0.5,), None])
 def test_a_row_of_portraits_is_within_its_figure(factors: Any) -> None:
     figure = plot.portraits(GYROSTAT, 2.0, factors)[0].figure
-    FigureCanvasAgg(figure).draw()
+    canvas: Any = FigureCanvasAgg(figure)
+    canvas.draw()
     for words, box in texts(figure):
         x0, y0, x1, y1 = box.extents
         assert min(x0, y0) >= -1.0, words
@@ -191,7 +192,7 @@ def test_names_stand_within_their_wedges(name: str, size: tuple[float, float]) -
     figure = drawn(name, size)
     (ax,) = figure.axes
     names = [text for text in ax.texts if text.get_position() != (0.0, 0.0)]
-    wedges = [patch for patch in ax.patches if isinstance(patch, Wedge)]
+    wedges: list[Any] = [patch for patch in ax.patches if isinstance(patch, Wedge)]
     assert len(names) >= 0.5 * len(wedges)
     for text in names:
         x, y = text.get_position()
@@ -224,7 +225,9 @@ def test_names_stand_within_their_wedges(name: str, size: tuple[float, float]) -
 
 
 def lines_of(ax: Any) -> list[tuple[np.ndarray, np.ndarray]]:
-    return [tuple(np.asarray(part, float) for part in line.get_data()) for line in ax.lines[:3]]
+    return [
+        (np.asarray(line.get_xdata(), float), np.asarray(line.get_ydata(), float)) for line in ax.lines[:3]
+    ]
 
 
 @pytest.mark.parametrize("sequence", ["ZXZ", "ZYX", "xyz"])
@@ -290,7 +293,7 @@ def test_tails_of_a_flyby_are_counted() -> None:
 
 def pixels(opacity: float, dpi: float) -> np.ndarray:
     figure = Figure(figsize=(3.0, 3.0), dpi=dpi)
-    canvas = FigureCanvasAgg(figure)
+    canvas: Any = FigureCanvasAgg(figure)
     ax: Any = figure.add_subplot(projection="3d", computed_zorder=False)
     from polhode.plot._surfaces import plain_frame, solid_ellipsoid
 

@@ -57,7 +57,7 @@ def sunburst(node: Part, ax: Axes | None = None, *, mass_label: str | None = Non
                 rest += share
                 continue
             color = inherited or _COLORS[shown % len(_COLORS)]
-            _wedge(ax, child.id, start, share, level, color, unit)
+            _wedge(ax, child.id.removeprefix(f"{parent.id}/"), start, share, level, color, unit)
             waiting.append((child, start, level + 1, color))
             start += share
             shown += 1
