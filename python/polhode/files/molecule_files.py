@@ -265,7 +265,7 @@ def _of_v2000(lines: list[str], notes: list[str]) -> tuple[list[str], list[list[
     count = _whole_number(lines[3][:3])
     if count is None or count == 0:
         raise _FaultError(f"line 4: expected the number of atoms, got {lines[3][:40]!r}")
-    bonds, lists = (_whole_number(lines[3][start : start + 3]) or 0 for start in (3, 6))
+    lists = _whole_number(lines[3][6:9]) or 0
     if len(lines) < 4 + count or not any(line.startswith("M  END") for line in lines[4 + count :]):
         raise _FaultError(f"line 4 promises {count} atoms, or 'M  END' is missing; is it cut short?")
     symbols, rows, differences = [], [], []
@@ -280,7 +280,7 @@ def _of_v2000(lines: list[str], notes: list[str]) -> tuple[list[str], list[list[
         raise _FaultError(f"line 4: {_LIST}")
     stated: dict[int, int] = {}
     has_isotopes = False
-    place = 4 + count + bonds
+    place = 4 + count  # lines of bonds begin with numbers, whatever their count in line 4 is
     while place < len(lines) and not (line := lines[place]).startswith("M  END"):
         place += 1
         with _line(place):
