@@ -22,7 +22,7 @@ from polhode.errors import PolhodeError
 from robot_texts import bare, joint, urdf
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -337,6 +337,19 @@ class TestFix:
             report["changed"][0]["inertia"], report["changed"][0]["inertia_before"], atol=1e-20
         )
         assert "on the edge" not in run("check", tmp_path / "b.urdf")[1]
+
+    @pytest.mark.parametrize("write", [urdf_of, mjcf_of, sdf_of])
+    def test_a_rod_is_not_given_a_thickness(self, write: Callable[[list[str]], str]) -> None:
+        program = {urdf_of: "urdf", mjcf_of: "mjcf", sdf_of: "sdf"}[write]
+        text = '<inertial pos="0 0 0" mass="3" diaginertia="1 1 0"/>'
+        if program != "mjcf":
+            text = forms.to_text(rods.rod(2.0, mass=3.0), program)
+        robot = parsed(write([text]))
+        verdicts = robots.check(robot)
+        assert verdicts[-1].inside is None
+        assert robots.fixed(robot, verdicts) == robot.source
+        says = "no extent" if program == "sdf" else "MuJoCo refuses what has no more than 1e-1"
+        assert any(says in note for note in verdicts[-1].notes)
 
     def test_one_clear_of_it_is_left(self) -> None:
         robot = parsed(self.PLATE.format("1.9999999e-6"))
