@@ -22,7 +22,7 @@ from polhode.errors import PolhodeError
 from robot_texts import bare, joint, urdf
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -338,13 +338,13 @@ class TestFix:
         )
         assert "on the edge" not in run("check", tmp_path / "b.urdf")[1]
 
-    @pytest.mark.parametrize("write", [urdf_of, mjcf_of, sdf_of])
-    def test_a_rod_is_not_given_a_thickness(self, write: Callable[[list[str]], str]) -> None:
-        program = {urdf_of: "urdf", mjcf_of: "mjcf", sdf_of: "sdf"}[write]
+    @pytest.mark.parametrize("program", ["urdf", "mjcf", "sdf"])
+    def test_a_rod_is_not_given_a_thickness(self, program: str) -> None:
         text = '<inertial pos="0 0 0" mass="3" diaginertia="1 1 0"/>'
         if program != "mjcf":
             text = forms.to_text(rods.rod(2.0, mass=3.0), program)
-        robot = parsed(write([text]))
+        around = {"urdf": urdf_of([text]), "mjcf": mjcf_of([text]), "sdf": sdf_of([text])}
+        robot = parsed(around[program])
         verdicts = robots.check(robot)
         assert verdicts[-1].inside is None
         assert robots.fixed(robot, verdicts) == robot.source
