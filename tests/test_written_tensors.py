@@ -338,6 +338,19 @@ class TestFix:
         )
         assert "on the edge" not in run("check", tmp_path / "b.urdf")[1]
 
+    @pytest.mark.parametrize("program", ["urdf", "mjcf", "sdf"])
+    def test_a_rod_is_not_given_a_thickness(self, program: str) -> None:
+        text = '<inertial pos="0 0 0" mass="3" diaginertia="1 1 0"/>'
+        if program != "mjcf":
+            text = forms.to_text(rods.rod(2.0, mass=3.0), program)
+        around = {"urdf": urdf_of([text]), "mjcf": mjcf_of([text]), "sdf": sdf_of([text])}
+        robot = parsed(around[program])
+        verdicts = robots.check(robot)
+        assert verdicts[-1].inside is None
+        assert robots.fixed(robot, verdicts) == robot.source
+        says = "no extent" if program == "sdf" else "MuJoCo refuses what has no more than 1e-1"
+        assert any(says in note for note in verdicts[-1].notes)
+
     def test_one_clear_of_it_is_left(self) -> None:
         robot = parsed(self.PLATE.format("1.9999999e-6"))
         verdicts = robots.check(robot)

@@ -90,11 +90,11 @@ class Verdict(NamedTuple):
         Remarks on the geometry, such as shapes that could not be read.
     better : Inertial or None
         Values to declare instead: those of the shape, or the nearest possible tensor.
+    file : str
+        File that contains the link, if the robot file includes it.
     inside : Inertial or None
         If the declared tensor is on the edge I1 + I2 = I3, as of a lamina, where rounding may make it
         impossible: the same tensor, moved inside by less than 6e-15 of the sum of its moments.
-    file : str
-        File that contains the link, if the robot file includes it.
     """
 
     name: str
@@ -108,8 +108,8 @@ class Verdict(NamedTuple):
     shapes: str = ""
     notes: tuple[str, ...] = ()
     better: Inertial | None = None
-    inside: Inertial | None = None
     file: str = ""
+    inside: Inertial | None = None
 
 
 def judge(
@@ -297,7 +297,7 @@ class _Judging(NamedTuple):
             notes = (
                 *notes,
                 f"line {link.line}: {link.name} is on the edge I1 + I2 = I3, as a plate without thickness: "
-                "where it is turned, rounding may put it beyond, and MuJoCo refuses it then; --fix moves it "
+                "where it is turned, rounding may put it beyond, and MuJoCo refuses it there; --fix moves it "
                 "inside by the last digits",
             )
         return Verdict(
@@ -312,7 +312,7 @@ class _Judging(NamedTuple):
             geometry.role if own is not None else "",
             notes,
             None if better is None else _rounded(better),
-            inside,
+            inside=inside,
         )
 
     def _law(
@@ -456,7 +456,8 @@ def _least_moment(inertial: Inertial) -> float:
 
 
 def _refused(moment: float, least: float) -> str:
-    return f"a moment of {moment:.3g} kg m^2, and MuJoCo refuses what has no more than {least:g}"
+    told = f"a moment of {moment:.3g} kg m^2"
+    return f"{told}, and MuJoCo refuses what has no more than {least:g}" if least else f"{told}, no extent"
 
 
 def _rounded(found: Inertial) -> Inertial:
