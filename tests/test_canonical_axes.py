@@ -54,7 +54,7 @@ def check_nearest(axes: np.ndarray, k: int) -> None:
     """No pair across the symmetry axis, column k, is nearer to the body frame; the sign rule holds."""
     signs = np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)])
     assert max((signs * np.diag(axes)).sum(axis=1)) == pytest.approx(nearest(axes[:, k], k), abs=1e-9)
-    np.testing.assert_allclose(np.cross(axes[:, 0], axes[:, 1]), axes[:, 2], atol=4e-16)
+    np.testing.assert_allclose(np.cross(axes[:, 0], axes[:, 1]), axes[:, 2], atol=2e-15)
     for v in axes[:, :2].T:
         leading = (np.abs(v) >= (1 - 1e-8) * np.abs(v).max()).argmax()
         assert v[leading] > 0
