@@ -1,5 +1,6 @@
 """Small files that ask for much: one or more of each reader, each of at most a megabyte."""
 
+# ruff: noqa: E501 (texts of files)
 from __future__ import annotations
 
 import base64
@@ -586,7 +587,7 @@ def overlapping(count: int, size: int) -> bytes:
             other.file_size = other.compress_size = only.file_size
             archive.filelist.append(other)
             archive.NameToInfo[other.filename] = other
-        archive._didModify = True
+        archive._didModify = True  # type: ignore[attr-defined] # so that the directory is written
     return stream.getvalue()
 
 

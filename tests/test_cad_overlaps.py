@@ -186,10 +186,10 @@ def test_what_is_not_known_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPat
             "def shared(*_):",
             f"    {body}",
             "cad_apart.volume_shared = shared",
-            "cad_apart._main(Path(sys.argv[1]))",
+            "cad_apart._main(Path(sys.argv[1]), int(sys.argv[2]))",
         )
         monkeypatch.setattr(cad_apart, "_COMMAND", ["-c", "\n".join(lines)])
-        monkeypatch.setattr(cad_apart, "_SECONDS", 0.5 if "sleep" in body else 60.0)
+        monkeypatch.setattr(cad_apart, "_SHARING", (0.5 if "sleep" in body else 60.0, 0.0))
         (line,) = told(path)
         assert line.startswith(words)
         assert ("1 pairs of solids that are near enough to overlap were not looked at" in line) == (

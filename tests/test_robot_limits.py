@@ -211,7 +211,7 @@ class TestCopies:
         assert len(parsed(text).links) == 6
         limited(monkeypatch, "elements in copies", 59)
         with pytest.raises(
-            FileFormatError, match="line 6: there are more than 59 elements in copies; lower the count"
+            FileFormatError, match="line 6: there are more than 59 elements in copies"
         ):
             parsed(text)
 

@@ -170,7 +170,7 @@ def find_overlaps(parts: Sequence[Placed]) -> tuple[list[Overlap], list[str]]:
     notes = []
     if len(shown) > _MOST_PARTS:
         notes.append(
-            f"{len(shown)} parts with volumes are more than {_MOST_PARTS}: they were not searched for overlaps"
+            f"{len(shown)} parts with volumes are more than {_MOST_PARTS}: they were not compared"
         )
         shown = []
     left, unmade = _MOST_TRIANGLES, _MOST_SURFACES
@@ -208,8 +208,8 @@ def _at_one_place(parts: Sequence[Placed]) -> tuple[list[Overlap], set[int]]:
     found, twins = [], set()
     for k, part in enumerate(parts):
         body = part.body
-        key = (float(body.mass), body.center_of_mass.tobytes(), body.inertia.tobytes())
-        key += part.form.key if part.form is not None else ()
+        form_key = part.form.key if part.form is not None else ()
+        key = (float(body.mass), body.center_of_mass.tobytes(), body.inertia.tobytes(), *form_key)
         if key in first:
             twins.add(k)
             form = parts[first[key]].form
@@ -259,7 +259,7 @@ def _triangles(part: Placed) -> int:
 
 
 def _of_spheres(one: Placed, other: Placed) -> float | None:
-    """What two spheres share, in closed form; None for other solids."""
+    """Compute what two spheres share, in closed form; None for other solids."""
     if one.form is None or other.form is None or one.form.radius is None or other.form.radius is None:
         return None
     a, b = one.form.radius, other.form.radius

@@ -203,7 +203,8 @@ class _File:
             if not (0 <= start <= first and last <= end <= len(data) and stride >= row) and count:
                 raise ValueError(f"the array {at} reaches beyond its {len(data)} bytes")
             self._budget.spend("numbers", count * columns)
-            rows = np.ndarray((count, columns), kind, data, first, (stride, kind.itemsize)) if count else []
+            where = first if count else 0
+            rows: NDArray[Any] = np.ndarray((count, columns), kind, data, where, (stride, kind.itemsize))
             self._arrays[at] = np.array(rows, dtype=np.float64 if kind.kind == "f" else np.int64)
         return self._arrays[at].reshape(-1, columns)
 

@@ -337,7 +337,8 @@ def read_mesh(path: str | os.PathLike[str], *, index_base: int = 1, weld: float 
     ----------
     path : str or os.PathLike
         A mesh, which may be packed with gzip (``.gz``). STL, ``v``/``f`` text and other plate models
-        (``.obj``, ``.tab``, ``.txt``), DAE, 3MF, GLB and glTF are read without any further library. PLY and OFF are read by trimesh (extra ``mesh``), and VTK, VTU and VTP by PyVista (extra ``view``). (A body
+        (``.obj``, ``.tab``, ``.txt``), DAE, 3MF, GLB and glTF are read without any further library. PLY and
+        OFF are read by trimesh (extra ``mesh``), and VTK, VTU and VTP by PyVista (extra ``view``). (A body
         from a binary PLY needs no trimesh.) The meshes of a scene are placed by their transforms and joined.
         Coordinates are those in the file; :func:`load` tells the unit, if the file states one.
     index_base : {1, 0}

@@ -319,7 +319,7 @@ class _Build:
             if name not in self._cut:
                 solid, negative = Scene(self._budget), Scene(self._budget)
                 self._place_volumes(path, name, np.eye(4), solid, negative, depth, thing.name)
-                cut, notes = solid.mesh("3MF"), []
+                cut, notes = solid.mesh("3MF"), list[str]()
                 if solid.groups and negative.groups:
                     cut, notes = subtracted(cut, negative.mesh("3MF"))
                 self._notes |= dict.fromkeys(notes)
