@@ -23,6 +23,12 @@ from polhode.files.budget import LIMITS, Budget, LimitError
 from polhode.uncertainty import ledger
 
 SECONDS, MEGABYTES = 10.0, 1000
+
+
+def _solid(path: Path) -> object:
+    return RigidBody.from_file(path, density=1.0)
+
+
 READERS: dict[str, Callable[[Path], object]] = {
     "molecules": RigidBody.from_file,
     "robots": lambda path: robots.check(robots.read_robot(path)),
@@ -65,7 +71,7 @@ def test_each_reader_ends(kind: str, name: str, tmp_path: Path) -> None:
     for file, data in files.items():
         (tmp_path / file).write_bytes(data)
     path = tmp_path / next(iter(files))
-    reader = READERS.get(kind, lambda path: RigidBody.from_file(path, density=1.0))
+    reader = READERS.get(kind, _solid)
     soft, hard = resource.getrlimit(resource.RLIMIT_AS)
     pages = int(Path("/proc/self/statm").read_text().split()[0]) if sys.platform == "linux" else 0
     most = pages * resource.getpagesize() + MEGABYTES * 10**6
