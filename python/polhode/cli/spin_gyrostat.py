@@ -140,10 +140,11 @@ class GyrostatKind:
             "turn_period", "one turn", 2.0 * math.pi / speed, "about an axis at rest in the body", {}
         )
         along = motion.gyrostat.inertia @ motion.omega + motion.rotor
-        if not float(lengths(along)) > 0.0:
-            return turn
-        found = motion.equilibria
-        square = float(found.squared_rate[int(np.argmax(found.direction @ along))])
+        if float(lengths(along)) > 0.0:
+            found = motion.equilibria
+            square = float(found.squared_rate[int(np.argmax(found.direction @ along))])
+        else:  # a small L rests in space, and the body turns below it
+            square = speed**2
         if square > 0.0:
             hint = "of small oscillations of omega in the body"
             return [
