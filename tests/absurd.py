@@ -92,7 +92,7 @@ ROWS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     "RigidBody.stability": (BODY.stability, {"rate": 1.0, "about": V}),
     "RigidBody.free_motion": (BODY.free_motion, {"omega": V, "attitude": Q}),
     "RigidBody.free_motion_from_periods": (
-        BODY.free_motion_from_periods,
+        partial(BODY.free_motion_from_periods, mode="long-axis"),
         {"rotation_period": 10.0, "precession_period": 4.0, "phase": 0.0},
     ),
     "RigidBody.heavy_top": (TOP.heavy_top, {"omega": V, "attitude": Q, "gravity": WEIGHT}),

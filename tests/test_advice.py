@@ -67,7 +67,7 @@ def may_be_rounded(texts: list[str]) -> bool:
 def test_a_tolerance_is_named_where_rounding_may_have_broken_the_law() -> None:
     rng = np.random.default_rng(0)
     counts = {True: 0, False: 0}
-    for _ in range(1000):
+    for _ in range(2000):
         texts = printed(rng)
         moments = [float(text) for text in texts]
         error = refused(partial(RigidBody.from_principal, 1.0, moments))

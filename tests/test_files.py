@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import json
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -143,6 +144,7 @@ class TestMotions:
         motion = BODIES["box"].simulate([0.0, 1.0], (0.1, 1.0, 0.2))
         motion.omega.setflags(write=True)
         motion.omega[-1] = np.nan
+        motion = replace(motion, status="failed")
         motion.save(tmp_path / "motion.json")
         assert json.loads((tmp_path / "motion.json").read_text("utf-8"))["omega"][-1] == [None] * 3
         again = Trajectory.from_file(tmp_path / "motion.json")

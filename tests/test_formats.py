@@ -100,8 +100,9 @@ class TestUnitOfCollada:
         """A robot is in metres: a DAE in millimetres is a thousandth of its numbers."""
         written(tmp_path / "part.dae", dae(*CUBE, unit=f'<unit meter="{METRES[name]}"/>'))
         side = 2.0 * METRES[name]
-        inertia = 3.0 * side**2 / 6.0
-        link = f"""<robot name="r"><link name="a"><inertial><mass value="3"/>
+        mass = 1000.0 * side**3
+        inertia = mass * side**2 / 6.0
+        link = f"""<robot name="r"><link name="a"><inertial><mass value="{mass}"/>
         <inertia ixx="{inertia}" iyy="{inertia}" izz="{inertia}" ixy="0" ixz="0" iyz="0"/></inertial>
         <collision><geometry><mesh filename="part.dae"/></geometry></collision></link></robot>"""
         robot = robots.read_robot(written(tmp_path / "arm.urdf", link))

@@ -87,7 +87,7 @@ def test_a_circle_of_equilibria_is_drawn() -> None:
         kind=["minimum", "minimum", "maximum"],
         circle=np.array([none, none, [0.0, 0.0, 1.0]]),
     )
-    gyrostat: Any = SimpleNamespace(
+    gyrostat: Any = type("Gyrostat", (SimpleNamespace,), {})(
         shape=(), inertia=np.diag([1.0, 1.0, 2.0]), momentum=np.array([0, 0, 0.2]), equilibria=lambda _: found
     )
     ax: Any = plot.portrait(gyrostat, 2.0)

@@ -53,6 +53,7 @@ HANDING_ON = (
     "{words}",
     "{problem}",
     "{hint}",
+    "{MODES}",
     "{words_of(error)}",
 )
 """Ends of messages that hand on those of others, which are checked where they are made."""

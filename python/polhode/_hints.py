@@ -363,7 +363,8 @@ def _wrong_arguments(
         key: one for key, one in every.items() if one.kind not in (one.VAR_POSITIONAL, one.VAR_KEYWORD)
     }
     unknown = [key for key in kwargs if key not in parameters]
-    if unknown and not any(one.kind is one.VAR_KEYWORD for one in every.values()):
+    is_open = any(one.kind is one.VAR_KEYWORD for one in every.values())
+    if unknown and (not is_open or _LABELS.get(unknown[0]) in parameters):
         return no_keyword(name, unknown[0], parameters)
     places = [one.name for one in parameters.values() if one.kind is not one.KEYWORD_ONLY]
     if len(args) > len(places) and not any(one.kind is one.VAR_POSITIONAL for one in every.values()):

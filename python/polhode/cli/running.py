@@ -141,7 +141,7 @@ def run(arguments: list[str]) -> int:
         with standard_output():
             code = command()
     except UnusedCliTokensError as error:
-        rest = " ".join(error.unused_tokens)
+        rest = " ".join(error.unused_tokens or ())
         return _fail(
             f"{rest}: more than {arguments[0]} takes; give one file, and in quotes what holds spaces "
             f"(see polhode {arguments[0]} --help)"

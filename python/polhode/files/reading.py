@@ -66,7 +66,7 @@ def status_of(path: str | os.PathLike[str]) -> os.stat_result:
     try:
         return Path(path).stat()
     except ValueError as error:  # a NUL, or half of a surrogate pair
-        reason = error.reason if isinstance(error, UnicodeError) else str(error)
+        reason = error.reason if isinstance(error, UnicodeEncodeError) else str(error)
         raise PolhodeError(f"path: {path!r} cannot be the name of a file ({reason}); correct it") from None
 
 

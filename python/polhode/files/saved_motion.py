@@ -347,8 +347,8 @@ def _check_order(t: NDArray[Any], file: Path) -> None:
             else (f"t has the shape {t.shape}")
         )
         raise FileFormatError(
-            f"{file}: {where}: the times of a run in steps ascend, or descend, strictly; "
-            "the file was altered after it was written, so save the motion again"
+            f"{file}: {where}: the times of a run in steps ascend, or descend, strictly, and the file was "
+            "altered after it was written; save the motion again"
         )
 
 

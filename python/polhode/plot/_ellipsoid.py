@@ -78,8 +78,9 @@ def ellipsoid(
     """
     check_kind(body, "body", "RigidBody")
     check_one(body.shape, "body")
-    new = ax is None or not ax.has_data()
+    is_given = ax is not None
     ax = axes_3d(ax)
+    new = not (is_given and ax.has_data())
     middle = _core.real_numbers(body.center_of_mass if center is None else center, "center")
     semi_axes = inertia_semi_axes(body.principal.moments)
     semi_axes *= size / semi_axes.max()

@@ -198,7 +198,8 @@ impl Orbit {
     /// [`MotionFault::OrbitBeyondReach`]: after 2⁸⁸ revolutions nothing is left of the phase, nearer to a parabola after fewer; the
     /// squares of the distances of an orbit without end leave the range of float64.
     pub fn check(&self, elapsed: f64) -> Result<(), Error> {
-        if (elapsed / self.time).abs() <= self.reach {
+        // A time that is not finite has no state, and is no error, as in closed forms.
+        if !elapsed.is_finite() || (elapsed / self.time).abs() <= self.reach {
             return Ok(());
         }
         let reach = self.reach * self.time;
