@@ -203,3 +203,13 @@ def test_what_is_not_known_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(sys, "executable", "")
     (line,) = told(path)
     assert line.startswith("OCCT was not started: 1 pairs of solids")
+
+
+@pytest.mark.parametrize(("megabytes", "seconds"), [(0.1, 5.0), (1.0, 5.0), (1.5, 7.5), (3.0, 15.0)])
+def test_the_time_for_overlaps_follows_the_size_of_the_file(
+    megabytes: float, seconds: float, tmp_path: Path
+) -> None:
+    path = tmp_path / "a.step"
+    with path.open("wb") as file:
+        file.truncate(round(megabytes * 1e6))
+    assert cad_apart._sharing(path) == seconds

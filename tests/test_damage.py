@@ -244,7 +244,11 @@ class TestJson:
         [
             ("quaternion", [[0, 0, 0, 2], [0, 0, 0, 1]], "a quaternion has the norm 2"),
             ("pivoted", "false", "pivoted is 'false', expected true or false"),
-            ("status", "finished", "status holds 'finished', expected one of complete, event, stopped, failed, not run"),
+            (
+                "status",
+                "finished",
+                "status holds 'finished', expected one of complete, event, stopped, failed, not run",
+            ),
             ("steps", -3, "steps holds numbers that are no counts"),
             ("steps", [1, 2], r"steps has shape \(2,\), expected \(\)"),
             ("t", [0.0, None], "t is not an array of numbers: it holds null"),

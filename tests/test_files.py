@@ -142,8 +142,9 @@ class TestMotions:
 
     def test_states_after_a_failure_are_null(self, tmp_path: Path) -> None:
         motion = BODIES["box"].simulate([0.0, 1.0], (0.1, 1.0, 0.2))
-        motion.omega.setflags(write=True)
-        motion.omega[-1] = np.nan
+        for states in (motion.omega, motion.quaternion, motion.position, motion.velocity):
+            states.setflags(write=True)
+            states[-1] = np.nan
         motion = replace(motion, status="failed")
         motion.save(tmp_path / "motion.json")
         assert json.loads((tmp_path / "motion.json").read_text("utf-8"))["omega"][-1] == [None] * 3

@@ -210,9 +210,7 @@ class TestCopies:
         limited(monkeypatch, "elements in copies", 60)
         assert len(parsed(text).links) == 6
         limited(monkeypatch, "elements in copies", 59)
-        with pytest.raises(
-            FileFormatError, match="line 6: there are more than 59 elements in copies"
-        ):
+        with pytest.raises(FileFormatError, match="line 6: there are more than 59 elements in copies"):
             parsed(text)
 
     def test_below_the_limits_all_are_made(self) -> None:

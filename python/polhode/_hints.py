@@ -296,7 +296,7 @@ def no_attribute(kind: str, name: str, known: Iterable[str], what: str | None = 
 
 def no_keyword(function: str, given: str, known: Iterable[str]) -> TypeError:
     """Make the error for a keyword that a function does not take, with the one that is meant."""
-    known = list(known)
+    known = [name for name in known if name != given]
     meant = [name for name, others in _OTHER_ARGUMENTS.items() if name in known and given in others]
     meant = meant or get_close_matches(given, known, 1)
     if _LABELS.get(given) in known:
@@ -363,9 +363,10 @@ def _wrong_arguments(
         key: one for key, one in every.items() if one.kind not in (one.VAR_POSITIONAL, one.VAR_KEYWORD)
     }
     unknown = [key for key in kwargs if key not in parameters]
-    is_open = any(one.kind is one.VAR_KEYWORD for one in every.values())
-    if unknown and (not is_open or _LABELS.get(unknown[0]) in parameters):
-        return no_keyword(name, unknown[0], parameters)
+    if any(one.kind is one.VAR_KEYWORD for one in every.values()):  # another function takes the rest
+        unknown = [key for key in unknown if key in _LABELS]
+    if unknown:
+        return no_keyword(name, unknown[0], [*parameters, _LABELS.get(unknown[0], unknown[0])])
     places = [one.name for one in parameters.values() if one.kind is not one.KEYWORD_ONLY]
     if len(args) > len(places) and not any(one.kind is one.VAR_POSITIONAL for one in every.values()):
         by_name = [f"{key}=" for key in parameters if key not in places]

@@ -169,9 +169,7 @@ def find_overlaps(parts: Sequence[Placed]) -> tuple[list[Overlap], list[str]]:
     ]
     notes = []
     if len(shown) > _MOST_PARTS:
-        notes.append(
-            f"{len(shown)} parts with volumes are more than {_MOST_PARTS}: they were not compared"
-        )
+        notes.append(f"{len(shown)} parts with volumes are more than {_MOST_PARTS}: they were not compared")
         shown = []
     left, unmade = _MOST_TRIANGLES, _MOST_SURFACES
     pairs, unseen = _meeting(shown)
@@ -221,7 +219,7 @@ def _at_one_place(parts: Sequence[Placed]) -> tuple[list[Overlap], set[int]]:
 
 
 def _meeting(parts: Sequence[Placed]) -> tuple[list[tuple[int, int]], int]:
-    """Give pairs that may be near each other, by wide boxes along the axes of the whole; and how many more."""
+    """Find pairs that may be near each other, by wide boxes along the axes of the whole; count the rest."""
     if not parts:
         return [], 0
     boxes = np.array([part.form.reach for part in parts if part.form])  # of shape (n, 2, 3)

@@ -29,8 +29,8 @@ class Overlap(NamedTuple):
     Attributes
     ----------
     kind : str
-        ``"across"``; ``"inside"`` where the other lies within the one; ``"same"`` where it is the same part at
-        the same place.
+        ``"across"``; ``"inside"`` where the other lies within the one; ``"same"`` where it is the same part
+        at the same place.
     one, other : str
         Their names, the larger one first.
     volume : float
@@ -89,8 +89,8 @@ class Assembly:
     notes : tuple of str
         Remarks, for example about copies at the same place.
     overlaps : tuple of Overlap
-        Parts that share space, the largest volume first. Compared are solids and closed meshes of up to 50,000
-        triangles, not solids of CAD.
+        Parts that share space, the largest volume first. Compared are solids and closed meshes of up to
+        50,000 triangles, not solids of CAD.
     """
 
     name: str

@@ -153,7 +153,7 @@ def _end_with_parent(parent: int) -> None:
 
 
 def _limited(path: Path | None) -> None:
-    """Let the system end this process after the seconds of computing that a file is given; None: no longer."""
+    """Let the system end this process after the seconds of computing that a file has; None: no limit."""
     if hasattr(signal, "setitimer"):
         signal.signal(signal.SIGPROF, signal.SIG_DFL)
         signal.setitimer(signal.ITIMER_PROF, 0.0 if path is None else _reading(path))

@@ -76,7 +76,8 @@ def read_gltf(
         raise
     # A damaged description can raise any of these where a number, a list or an object is expected.
     except (
-        ValueError, KeyError, TypeError, IndexError, AttributeError, RecursionError, OverflowError, struct.error,
+        ValueError, KeyError, TypeError, IndexError, AttributeError, RecursionError, OverflowError,
+        struct.error,
     ) as error:  # fmt: skip
         reason = " ".join(str(error).split()) or type(error).__name__
         fault = with_way_out(reason[:200], "export it again")

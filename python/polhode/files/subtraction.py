@@ -107,7 +107,7 @@ def _told(serving: int, idle: int, *, is_moved: bool) -> list[str]:
 
 
 def _relation(part: Part, tool: Part) -> str:
-    """Tell how a tool lies to a part: "apart", "inside", "around" or "across", which may also not be known."""
+    """Find how a tool lies to a part: "apart", "inside", "around", "across", or that it is not known."""
     if not meeting([part, tool]):
         return "apart"
     large, small = part.vertices[part.faces], tool.vertices[tool.faces]
@@ -126,7 +126,7 @@ def _relation(part: Part, tool: Part) -> str:
 
 
 def _may_cross(edges_of: Floats, triangles: Floats) -> bool:
-    """Tell whether an edge of one surface meets or touches a triangle of the other; yes if they are too many."""
+    """Find whether an edge of one surface meets a triangle of the other; yes if they are too many."""
     low, high = triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))
     near = _NEAR * float(np.linalg.norm(high - low))
     edges = np.concatenate([edges_of[:, [0, 1]], edges_of[:, [1, 2]], edges_of[:, [2, 0]]])

@@ -66,7 +66,7 @@ _ROLES: Final = {
     "supportenforcer": "support enforcer",
     "support_enforcer": "support enforcer",
 }
-"""What slicers call the volumes of an object: PrusaSlicer its `volume_type`, Bambu and Orca their `subtype`."""
+"""What slicers call the volumes of an object: `volume_type` of PrusaSlicer, `subtype` of Bambu and Orca."""
 
 
 class _FaultError(ValueError):
@@ -191,8 +191,8 @@ class _Build:
         if not scene.groups:
             raise _FaultError("its build places no triangles")
         notes = [
-            f"{count} {kind}{'s' if count > 1 else ''} of the file {'are' if count > 1 else 'is'} no matter and "
-            f"{'count' if count > 1 else 'counts'} nothing"
+            f"{count} {kind}{'s' if count > 1 else ''} of the file "
+            f"{'are' if count > 1 else 'is'} no matter and {'count' if count > 1 else 'counts'} nothing"
             for kind, count in self._left_out.items()
         ]
         unit = _UNITS[root.unit]
@@ -356,8 +356,8 @@ class _Build:
         for volume in volumes.values():
             if not 0 <= volume.first <= volume.last < len(corners):
                 raise _FaultError(
-                    f"its settings name triangles {volume.first} to {volume.last} of object {name[:40]!r}, which "
-                    f"has {len(corners)}"
+                    f"its settings name triangles {volume.first} to {volume.last} of object {name[:40]!r}, "
+                    f"which has {len(corners)}"
                 )
             own = slice(volume.first, volume.last + 1)
             if not is_free[own].all():

@@ -25,7 +25,8 @@ _MOST_CORNERS: Final = 10_000
 """Of a face: VTK divides it in a time that grows with the square of them."""
 _PROMISES: Final = re.compile(
     rb"\b(NumberOf(?:Points|Cells|Verts|Lines|Strips|Polys)|(?:Whole)?Extent)\s{0,9}=\s{0,9}[\"']([\s\d-]{0,200})"
-    rb"|^[ ]{0,9}(POINTS|CELLS|POLYGONS|VERTICES|LINES|TRIANGLE_STRIPS|DIMENSIONS|[XYZ]_COORDINATES)[ \t]([\d \t]{1,200})",
+    rb"|^[ ]{0,9}(POINTS|CELLS|POLYGONS|VERTICES|LINES|TRIANGLE_STRIPS|DIMENSIONS|[XYZ]_COORDINATES)"
+    rb"[ \t]([\d \t]{1,200})",
     re.MULTILINE | re.IGNORECASE,
 )
 """Counts in the heads of XML files and of legacy files."""

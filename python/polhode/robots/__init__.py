@@ -134,7 +134,7 @@ def parse_robot(
     """
     if not isinstance(source, bytes):
         raise TypeError(
-            f"source: expected the bytes of a file, got {type(source).__name__}; read_robot(path) reads a file"
+            f"source: expected the bytes of a file, got {type(source).__name__}; read_robot(path) reads one"
         )
     if not source.strip():
         raise FileFormatError(f"{name}: the file is empty; check the file")
