@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import inspect
 import re
 import subprocess
 import sys
@@ -411,3 +412,56 @@ def test_a_top_starts_upright() -> None:
     assert np.array_equal(top.at(1.0).omega, TOP.heavy_top((0, 0.1, 9), None, gravity).at(1.0).omega)
     with pytest.raises(TypeError, match=re.escape("gravity: a heavy top needs it, as gravity=(0, 0, -9.81)")):
         TOP.heavy_top((0, 0.1, 9))
+
+
+KINDS: dict[str, Any] = {
+    "a word": "robot.urdf",
+    "half a letter": "\ud800",
+    "bytes": b"x",
+    "None": None,
+    "a number": 3.0,
+    "a number beyond floats": 10**400,
+    "a list": [1, 2, 3],
+    "a dictionary": {"a": 1},
+    "an object": object(),
+    "a body": BODY,
+    "a run": BODY.simulate(*SPUN),
+    "a motion": BODY.free_motion((0.1, 0.0, 1.0)),
+}
+
+
+@pytest.mark.parametrize(
+    "module",
+    [
+        *("plot", "robots", "symbolic", "molecules", "flybys", "tops", "orbits", "equimomental", "validity"),
+        *("kinematics", "parallel_axis", "reductions", "distributions", "uncertainty", "euler_angles"),
+        *("solids", "laminae", "rods", "regions", "forms", "labelled", "samples", "files", "units"),
+        *("assembly", "loads"),
+    ],
+)
+def test_functions_refuse_objects_of_other_kinds_in_words(
+    module: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every required argument is one thing of another kind; the error is none of Python's own accidents."""
+    plt = pytest.importorskip("matplotlib.pyplot")
+    monkeypatch.chdir(tmp_path)
+    home = importlib.import_module(f"polhode.{module}")
+    wrong = []
+    for name in home.__all__:
+        function = getattr(home, name)
+        if not callable(function) or name == "compiled":  # which takes a machine address
+            continue
+        needed = [one for one in inspect.signature(function).parameters.values() if one.default is one.empty]
+        placed = [one for one in needed if one.kind in (one.POSITIONAL_ONLY, one.POSITIONAL_OR_KEYWORD)]
+        named = [one.name for one in needed if one.kind is one.KEYWORD_ONLY]
+        for kind, value in KINDS.items():
+            plt.close("all")
+            try:
+                function(*[value] * len(placed), **dict.fromkeys(named, value))
+            except (TypeError, ValueError, OSError, IndexError, ModuleNotFoundError, MemoryError) as error:
+                if isinstance(error, UnicodeError) or not str(error):
+                    wrong.append(f"{name} of {kind}: {error!r}")
+            except Exception as error:
+                wrong.append(f"{name} of {kind}: {error!r}")
+    plt.close("all")
+    assert not wrong

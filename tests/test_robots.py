@@ -14,6 +14,7 @@ from mesh_files import binary_stl, obj
 from oracles.meshes import box, cube
 from polhode import RigidBody, robots
 from polhode.errors import FileFormatError
+from polhode.validity import nearest_valid
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -378,7 +379,12 @@ def test_what_is_put_right_is_a_body(moments: list[float], size: list[float]) ->
     again = robots.parse_robot(robots.fixed(robot, verdicts), name="r", folder=".")
     (verdict,) = robots.check(again)
     if 2.0 / np.prod(size) > 25_000.0:  # a marker
-        assert (verdict.verdict, verdict.shapes) == (verdicts[0].verdict, "")
+        assert verdict.shapes == ""
+        if (
+            verdict.verdict != verdicts[0].verdict
+        ):  # not from the shape: the nearest tensor of what is declared
+            nearest, _ = nearest_valid(np.diag(moments))
+            np.testing.assert_allclose(there(again.links[0].inertial).inertia, nearest, rtol=1e-8, atol=1e-8)
         return
     assert verdict.verdict in {"good", "suspect"}
     inertial = there(again.links[0].inertial)

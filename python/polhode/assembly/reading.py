@@ -18,7 +18,7 @@ from polhode.assembly.placing import HERE, Place, copies, place_of
 from polhode.assembly.result import Assembly, Member
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.files.budget import Budget
-from polhode.files.reading import read_text, words_of
+from polhode.files.reading import read_text, status_of, words_of
 from polhode.uncertainty.ledger import ledger_of_bodies
 
 if TYPE_CHECKING:
@@ -117,6 +117,7 @@ def read(
 
 def _file(path: Path, known: dict[Path, _Unit], inside: tuple[Path, ...], budget: Budget) -> _Unit:
     """Read a file once; `inside` are the files that are being read, the outermost first."""
+    status_of(path)
     real = Path(os.path.realpath(path))
     if real in inside:
         circle = " holds ".join(file.name for file in (*inside[inside.index(real) :], real))

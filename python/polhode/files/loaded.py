@@ -21,7 +21,7 @@ from polhode.files.cad_kernel import check_occt
 from polhode.files.content import EXPECTED_CONTENT, MOLECULE_SUFFIXES, Content, is_molecule, opened, unread
 from polhode.files.mesh import Mesh, check_faces, weld, weld_within
 from polhode.files.plates import read_numbered_plates
-from polhode.files.reading import check_ordinary, naming, whole_of
+from polhode.files.reading import check_ordinary, naming, status_of, whole_of
 from polhode.files.unpacked import inner_suffix, unpacked
 from polhode.units import METRES, metres_per
 
@@ -212,7 +212,7 @@ def load(path: str | os.PathLike[str], *, index_base: int = 1) -> Loaded:
 def _budget(file: Path) -> Budget:
     """Give the budget of a file, by its size as it lies on the disk."""
     with naming(file):
-        return Budget(str(file), file.stat().st_size)
+        return Budget(str(file), status_of(file).st_size)
 
 
 def _load(file: Path, suffix: str, index_base: int, budget: Budget) -> Loaded:

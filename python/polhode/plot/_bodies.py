@@ -128,6 +128,7 @@ def principal_axes(
     -------
     mpl_toolkits.mplot3d.axes3d.Axes3D
     """
+    check_kind(ax, "ax", "Axes3D")
     check_kind(rigid_body, "rigid_body", "RigidBody")
     origin = _core.real_numbers(rigid_body.center_of_mass if center is None else center, "center")
     toward = toward_viewer(ax)

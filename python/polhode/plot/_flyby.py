@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from polhode._hints import with_hints
+from polhode._hints import check_kind, with_hints
 from polhode.plot._style import axes_2d, columns_that_fit, matplotlib, room, tidy
 
 if TYPE_CHECKING:
@@ -50,6 +50,7 @@ def flyby(
     -------
     matplotlib.axes.Axes
     """
+    check_kind(found, "found", "Flyby")
     ax = axes_2d(ax)
     unit = f" ({time_label})" if time_label else ""
     values: Any

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 from polhode.errors import FileFormatError
 from polhode.files.budget import LIMITS, Budget, LimitError
-from polhode.files.reading import note_read
+from polhode.files.reading import note_read, status_of
 from polhode.files.xml_source import Element, parse_xml
 from polhode.robots.words import shortened
 
@@ -152,7 +152,7 @@ def read_source(path: Path, most: int = _MOST_BYTES) -> bytes:
     OSError
         If it cannot be read.
     """
-    mode = path.stat().st_mode
+    mode = status_of(path).st_mode
     if stat.S_ISDIR(mode):
         raise FileFormatError(f"{path}: is a directory; name a file in it")
     if not (stat.S_ISREG(mode) or stat.S_ISFIFO(mode)):

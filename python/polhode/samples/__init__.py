@@ -6,11 +6,13 @@ and have the licence of the package.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from polhode.errors import PolhodeError
+from polhode.files.reading import status_of
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -105,6 +107,8 @@ def copy(folder: str | PathLike[str]) -> tuple[Path, ...]:
     from polhode.files.writing import write_bytes
 
     target = Path(folder)
+    with suppress(FileNotFoundError):  # the folder is made
+        status_of(target)
     if target.exists() and not target.is_dir():
         raise PolhodeError(f"folder: {target} is a file; name a folder")
     contents = {target / name: (_FOLDER / name).read_bytes() for name in _ABOUT}

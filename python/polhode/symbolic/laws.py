@@ -71,6 +71,8 @@ def particles(masses: Any, positions: Any) -> tuple[Any, Any, Any]:
     >>> symbolic.particles([m, m], [(a, 0, 0), (-a, 0, 0)])[2].diagonal()
     Matrix([[0, 2*a**2*m, 2*a**2*m]])
     """
+    if isinstance(masses, str):
+        raise TypeError(f"masses: expected a sequence of expressions, got {masses!r}; sympy.symbols makes some")
     weights = [sympy.sympify(mass) for mass in masses]
     places = [_vector(place, None, "positions") for place in positions]
     if not weights or len(weights) != len(places):
