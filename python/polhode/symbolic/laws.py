@@ -72,7 +72,7 @@ def particles(masses: Any, positions: Any) -> tuple[Any, Any, Any]:
     Matrix([[0, 2*a**2*m, 2*a**2*m]])
     """
     if isinstance(masses, str):
-        raise TypeError(f"masses: expected a sequence of expressions, got {masses!r}; sympy.symbols makes some")
+        raise TypeError(f"masses: expected several expressions, got {masses!r}; sympy.symbols makes them")
     weights = [sympy.sympify(mass) for mass in masses]
     places = [_vector(place, None, "positions") for place in positions]
     if not weights or len(weights) != len(places):
