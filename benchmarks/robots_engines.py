@@ -164,7 +164,7 @@ def lost_by_fix(path: Path, packages: tuple[Path, ...]) -> tuple[int, list[str]]
 
 
 def _loading(path: Path) -> dict[str, str]:
-    """Give for each engine why it does not load a file; "" where it does. Of URDF shapes are left out."""
+    """Return for each engine why it does not load a file; "" where it does. Of URDF shapes are left out."""
     import mujoco
 
     if path.suffix == ".xml":

@@ -120,12 +120,12 @@ def isotropic(tensor: Array) -> float | None:
 
 
 def of_osmium(mass: float) -> float:
-    """Give the square of the radius of a ball of osmium."""
+    """Return the square of the radius of a ball of osmium."""
     return float((0.75 * mass / np.pi / OSMIUM) ** (2.0 / 3.0))
 
 
 def filled(link: Link) -> tuple[Array | None, float]:
-    """Give the moments, per unit of mass, of the shapes of one role filled evenly.
+    """Return the moments, per unit of mass, of the shapes of one role filled evenly.
 
     Shapes in which the mass would be denser than any matter, or nearly so, are passed over: the density is
     the least of theirs where no others are left, else 0.

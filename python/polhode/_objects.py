@@ -107,7 +107,7 @@ def _check_rdkit(molecule: Any, conformer: Any) -> None:
 
 
 def _cell_of(atoms: Any) -> Any:
-    """Give the vectors along which ASE's atoms repeat; None where they do not."""
+    """Return the vectors along which ASE's atoms repeat; None where they do not."""
     if not (hasattr(atoms, "get_pbc") and hasattr(atoms, "get_cell") and np.any(atoms.get_pbc())):
         return None
     return np.asarray(atoms.get_cell())[np.asarray(atoms.get_pbc(), dtype=bool)]

@@ -29,13 +29,13 @@ def of_forms(values: Any, forms: Sequence[Form]) -> _core.Uncertain:
 
 
 def angles_of(attitude: _core.Uncertain, stack: tuple[int, ...], row: int) -> list[Form]:
-    """Give the forms of the three small angles that a row of a stack has, of one rotation or of a stack."""
+    """Return the forms of the three small angles that a row of a stack has, of one rotation or of a stack."""
     forms, shape = attitude._forms(), np.shape(attitude.value.as_quat())[:-1]
     which = rows_of(shape, stack)[row]
     return forms[3 * which : 3 * which + 3]
 
 
 def row_of(given: _core.Uncertain, row: int) -> _core.Uncertain:
-    """Give one row of vectors with a sigma."""
+    """Return one row of vectors with a sigma."""
     value = np.reshape(given.value, (-1, 3))[row]
     return of_forms(value, given._forms()[3 * row : 3 * row + 3])

@@ -316,7 +316,7 @@ def _check_orbit(orbit: Orbit | SampledOrbit, radius: float | None) -> None:
 
 
 def _numbers(motion: FreeMotion) -> distributions.Normal | None:
-    """Give the distribution of three moments and two periods, or None where they are known."""
+    """Return the distribution of three moments and two periods, or None where they are known."""
     given = motion._from_periods
     if given is None:
         return None
@@ -371,7 +371,7 @@ def _number(given: Any, name: str) -> float:
 
 
 def _bodies(body: RigidBody, numbers: Floats) -> RigidBody:
-    """Give the bodies of clones: that body with other principal moments."""
+    """Return the bodies of clones: that body with other principal moments."""
     axes, center = body.principal.axes, body.center_of_mass
     return _core.RigidBody.from_principal(body.mass, numbers[..., :3], axes, center)
 
@@ -381,7 +381,7 @@ def _at(motion: FreeMotion, phase: Floats) -> Trajectory:
 
 
 def _start(bodies: RigidBody, numbers: Floats, mode: Any, sense: int, share: Floats) -> FreeMotion:
-    """Give the motions of clones, each with its own moments and periods, at shares of a period."""
+    """Return the motions of clones, each with its own moments and periods, at shares of a period."""
     return bodies.free_motion_from_periods(numbers[..., 3], numbers[..., 4], mode, sense, share)
 
 

@@ -78,7 +78,7 @@ class Form:
         return float(self._numbers[0]) if self.solid == "sphere" else None
 
     def surface(self, segments: int = _FINE) -> Surface | None:
-        """Give its triangles, outward; None where it has no volume that triangles bound."""
+        """Return its triangles, outward; None where it has no volume that triangles bound."""
         if self._mesh is not None:
             return self._mesh
         if self.solid == "prism" and self._numbers[0] > _MOST_SIDES:
@@ -235,7 +235,7 @@ def _meeting(parts: Sequence[Placed]) -> tuple[list[tuple[int, int]], int]:
 
 
 def _near(one: Placed, other: Placed) -> bool:
-    """Tell whether the boxes around the triangles of two parts meet."""
+    """Return whether the boxes around the triangles of two parts meet."""
     known = [part.form.box for part in (one, other) if part.form]
     if None in known:
         return False
@@ -244,7 +244,7 @@ def _near(one: Placed, other: Placed) -> bool:
 
 
 def _boxes(parts: Sequence[Placed], boxes: Floats) -> tuple[Floats, Floats]:
-    """Give the middles and half sides of boxes along the axes of the whole around boxes of parts."""
+    """Return the middles and half sides of boxes along the axes of the whole around boxes of parts."""
     turns = np.array([part.place.rotation for part in parts])
     shifts = np.array([part.place.displacement for part in parts])
     middles = np.einsum("nij,nj->ni", turns, boxes.mean(axis=1)) + shifts

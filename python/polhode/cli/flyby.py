@@ -175,7 +175,7 @@ def _run(
 
 
 def _before(name: str, label: str, hours: Any) -> list[Field]:
-    """Give a period before the flyby: the same for all clones, or the median and the spread of theirs."""
+    """Return a period before the flyby: the same for all clones, or the median and the spread of theirs."""
     low, median, high = (float(x) for x in np.nanquantile(hours, SHARES))
     is_same = high - low <= 1e-9 * median
     hint = "" if is_same else f"median; 5 % to 95 %: {low:.6g} to {high:.6g}"

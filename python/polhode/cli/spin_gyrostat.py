@@ -128,7 +128,7 @@ class GyrostatKind:
         ]
 
     def _periods(self) -> list[Field]:
-        """Tell the periods that this mode has, by the words of the glossary."""
+        """Return the periods that this mode has, by the words of the glossary."""
         motion = self._motion
         if not np.isnan(motion.period):
             hint = "" if np.isfinite(motion.period) else "omega never returns"

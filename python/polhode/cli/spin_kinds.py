@@ -76,7 +76,7 @@ class FreeKind:
         return {"sigma": factor * getattr(found, name), "linear": getattr(found.linear, name)}
 
     def _periods(self) -> list[Field]:
-        """Tell the periods that this mode has, by the words of the glossary."""
+        """Return the periods that this mode has, by the words of the glossary."""
         motion, periods, told = self._motion, self._motion.periods, self._told
         mode = str(motion.mode)
         if not np.isnan(periods.turn):
@@ -141,7 +141,7 @@ class FreeKind:
         return [Field("wobble_period", "wobble", None, hint=why, cells=["none"])]
 
     def light_curve(self) -> list[Field | Table]:
-        """Give the frequencies of the light curve, and periods of a tumbling body in the other convention.
+        """Return the frequencies of the light curve, and periods of a tumbling body in the other convention.
 
         Returns
         -------
@@ -254,7 +254,7 @@ class TopKind:
         ]
 
     def _periods(self) -> list[Field]:
-        """Tell the periods that this path has, by the words of the glossary."""
+        """Return the periods that this path has, by the words of the glossary."""
         motion = self._motion
         period, why = motion.nutation_period, "the inclination of the axis is constant"
         if not np.isnan(period):

@@ -95,7 +95,7 @@ def read_ascii_stl(stream: BinaryIO, file: Path) -> tuple[NDArray[np.float64], t
 
 
 def _name_in(rest: list[str]) -> str:
-    """Give the name of a solid, what is no text in it left out."""
+    """Return the name of a solid, what is no text in it left out."""
     return " ".join("".join(letter for letter in "".join(rest) if letter.isprintable()).split())
 
 

@@ -139,7 +139,7 @@ class _File:
         return placed
 
     def _roots(self, below: set[int]) -> list[int]:
-        """Give the nodes that the scene begins with: without a scene, those that are below none."""
+        """Return the nodes that the scene begins with: without a scene, those that are below none."""
         scenes = self._scene.get("scenes", [])
         if not scenes:
             return [number for number in range(len(self._scene.get("nodes", []))) if number not in below]
@@ -233,7 +233,7 @@ class _File:
 
 
 def _chunks(source: bytes) -> tuple[bytes, bytes]:
-    """Give the description of a GLB file and its binary chunk."""
+    """Return the description of a GLB file and its binary chunk."""
     _, _, length, json_length, kind = struct.unpack("<5I", source[:_HEAD])
     if length != len(source):
         raise ValueError(f"it says that it is {length} bytes long, and is {len(source)}")
@@ -268,7 +268,7 @@ def _check_primitive(primitive: dict[str, Any], scene: dict[str, Any]) -> None:
 
 
 def _check_nodes(nodes: list[dict[str, Any]]) -> set[int]:
-    """Give the nodes that are below others; each may have one parent, and none may be below itself."""
+    """Return the nodes that are below others; each may have one parent, and none may be below itself."""
     parents: dict[int, int] = {}
     for number, node in enumerate(nodes):
         if "EXT_mesh_gpu_instancing" in node.get("extensions", {}):
@@ -289,7 +289,7 @@ def _check_nodes(nodes: list[dict[str, Any]]) -> set[int]:
 
 
 def _index(number: Any, of: Sized, what: str) -> int:
-    """Give a number that counts something from 0; Python would count a negative one from the end."""
+    """Return a number that counts something from 0; Python would count a negative one from the end."""
     if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number < len(of):
         raise ValueError(f"it names the {what} {str(number)[:40]}, which it does not hold")
     return number

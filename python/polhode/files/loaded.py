@@ -210,7 +210,7 @@ def load(path: str | os.PathLike[str], *, index_base: int = 1) -> Loaded:
 
 
 def _budget(file: Path) -> Budget:
-    """Give the budget of a file, by its size as it lies on the disk."""
+    """Return the budget of a file, by its size as it lies on the disk."""
     with naming(file):
         return Budget(str(file), status_of(file).st_size)
 

@@ -49,7 +49,7 @@ def densities_of(text: str) -> list[float] | None:
 
 
 def _entities(text: str) -> Iterator[tuple[str, str]]:
-    """Give the number of each entity and what it is; a semicolon within quotes ends none."""
+    """Return the number of each entity and what it is; a semicolon within quotes ends none."""
     pieces: list[str] = []
     for place, piece in enumerate(text.split("'")):
         first, *others = piece.split(";") if place % 2 == 0 else (piece,)

@@ -377,12 +377,12 @@ def _local(tag: str) -> str:
 
 
 def _attribute(attributes: dict[str, str], name: str) -> str:
-    """Give an attribute by its name without the prefix of its extension; "" where there is none."""
+    """Return an attribute by its name without the prefix of its extension; "" where there is none."""
     return next((text for known, text in attributes.items() if _local(known) == name), "")
 
 
 def _role(word: str) -> str:
-    """Give the role of what a slicer calls a volume."""
+    """Return the role of what a slicer calls a volume."""
     role = _ROLES.get(word.lower())
     if role is None:
         raise _FaultError(f"its settings name a volume {word[:40]!r}, which is not known")

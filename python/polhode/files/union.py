@@ -65,7 +65,7 @@ def united(parts: Sequence[Surface], name: str) -> Mesh:
 
 
 def difference(one: Surface, others: Sequence[Surface]) -> Surface:
-    """Give what is left of a closed surface without what others, all wound outward, enclose.
+    """Return what is left of a closed surface without what others, all wound outward, enclose.
 
     Raises
     ------

@@ -185,7 +185,7 @@ def _has_mass(link: Link, geometry: Geometry) -> bool:
 
 
 def _has_spread(link: Link, geometry: Geometry) -> bool:
-    """Tell whether a body has its tensor, with three moments above 0: whatever is added keeps them so."""
+    """Return whether a body has its tensor, with three moments above 0: whatever is added keeps them so."""
     body = geometry.body
     try:
         if link.inertial is not None:
@@ -196,7 +196,7 @@ def _has_spread(link: Link, geometry: Geometry) -> bool:
 
 
 def _is_point(declared: Inertial) -> bool:
-    """Tell whether a tensor is no larger than that of a ball of the densest matter, down to zero."""
+    """Return whether a tensor is no larger than that of a ball of the densest matter, down to zero."""
     try:
         body = RigidBody(declared.mass, declared.inertia)
     except PolhodeError:

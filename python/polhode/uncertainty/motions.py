@@ -184,7 +184,7 @@ class FromPeriods(NamedTuple):
     angular_momentum_direction: Any
 
     def row(self, shape: tuple[int, ...], row: int) -> FromPeriods:
-        """Give the arguments of one motion of a stack."""
+        """Return the arguments of one motion of a stack."""
         periods: list[Any] = []
         for given in self[:2]:
             value = _value(given)

@@ -229,7 +229,7 @@ def _body(numbers: Floats) -> RigidBody:
 def _joint_tangents(
     body: RigidBody | None, arguments: Sequence[Uncertain]
 ) -> tuple[list[tuple[int, ...]], Floats]:
-    """Give the variables of the ten numbers and all others, and the changes by one sigma of each."""
+    """Return the variables of the ten numbers and all others, and the changes by one sigma of each."""
     columns: dict[tuple[int, ...], int] = {}
     rows: list[dict[int, float]] = [{} for _ in range(10)]
     state = None if body is None else body._doubts()
