@@ -35,10 +35,6 @@ const INSTANT: f64 = 1024.0;
 const BESIDES: f64 = 1e-3;
 /// Looks at parts that were halved, for one function in one run.
 pub(super) const MOST_LOOKS: u64 = 1 << 24;
-/// Where parts were halved so often, as many as the step has are more than there are looks: a function that no polynomial resolves
-/// in so many of them one after another is noise. On the way to a kink or a jump there are at most `DEPTH - DEEP`.
-const DEEP: u32 = 24;
-const MOST_UNRESOLVED: u32 = 64;
 /// How often an extreme near zero is looked for closer by.
 const POLISHINGS: usize = 12;
 
@@ -71,8 +67,6 @@ pub(super) struct View<'b, E> {
     pub(super) halved: Option<f64>,
     /// How many looks at such parts are left.
     pub(super) left: &'b mut u64,
-    /// How many parts that were halved [`DEEP`] times were not resolved, one after another.
-    pub(super) unresolved: u32,
 }
 
 impl<E: From<Error>> View<'_, E> {
@@ -172,19 +166,8 @@ impl<E: From<Error>> View<'_, E> {
             (end.at - begin.at).abs() <= INSTANT * f64::EPSILON * one.max(other)
         };
         let looks = match resolved {
-            Some(looks) => {
-                if depth >= DEEP {
-                    self.unresolved = 0;
-                }
-                looks
-            }
+            Some(looks) => looks,
             None if depth < DEPTH && !is_instant && shape.may_be_followed => {
-                if depth >= DEEP {
-                    self.unresolved += 1;
-                    if self.unresolved > MOST_UNRESOLVED {
-                        *self.left = 0;
-                    }
-                }
                 let middle = nodes[nodes.len() / 2];
                 for half in [[begin, middle], [middle, end]] {
                     if self
@@ -490,7 +473,6 @@ mod tests {
             longest: f64::INFINITY,
             halved: None,
             left,
-            unresolved: 0,
         };
         view.looks(before, turn, &mut |view, look| {
             if before.value * look.value < 0.0 {
@@ -593,7 +575,6 @@ mod tests {
             longest: 1.0,
             halved: None,
             left: &mut 0,
-            unresolved: 0,
         };
         let found = view.locate(bracket, sign(bracket[0].value));
         (found.expect("a zero"), count)

@@ -104,7 +104,6 @@ fn of<E: From<Error>>(
         longest: f64::INFINITY,
         halved: None,
         left: &mut MOST_LOOKS.clone(),
-        unresolved: 0,
     };
     let mut last = Look {
         at: from,

@@ -100,7 +100,6 @@ impl<'a, E: From<Error>> Lookout<'a, E> {
                 longest: self.span.abs() / PARTS,
                 halved: None,
                 left: &mut self.left[event],
-                unresolved: 0,
             };
             let mut before = Look {
                 at: from,
