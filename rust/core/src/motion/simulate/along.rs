@@ -35,6 +35,10 @@ const INSTANT: f64 = 1024.0;
 const BESIDES: f64 = 1e-3;
 /// Looks at parts that were halved, for one function in one run.
 pub(super) const MOST_LOOKS: u64 = 1 << 24;
+/// A part that was halved so often and is still not resolved counts as so many looks: as many parts as the step has then are more
+/// than there are looks, so that a function that is noise there ends the run soon, and a kink does not.
+const DEEP: u32 = 24;
+const DEEP_LOOKS: u64 = 1 << 12;
 /// How often an extreme near zero is looked for closer by.
 const POLISHINGS: usize = 12;
 
@@ -168,6 +172,9 @@ impl<E: From<Error>> View<'_, E> {
         let looks = match resolved {
             Some(looks) => looks,
             None if depth < DEPTH && !is_instant && shape.may_be_followed => {
+                if depth >= DEEP {
+                    *self.left = self.left.saturating_sub(DEEP_LOOKS);
+                }
                 let middle = nodes[nodes.len() / 2];
                 for half in [[begin, middle], [middle, end]] {
                     if self
