@@ -552,9 +552,10 @@ mod tests {
             (1, true, true)
         );
         for (corner, level) in [(0.377, 0.1), (0.6, 1e-3), (0.21, 1e-9)] {
-            let left = &mut 1500;
-            let (zeros, _) = searched(0.0, left, &|t| (t - corner).abs() - level).expect("found");
-            assert_eq!(zeros.len(), 2, "{corner}");
+            let left = &mut MOST_LOOKS.clone();
+            let (zeros, count) =
+                searched(0.0, left, &|t| (t - corner).abs() - level).expect("found");
+            assert_eq!((zeros.len(), count < 1600), (2, true), "{corner} {count}");
         }
     }
 
