@@ -102,6 +102,9 @@ def test_mistakes_are_named(library: ctypes.CDLL) -> None:
         loads.compiled(lambda *_: None)
     with pytest.raises(ValueError, match="address is 0"):
         loads.compiled(0)
+    for number in (-1, 2**64, 10**40):
+        with pytest.raises(ValueError, match=f"function: expected an address between 1 and .*, got {number}"):
+            loads.compiled(number)
     library.spring.argtypes = [ctypes.c_double]
     with pytest.raises(ValueError, match="expected the signature"):
         loads.compiled(LowLevelCallable(library.spring))

@@ -36,6 +36,7 @@ MAY_BE_UNKNOWN = frozenset({
     "FreeMotion.error_bar", "FreeMotion.poinsot", "FreeMotion.herpolhode", "Trajectory.sensitivity",
     "motion_sensitivity", "principal_gaps",
     "Trajectory.invariants", "RigidBody.stability", "molecules.isotopes",
+    "oblate_states",
 })  # fmt: skip
 """Whose results say NaN where a quantity is not defined, as their docstrings tell."""
 

@@ -101,7 +101,13 @@ impl Compiled {
 /// The address of a function and its user data.
 fn address(function: &Bound<'_, PyAny>) -> PyResult<(usize, *mut c_void)> {
     if let Ok(number) = function.cast::<PyInt>() {
-        return Ok((number.extract()?, std::ptr::null_mut()));
+        let address = number.extract().map_err(|_| {
+            PyValueError::new_err(format!(
+                "function: expected an address between 1 and {}, got {number}",
+                usize::MAX
+            ))
+        })?;
+        return Ok((address, std::ptr::null_mut()));
     }
     // scipy.LowLevelCallable is a tuple whose first item is a capsule with the signature for a name.
     if let Ok(tuple) = function.cast::<PyTuple>()
