@@ -45,6 +45,10 @@ class Build:
         stdin.flush()
         return json.loads(stdout.readline())
 
+    def close(self) -> None:
+        """End the process: it has no more questions to answer."""
+        self.process.communicate()
+
 
 def serve(names: list[str]) -> None:
     """Answer questions about one row after the other: its name, how many calls fit the clock, their time."""
@@ -81,6 +85,8 @@ def compare(folders: list[Path], name: str, rounds: int) -> dict[str, list[float
             pair = [(build, build.ask("seconds", count)) for build in ((old, new), (new, old))[turn % 2]]
             times = dict(pair)
             ratios.setdefault(row, []).append(times[old] / times[new])
+    for build in (old, new):  # with the workers that its rows began, which would take time from the next pair
+        build.close()
     return ratios
 
 

@@ -142,8 +142,8 @@ class Orbit(Path):
         Returns
         -------
         OrbitState
-            Arrays of shape (..., T..., 3): axes of the stack, axes of the times, components. NaN after an orbit
-            about an oblate attractor has reached its centre.
+            Arrays of shape (..., T..., 3): axes of the stack, axes of the times, components. NaN after an
+            orbit about an oblate attractor has reached its centre.
 
         Raises
         ------
