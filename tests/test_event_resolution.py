@@ -92,6 +92,7 @@ def test_waves_faster_than_the_body(method: Any, omega: Any) -> None:
 
 
 @pytest.mark.long
+@pytest.mark.timeout(3600)
 @pytest.mark.parametrize("method", METHODS)
 def test_waves_up_to_a_hundred_thousand_cycles(method: Any) -> None:
     found = [check(wave, method, (STILL, TURNING)[k % 2]) for k, wave in enumerate(waves(200, 5.0, 11))]
@@ -133,6 +134,7 @@ def test_a_chirp_a_burst_and_a_wheel_s_limit() -> None:
 
 
 @pytest.mark.long
+@pytest.mark.timeout(3600)
 @pytest.mark.parametrize("method", ["exact", "taylor", "dop853"])
 def test_what_is_not_followed_is_an_error(method: Any) -> None:
     """Rounding errors about zero: no part of a step resolves them. The other bodies of a stack go on."""
@@ -145,14 +147,16 @@ def test_what_is_not_followed_is_an_error(method: Any) -> None:
     rates = np.array([0.5, 1.0])[:, None] * (0, 0, 1.0)
     run = BALL.simulate([0, 10], rates, events=noise, method=method, on_failure="keep")
     assert run.status.tolist() == ["complete", "failed"]
-    assert MOST < calls[0] < MOST + 1000
+    # Parts that were halved 24 times count as 4096 evaluations each: noise ends the run long before so many calls.
+    assert MOST / 4096 < calls[0] < MOST
     (failure,) = run.failures
     assert isinstance(failure, IntegrationError)
-    assert f"events: event 0 changes too fast to find all its zeros: after {MOST} evaluations" in str(failure)
+    assert f"events: event 0 changes too fast to find all its zeros: {MOST} evaluations in parts" in str(failure)
     assert "go on from its end with resume" in str(failure)
 
 
 @pytest.mark.long
+@pytest.mark.timeout(3600)
 def test_two_hundred_thousand_cycles() -> None:
     run = BODY.simulate([0, 1], STILL, events=lambda t, *_: math.sin(math.tau * 2e5 * t + 0.1))
     assert len(run.events.t) == 400_000

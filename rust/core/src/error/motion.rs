@@ -283,9 +283,9 @@ pub enum MotionFault {
     /// A function whose passages through zero are looked for, and that changes too fast for that.
     #[error(
         "{} changes too fast to find all its zeros: {looks} evaluations in parts of the run that were halved are spent (a part \
-         halved 24 times counts as 4096), and it is not followed in one of length {length:.1e} near t = {time:?}; ask for a \
-         shorter time and go on from its end, or, if the function is rounding errors about zero there, look for a level above \
-         them",
+         halved 24 times counts as 4096), and it is not followed in one of length {length:.1e} near t = {time:?}; if the \
+         function is rounding errors about zero there, look for a level above them, else ask for a shorter time and go on from \
+         its end",
         match event {
             Some(number) => format!("events: event {number}"),
             None => "a switch of the load".to_owned(),
