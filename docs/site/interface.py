@@ -142,8 +142,8 @@ def of_name(name: str, value: object) -> list[str]:
 
 
 DATA = {
-    "polhode.files.BODY_SCHEMA": "JSON Schema of the JSON file of a body, as a dict.",
-    "polhode.files.TRAJECTORY_SCHEMA": "JSON Schema of the JSON file of a motion, as a dict.",
+    "polhode.io.BODY_SCHEMA": "JSON Schema of the JSON file of a body, as a dict.",
+    "polhode.io.TRAJECTORY_SCHEMA": "JSON Schema of the JSON file of a motion, as a dict.",
     "polhode.plot.AXIS_COLORS": "Colours of the three principal axes and of components along them.",
     "polhode.plot.MOMENTUM_COLOR": "Colour of the angular momentum.",
     "polhode.plot.OMEGA_COLOR": "Colour of the angular velocity.",

@@ -12,7 +12,7 @@ from polhode._carried import of_rotor
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from polhode.trajectory import Trajectory
+    from polhode.motion.trajectory import Trajectory
 
     Floats = NDArray[np.float64]
 

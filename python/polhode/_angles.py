@@ -11,7 +11,7 @@ from polhode import _core
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from polhode.trajectory import Trajectory
+    from polhode.motion.trajectory import Trajectory
 
     Floats = NDArray[np.float64]
 

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from polhode import _core
-from polhode.gyrostat import Wheel, wheel
+from polhode.motion.gyrostat import Wheel, wheel
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from polhode.trajectory import Trajectory
+    from polhode.motion.trajectory import Trajectory
 
     Floats = NDArray[np.float64]
 

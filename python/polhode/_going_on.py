@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from polhode import _core
-from polhode._lengths import lengths
+from polhode.motion.invariants import lengths
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from polhode.motion.trajectory import Trajectory
     from polhode.results import MotionSensitivity
-    from polhode.trajectory import Trajectory
 
     Floats = NDArray[np.float64]
 
@@ -96,7 +96,7 @@ def sensitivity(self: Trajectory, method: Literal["series", "differences"] = "se
     """
     self._check_series("sensitivity", "; FreeMotion.sensitivity(t) has those of a free body at any times")
     if method == "differences":
-        from polhode._differences import by_differences
+        from polhode.motion.finite_differences import by_differences
 
         return by_differences(self)
     if method != "series":

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from pyvista import Plotter
     from xarray import Dataset
 
-    from polhode.trajectory import Trajectory
+    from polhode.motion.trajectory import Trajectory
 
 __all__ = ["animate", "plot", "save", "to_pandas", "to_xarray", "view"]
 
@@ -35,9 +35,9 @@ def save(self: Trajectory, path: str | PathLike[str]) -> None:
 
         ``.npz`` has the arrays under the names of the attributes, and ``mass``, ``inertia`` and
         ``center_of_mass`` of the body. ``.json`` is text after the schema
-        :data:`polhode.files.TRAJECTORY_SCHEMA`.
+        :data:`polhode.io.TRAJECTORY_SCHEMA`.
     """
-    from polhode.files.saved_motion import save_trajectory
+    from polhode.io.saved import save_trajectory
 
     save_trajectory(self, path)
 
@@ -51,7 +51,7 @@ def to_xarray(self: Trajectory) -> Dataset:
         Its dimensions are ``time``, for a stack after ``body`` (or ``body_0``, ``body_1``, …). Components are
         named ``x y z`` and ``x y z w``; an attribute of each variable names its frame.
     """
-    from polhode._extras import require
+    from polhode._optional import require
 
     xarray = require("xarray", extra=None, purpose="Trajectory.to_xarray")
     self._check_series("to_xarray")
@@ -85,8 +85,8 @@ def to_pandas(self: Trajectory) -> DataFrame:
         A row for each time, indexed by ``t``, after ``body`` (or ``body_0``, ``body_1``, …) of a stack; its
         columns are those of the ``.csv`` that `save` writes.
     """
-    from polhode._extras import require
-    from polhode.files.saved_motion import table_of
+    from polhode._optional import require
+    from polhode.io.saved import table_of
 
     pandas = require("pandas", extra=None, purpose="Trajectory.to_pandas")
     self._check_series("to_pandas")

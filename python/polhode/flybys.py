@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, TypeVar, cast
 import numpy as np
 
 from polhode import _core, distributions, loads
+from polhode._format import short
 from polhode._hints import check_kind
-from polhode._repr import short
 from polhode.ensembles.call import ensemble
 from polhode.errors import PolhodeError
 from polhode.orbits import Orbit
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from polhode._core import FreeMotion, RigidBody, Uncertain
     from polhode._progress import Progress
     from polhode.ensembles.result import Ensemble
+    from polhode.motion.trajectory import Trajectory
     from polhode.orbits import SampledOrbit
-    from polhode.trajectory import Trajectory
 
     Floats = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from polhode._core import MassAccumulator, RigidBody, real_numbers
-from polhode._repr import short
+from polhode._format import short
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from polhode._hints import with_hints
-from polhode._scene.shape import body_shape
-from polhode._scene.triangles import joined
 from polhode.assembly.matter import SAVED
-from polhode.files.content import is_molecule
-from polhode.files.loaded import CAD_SUFFIXES, load
-from polhode.files.unpacked import inner_suffix
+from polhode.draw.shape import body_shape
+from polhode.draw.triangles import joined
+from polhode.io.content import is_molecule
+from polhode.io.loaded import CAD_SUFFIXES, load
+from polhode.io.unpacked import inner_suffix
 from polhode.plot import body as draw_body
 from polhode.plot import principal_axes
 

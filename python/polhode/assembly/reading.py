@@ -10,16 +10,13 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from polhode.assembly.keys import COMMON, TOP, check_keys, text_of
 from polhode.assembly.matter import body_of_part, kind_of
-from polhode.assembly.numbers import Scope
 from polhode.assembly.overlaps import Form, Placed, find_overlaps, overlap_notes
-from polhode.assembly.placing import HERE, Place, copies, place_of
 from polhode.assembly.result import Assembly, Member
+from polhode.assembly.tables import COMMON, HERE, TOP, Place, Scope, check_keys, copies, place_of, text_of
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.files.budget import Budget
-from polhode.files.reading import read_text, status_of, words_of
-from polhode.uncertainty.ledger import ledger_of_bodies
+from polhode.io.reading import Budget, read_text, status_of, words_of
+from polhode.uncertainty.ledgers import ledger_of_bodies
 
 if TYPE_CHECKING:
     from polhode._core import RigidBody

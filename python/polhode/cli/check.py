@@ -8,16 +8,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from polhode import robots
-from polhode._quantities import quantity
+from polhode.cli.files import STDIN, check_outputs, shown
 from polhode.cli.layout import Column, Field, Report, Table
-from polhode.cli.outputs import check_outputs
-from polhode.cli.source import STDIN, shown
-from polhode.cli.text import in_options
+from polhode.cli.terminal import in_options
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.files.reading import files_read
-from polhode.files.writing import write_bytes
+from polhode.io.reading import files_read
+from polhode.io.writing import write_bytes
 from polhode.robots.sources import read_stream
 from polhode.robots.verdict import has_own_tensor, is_without_mass, replacement
+from polhode.units import quantity
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

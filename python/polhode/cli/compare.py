@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from polhode._rounding import with_sigma
+from polhode._format import with_sigma
 from polhode.cli.layout import Cell, Column, Table
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.files.reading import read_text
+from polhode.io.reading import read_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

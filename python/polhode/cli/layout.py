@@ -1,24 +1,39 @@
-"""A report as data: one list of fields, shown as a table or as JSON."""
+"""Reports as data: one list of fields, shown as a table, as JSON or as lines, or saved."""
 
 from __future__ import annotations
 
 import json
 import math
 from dataclasses import dataclass, field
+from io import StringIO
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from polhode._rounding import with_sigma
-from polhode.cli.text import printable, write
+from polhode._format import with_sigma
+from polhode.cli.terminal import printable, write
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
     from rich.console import Console
 
-__all__ = ["NOT_LINEAR", "ROUNDING", "Cell", "Column", "Field", "Report", "Table", "number"]
+    from polhode.cli.options import OutputOptions, ReportOptions
+
+__all__ = [
+    "NOT_LINEAR",
+    "ROUNDING",
+    "Cell",
+    "Column",
+    "Field",
+    "Report",
+    "Table",
+    "held_and_shown",
+    "number",
+    "show",
+    "show_lines",
+]
 
 DIGITS: Final = 7
 LABEL_WIDTH: Final = 20
@@ -275,3 +290,57 @@ def _put(target: dict[str, Any], key: str, value: object) -> None:
     for name in path:
         target = target.setdefault(name, {})
     target[last] = value
+
+
+def held_and_shown(
+    told: Report, extra: ReportOptions, output: OutputOptions, saved: Iterable[str] = ()
+) -> bool:
+    """Hold a report against what was expected, save what is to be saved, and show it.
+
+    Returns
+    -------
+    bool
+        Whether it agrees.
+    """
+    agrees = True
+    if extra.expect is not None:
+        from polhode.cli.compare import held_against
+
+        agrees = not held_against(told, extra.expect, extra.rtol)
+    told.notes += saved
+    show(told, output)
+    return agrees
+
+
+def show_lines(text: str, options: OutputOptions) -> None:
+    """Write lines as they are, such as numbers for another program."""
+    from polhode.io.writing import DASH, write_bytes
+
+    if options.output is None or options.output == DASH:
+        print(text)
+    else:
+        write_bytes(options.output, f"{text}\n".encode())
+
+
+def show(report: Report, options: OutputOptions) -> None:
+    """Write a report in the form that was asked for, or that the name of the file has."""
+    from rich.console import Console
+
+    from polhode.io.writing import DASH, write_bytes
+
+    path = options.output if options.output != DASH else None
+    by_name = "json" if path is not None and path.suffix.lower() == ".json" else "table"
+    form = options.form or by_name
+    if path is None:
+        _write(report, form, Console(highlight=False))
+    else:
+        text = StringIO()
+        _write(report, form, Console(file=text, highlight=False, color_system=None))
+        write_bytes(path, text.getvalue().encode(errors="backslashreplace"))
+
+
+def _write(report: Report, form: str, console: Console) -> None:
+    if form == "json":
+        print(report.as_json(), file=console.file)
+    else:
+        report.print(console)

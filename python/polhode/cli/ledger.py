@@ -8,20 +8,20 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from polhode._extras import require
-from polhode._rounding import with_sigma
-from polhode.assembly.keys import meant
+from polhode._format import with_sigma
+from polhode._optional import require
+from polhode.assembly.tables import meant
+from polhode.cli.files import STDIN, shown
 from polhode.cli.layout import ROUNDING, Cell, Column, Field, Report, Table
-from polhode.cli.source import STDIN, shown
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.files.picture import save_picture
-from polhode.uncertainty._rollup import NUMBERS
-from polhode.uncertainty._table import table_of_text
-from polhode.uncertainty.ledger import ledger
+from polhode.io.writing import save_picture
+from polhode.uncertainty.ledgers import ledger
+from polhode.uncertainty.ledgers.rollup import NUMBERS
+from polhode.uncertainty.ledgers.table import table_of_text
 
 if TYPE_CHECKING:
     from polhode.cli.options import LedgerOptions
-    from polhode.uncertainty.ledger import Ledger, Part, Shares
+    from polhode.uncertainty.ledgers import Ledger, Part, Shares
 
 __all__ = ["draw_ledger", "ledger_report", "node_row", "tensor_row"]
 

@@ -11,21 +11,19 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from polhode._reducing import Moments, Order
 from polhode.ensembles.fingerprint import fingerprint
-from polhode.ensembles.reducing import State
+from polhode.ensembles.reduce import BLOCK, State
 from polhode.ensembles.stores import check_same, header
-from polhode.ensembles.tree import BLOCK
 from polhode.errors import FileFormatError
-from polhode.files.writing import writing
-from polhode.reductions import Kept
+from polhode.io.writing import writing
+from polhode.reductions import Kept, Moments, Order
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from pathlib import Path
 
     from polhode.ensembles.plan import Plan
-    from polhode.ensembles.tree import Tree
+    from polhode.ensembles.reduce import Tree
     from polhode.reductions import Reduction
 
 __all__ = ["Checkpoint"]

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 import numpy as np
 
 from polhode import _core
-from polhode.ensembles.layout import short_name
-from polhode.ensembles.plan import is_each_alone
+from polhode.ensembles.plan import is_each_alone, short_name
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from polhode.ensembles.plan import Inputs, Plan
-    from polhode.trajectory import Trajectory
+    from polhode.motion.trajectory import Trajectory
 
     Floats = NDArray[np.float64]
     Rows = NDArray[np.intp]

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import numpy as np
 
-from polhode._extras import require
+from polhode._optional import require
 from polhode.ensembles.fingerprint import build, fingerprint
-from polhode.ensembles.layout import coordinates, layout
+from polhode.ensembles.plan import coordinates, layout
 from polhode.errors import FileFormatError
-from polhode.files.writing import write_bytes, writing
+from polhode.io.writing import write_bytes, writing
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

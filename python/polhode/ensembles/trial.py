@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from polhode.ensembles.plan import is_each_alone
-from polhode.ensembles.recipe import draws
+from polhode.ensembles.plan import draws, is_each_alone
 from polhode.ensembles.running import ROW, admitted, output
 from polhode.errors import IntegrationError, PolhodeError
 
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from polhode.ensembles.plan import Plan
-    from polhode.trajectory import Trajectory
+    from polhode.motion.trajectory import Trajectory
 
     Floats = NDArray[np.float64]
     Rows = NDArray[np.intp]

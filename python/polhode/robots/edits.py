@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polhode.files.xml_source import Edit, Element, set_attribute, set_text
+from polhode.io.xml_source import Edit, Element, set_attribute, set_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -12,7 +12,7 @@ import numpy as np
 from polhode import euler_angles
 from polhode._core import rotate
 from polhode.errors import FileFormatError
-from polhode.files.xml_source import Edit, Element, blanks_of
+from polhode.io.xml_source import Edit, Element, blanks_of
 from polhode.robots.edits import attribute, first_child, indented, number_text
 from polhode.robots.model import WORLD, Inertial, Joint, Link, Place, Shape, numbers, scale
 

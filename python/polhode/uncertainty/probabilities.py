@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
+from polhode._format import short
 from polhode._hints import check_kind
-from polhode._repr import short
-from polhode._tangents import changes_in_principal_axes
-from polhode.uncertainty.motions import each_motion
+from polhode.uncertainty.motion import each_motion
+from polhode.uncertainty.variables import changes_in_principal_axes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
