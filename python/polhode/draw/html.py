@@ -28,7 +28,7 @@ __all__ = [
     "Shown",
     "body_html",
     "ellipsoid_svg",
-    "repr_html",
+    "motion_html",
     "show",
 ]
 
@@ -227,27 +227,8 @@ class Shown:
 
 
 @with_hints
-def show(self: Trajectory, *, height: int = _HEIGHT, **options: Any) -> Shown:
-    """Show the motion of one body as an interactive page: in a notebook below the cell, else in the browser.
-
-    Parameters
-    ----------
-    height : int
-        Of the frame in a notebook, in pixels.
-    **options
-        `shape`, `duration`, `title` and `time_label`, see :func:`polhode.animation.animate`.
-
-    Returns
-    -------
-    Shown
-        Outside a notebook its ``path`` is the page, in the folder for temporary files.
-
-    Examples
-    --------
-    >>> from polhode import solids
-    >>> motion = solids.box((3, 2, 1), mass=1.0).simulate([0.0, 20.0], omega=(0.01, 3, 0))
-    >>> motion.show(title="The tennis racket")  # doctest: +SKIP
-    """
+def show(self: Trajectory, *, height: int, **options: Any) -> Shown:
+    """Do what :meth:`polhode.Trajectory.show` says."""
     from polhode.animation import page_of
 
     if isinstance(height, bool) or not isinstance(height, int) or height < _LEAST:
@@ -270,7 +251,7 @@ def show(self: Trajectory, *, height: int = _HEIGHT, **options: Any) -> Shown:
     return Shown(page, height, path)
 
 
-def repr_html(self: Trajectory) -> str:
+def motion_html(self: Trajectory) -> str:
     """Show a motion at the end of a notebook's cell: ω over time as a drawing, and the page below it."""
     from polhode.animation import page_of
     from polhode.draw.pivot import top_of

@@ -33,14 +33,14 @@ __all__ = [
     "PeriodsSigma",
     "StateLinear",
     "StateSigma",
-    "covariance",
     "each_motion",
     "periods_sigma",
     "runs_from_zero",
-    "sigma",
     "spin_covariance",
     "start_from_periods",
+    "state_covariance",
     "state_linear",
+    "state_sigma",
 ]
 
 
@@ -113,23 +113,8 @@ class StateSigma(_StateSigma):
         return short(self)
 
 
-def covariance(self: Trajectory) -> Floats | None:
-    """Give the covariance of (δ, ω) at every time, shape (..., T, 6, 6); None where nothing is uncertain.
-
-    δ is a small rotation from the attitude, ``R → R exp(δ×)``, components in the body frame, in radians. It
-    comes from the covariance of the body, and from `omega` and `attitude` at the start if they were given as
-    `Uncertain`. It is computed to first order, by the derivatives of :meth:`sensitivity`, with all
-    correlations.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from polhode import Uncertain, solids
-    >>> brick = solids.box(Uncertain((1, 2, 3), sigma=0.001), mass=1.0)
-    >>> run = brick.simulate([0, 10], omega=Uncertain((0.1, 0.2, 2.0), sigma=0.001))
-    >>> run.covariance.shape, run.sigma.omega[0]
-    ((2, 6, 6), array([0.001, 0.001, 0.001]))
-    """
+def state_covariance(self: Trajectory) -> Floats | None:
+    """Compute what :attr:`polhode.Trajectory.covariance` holds."""
     forms, _ = _forms(self)
     if forms is None:
         return None
@@ -138,7 +123,7 @@ def covariance(self: Trajectory) -> Floats | None:
     return found
 
 
-def sigma(self: Trajectory) -> StateSigma | None:
+def state_sigma(self: Trajectory) -> StateSigma | None:
     """Give standard deviations of attitude and angular velocity, shape (..., T, 3) each, or None."""
     found = self.covariance
     if found is None:
