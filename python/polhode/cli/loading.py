@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from polhode import RigidBody, Uncertain
-    from polhode.cli.molecule import Atoms
+    from polhode.cli.atoms import Atoms
     from polhode.cli.options import BodyOptions, LengthUnit
     from polhode.io.loaded import Loaded
     from polhode.io.mesh import Mesh
@@ -281,7 +281,7 @@ def _amount(text: str | None, si: str, option: str, unit: str | None) -> float |
 
 
 def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
-    from polhode.cli.molecule import atoms_of
+    from polhode.cli.atoms import atoms_of
     from polhode.io.body import check_molecule_options, molecule_isotopes
 
     check_molecule_options(

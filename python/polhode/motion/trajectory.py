@@ -929,10 +929,9 @@ class Trajectory(metaclass=Hinting):
             into, of = (np.broadcast_to(one, off.shape)[jumps][0].tolist() for one in (now, was))
             raise ValueError(
                 f"load: the total angular momentum would jump at t = {float(start[0])!r}: what the body "
-                f"carries along, wheels, rotors and slugs, has {of} now and {into} under this load. Wheels of "
-                "the same name keep their state: add to the load of the motion, load=motion.load + other, "
-                "name "
-                "wheels as before, and give new ones no rate; or begin another motion with simulate"
+                f"carries along, wheels, rotors and slugs, has {of} now and {into} under this load. Wheels "
+                "of the same name keep their state: add to the load of the motion, load=motion.load + other, "
+                "name wheels as before, and give new ones no rate; or begin another motion with simulate"
             )
 
     def _rotor_inside(self) -> tuple[Floats, Floats]:
