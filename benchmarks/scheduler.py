@@ -29,7 +29,7 @@ class Empty:
 
 
 def flood(client: Any, chunks: int, size: int) -> None:
-    """Tell what so many chunks cost."""
+    """Return what so many chunks cost."""
     plan = ensemble(
         RigidBody.from_principal(1.0, (1, 2, 2.5)), [0.0], (0, 0, 1), n=chunks * BLOCK, seed=1
     ).plan

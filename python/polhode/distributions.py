@@ -276,7 +276,7 @@ def made(function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Made:
 
 
 def _own(part: Any) -> Any:
-    """Give an argument, an array as one that nobody changes."""
+    """Return an argument, an array as one that nobody changes."""
     if not isinstance(part, np.ndarray):
         return part
     copy = part.copy()
@@ -285,7 +285,7 @@ def _own(part: Any) -> Any:
 
 
 def _fixed(value: Any, name: str) -> Floats:
-    """Give an array of finite numbers that stays as it is."""
+    """Return an array of finite numbers that stays as it is."""
     array = _core.real_numbers(value, name)
     wrong = ~np.isfinite(array)
     if wrong.any():
@@ -323,7 +323,7 @@ class Source(NamedTuple):
 
 
 def source(seed: int, name: str) -> Source:
-    """Give the source of an argument's numbers.
+    """Return the source of an argument's numbers.
 
     Parameters
     ----------
@@ -412,7 +412,7 @@ class Distribution(ABC):
 
 
 def given_name(name: str) -> str:
-    """Tell a name that was given from the place of an argument."""
+    """Describe a name that was given from the place of an argument."""
     return f"name:{name}"
 
 
@@ -596,7 +596,7 @@ class Made:
     kwargs: dict[str, Any] = field(default_factory=dict)
 
     def parts(self) -> dict[str, Any]:
-        """Give the arguments by position or name, names in the order of the alphabet."""
+        """Return the arguments by position or name, names in the order of the alphabet."""
         return {str(place): part for place, part in enumerate(self.args)} | dict(sorted(self.kwargs.items()))
 
     def __repr__(self) -> str:
@@ -613,7 +613,7 @@ def _shuffled(source: Source, size: int) -> NDArray[np.int64]:
 
 
 def _counter(member: int) -> NDArray[np.uint64]:
-    """Give where a member's own generator begins; counters of the core end in 0."""
+    """Return where a member's own generator begins; counters of the core end in 0."""
     return np.array([0, 0, member, 1], dtype=np.uint64)
 
 

@@ -78,7 +78,7 @@ class Elements(NamedTuple):
     anomaly: Any
 
     def in_degrees(self) -> Elements:
-        """Give the elements with the four angles in degrees."""
+        """Return the elements with the four angles in degrees."""
         angles = ("inclination", "node", "argument", "anomaly")
         return self._replace(**{name: np.rad2deg(getattr(self, name)) for name in angles})
 
@@ -117,10 +117,10 @@ class Path(ABC):
 
     @abstractmethod
     def at(self, t: ArrayLike) -> OrbitState:
-        """Give position and velocity at times of any shape."""
+        """Return position and velocity at times of any shape."""
 
     def frame(self, t: ArrayLike) -> LocalFrame:
-        """Give the local frame of the orbit and its angular velocity at times of any shape.
+        """Return the local frame of the orbit and its angular velocity at times of any shape.
 
         Parameters
         ----------
@@ -136,7 +136,7 @@ class Path(ABC):
         return LocalFrame(*(one.reshape(*one.shape[:-2], *times.shape, one.shape[-1]) for one in found))
 
     def dipole_field(self, strength: ArrayLike) -> DipoleField:
-        """Give the magnetic field, along the orbit, of a dipole at the attractor.
+        """Return the magnetic field, along the orbit, of a dipole at the attractor.
 
         Parameters
         ----------
@@ -181,7 +181,7 @@ class SampledOrbit(Path):
         return float(self.times[0])
 
     def at(self, t: ArrayLike) -> OrbitState:
-        """Give position and velocity at times of any shape.
+        """Return position and velocity at times of any shape.
 
         Parameters
         ----------
@@ -212,7 +212,7 @@ class DipoleField:
     strength: Floats
 
     def at(self, t: ArrayLike) -> Floats:
-        """Give B at times of any shape, components in space: ``3 (M·r) r/r**5 - M/r**3``.
+        """Return B at times of any shape, components in space: ``3 (M·r) r/r**5 - M/r**3``.
 
         Parameters
         ----------
@@ -234,7 +234,7 @@ def kept(numbers: Floats) -> Any:
 
 
 def reshaped(states: tuple[Floats, Floats], times: tuple[int, ...]) -> OrbitState:
-    """Give states at a list of times those at times of a shape."""
+    """Return states at a list of times those at times of a shape."""
     return OrbitState(*(one.reshape(*one.shape[:-2], *times, 3) for one in states))
 
 
@@ -344,7 +344,7 @@ class Orbit(Path):
         return Elements(*(np.asarray(one)[()] for one in found))
 
     def at(self, t: ArrayLike) -> OrbitState:
-        """Give position and velocity at times of any shape.
+        """Return position and velocity at times of any shape.
 
         Parameters
         ----------

@@ -231,7 +231,7 @@ class PrincipalAxes:
         return one_line(self, {"moments": self.moments, "axes": self.axes, "top": self.top})
 
     def __iter__(self) -> Iterator[Floats]:
-        """Give moments and axes, in this order."""
+        """Return moments and axes, in this order."""
         return iter((self.moments, self.axes))
 
     # A method that stands in a file of its own.
@@ -314,7 +314,7 @@ class PrincipalAxes:
         return PrincipalAxes(self.moments, axes, self.top_rtol, self.sigma)
 
     def derivative(self, tangent: ArrayLike, rtol: float = 1e-12) -> PrincipalDerivative:
-        """Give the derivatives of moments and axes for a small change of the tensor.
+        """Return the derivatives of moments and axes for a small change of the tensor.
 
         Parameters
         ----------

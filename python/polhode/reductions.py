@@ -58,7 +58,7 @@ class Reduction(ABC):
     """Base class of the reductions, which the functions of this module make."""
 
     def values(self, trajectory: Trajectory) -> Floats:
-        """Give the numbers of the members of a trajectory, shape (members, ...)."""
+        """Return the numbers of the members of a trajectory, shape (members, ...)."""
         of: Of = self.__dict__["of"]
         try:
             found = getattr(trajectory, of) if isinstance(of, str) else of(trajectory)
@@ -82,7 +82,7 @@ class Reduction(ABC):
 
     @abstractmethod
     def begun(self, values: Floats, n: int) -> Any:
-        """Give the state of a block with these values, of an ensemble with n members."""
+        """Return the state of a block with these values, of an ensemble with n members."""
 
     @abstractmethod
     def merged(self, one: Any, other: Any, n: int) -> Any:
@@ -90,7 +90,7 @@ class Reduction(ABC):
 
     @abstractmethod
     def finished(self, state: Any, left_out: int) -> Any:
-        """Give the result. If there was no member, the state is None."""
+        """Return the result. If there was no member, the state is None."""
 
     def __repr__(self) -> str:
         parts = {name: value for name, value in self.__dict__.items() if name != "of"}
@@ -505,7 +505,7 @@ class Moments(NamedTuple):
 
 
 def moments(values: Floats, *, products: bool) -> Moments:
-    """Give the moments of rows, shape (n, k).
+    """Return the moments of rows, shape (n, k).
 
     Infinite values have an infinite mean, those of both signs none; no products with them are numbers.
     """
@@ -590,7 +590,7 @@ def _coin(row: Floats, weight: int) -> int:
 
 
 def level_of(order: Order, parts: Floats) -> Floats:
-    """Give the numbers below which these parts of all lie, shape (q, k).
+    """Return the numbers below which these parts of all lie, shape (q, k).
 
     Between the two nearest, where every number is there; else one of them.
     """

@@ -261,7 +261,7 @@ class Provenance:
         return one_line(self, told)
 
     def __str__(self) -> str:
-        """Tell it in one line, for one body."""
+        """Describe the provenance of one body in one line."""
         made = self.source if self.elements == 1 else f"{self.source} of {self.elements} elements"
         if self.source.startswith("atoms, "):
             made = f"{self.elements} {self.source}" if self.elements > 1 else f"1 atom{self.source[5:]}"

@@ -43,7 +43,7 @@ METRES: Final = MappingProxyType(
 
 
 def metres_per(unit: str) -> float:
-    """Give the number of metres in one `unit`.
+    """Return the number of metres in one `unit`.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ class _Typed(NamedTuple):
 
 
 def has_unit(text: str) -> bool:
-    """Tell whether the number has a unit."""
+    """Return whether the number has a unit."""
     typed = _typed(text)
     return typed is not None and typed.unit is not None
 
@@ -339,7 +339,7 @@ def _converted(text: str, typed: _Typed, unit: str, option: str) -> float:
 
 
 def _is_held(number: Decimal) -> bool:
-    """Tell whether a float can hold it: neither infinite, nor zero unless it is."""
+    """Return whether a float can hold it: neither infinite, nor zero unless it is."""
     held = float(number)
     return math.isfinite(held) and (held != 0.0 or number == 0)
 
@@ -353,7 +353,7 @@ def _sigma_examples(unit: str) -> str:
 
 
 def _factor(text: str, unit: str, option: str) -> Decimal:
-    """Give the size of the unit that was typed, in `unit`."""
+    """Return the size of the unit that was typed, in `unit`."""
     pint = require("pint", extra="units", purpose=f"{option}: a unit ({text})")
     plain = _HYPHEN.sub("*", text.translate(_SIGNS))
     if _UNIT.fullmatch(plain) is None:

@@ -46,7 +46,7 @@ _ARGUMENT: Final = re.compile(r"\b(weld|closure|orient|union|repair|index_base)=
 
 
 def kind_of(table: Mapping[str, Any], where: str) -> str:
-    """Tell what a part is."""
+    """Return what a part is."""
     kinds = [name for name in KINDS if name in table]
     if len(kinds) == 1:
         return kinds[0]
@@ -240,12 +240,12 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
 
 
 def _has_materials(loaded: Loaded) -> bool:
-    """Tell whether a file says the density of every solid in it."""
+    """Return whether a file says the density of every solid in it."""
     return loaded.cad is not None and all(part.density is not None for part in loaded.cad.parts)
 
 
 def _unit_of(loaded: Loaded, table: Mapping[str, Any], scope: Scope) -> str:
-    """Give the unit of a file: its own, else the one that is stated for its part or for the assembly."""
+    """Return the unit of a file: its own, else the one that is stated for its part or for the assembly."""
     unit = loaded.length(table.get("length_unit")) or scope.length_unit
     if unit is None:
         name = loaded.path.name

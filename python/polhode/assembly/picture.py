@@ -66,7 +66,7 @@ def draw(assembly: Assembly, ax: Axes3D | None = None, *, length_label: str | No
 
 
 def _surface(part: Member, most: int) -> tuple[Floats, NDArray[np.int64]]:
-    """Give the triangles of a part where it stands."""
+    """Return the triangles of a part where it stands."""
     if part.file is not None and _is_mesh(part.file):
         mesh = load(part.file).mesh
         vertices, faces, _ = joined(mesh.vertices * part.metres, mesh.faces, most)
@@ -77,5 +77,5 @@ def _surface(part: Member, most: int) -> tuple[Floats, NDArray[np.int64]]:
 
 
 def _is_mesh(file: Path) -> bool:
-    """Tell whether a file holds triangles: no atoms, no solids of CAD, no numbers alone."""
+    """Return whether a file holds triangles: no atoms, no solids of CAD, no numbers alone."""
     return not is_molecule(file) and inner_suffix(file) not in (*SAVED, *CAD_SUFFIXES)

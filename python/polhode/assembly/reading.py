@@ -272,7 +272,7 @@ def _assembled(whole: _Unit) -> Assembly:
 
 
 def _walk(whole: _Unit) -> Iterator[tuple[str, str, Place, _Unit]]:
-    """Give every part and group with its full name and that of what it is in, the outer ones first."""
+    """Return every part and group with its full name and that of what it is in, the outer ones first."""
     root, names = whole.name, {inner.name for _, inner in whole.children}
     while root in names:  # a part may have the name of the whole, but not its place in the tree
         root = f"{root} (whole)"

@@ -105,7 +105,7 @@ class Assembly:
         return RigidBody.stack([part.body for part in self.parts]).combined()
 
     def __getitem__(self, name: str) -> Part:
-        """Give a node of the tree by its names with / between them, as ``"arm/motor"``."""
+        """Return a node of the tree by its names with / between them, as ``"arm/motor"``."""
         if name not in self.ledger:
             raise PolhodeError(f"there is no part {name!r} in {self.name!r}; {meant(name, self.ledger.ids)}")
         return self.ledger[name]

@@ -70,7 +70,7 @@ def meant(name: str, known: Collection[str]) -> str:
 
 
 def text_of(table: Mapping[str, Any], key: str, where: str) -> str:
-    """Give a text; "" where it is absent."""
+    """Return a text; "" where it is absent."""
     value = table.get(key, "")
     if not isinstance(value, str) or not value.isprintable():
         raise PolhodeError(
@@ -103,7 +103,7 @@ class Scope:
         return metres_per(self.length_unit or "m")
 
     def within(self, name: str, length_unit: Any) -> Scope:
-        """Give the scope of a table inside this one."""
+        """Return the scope of a table inside this one."""
         where = f"{self.where}: {name}" if self.where else name
         if length_unit is None:
             return Scope(where, self.length_unit)
@@ -289,7 +289,7 @@ def _rotation(given: Any, key: str, scope: Scope) -> Floats:
 
 
 def _angles(given: Mapping[str, Any], unit: str, count: int, scope: Scope) -> list[tuple[float, float]]:
-    """Give cosines and sines; those of whole quarter turns in degrees are exact."""
+    """Return cosines and sines; those of whole quarter turns in degrees are exact."""
     angles = scope.numbers(unit, given[unit], "1", count=count)
     if unit == "radians":
         return [(float(np.cos(x)), float(np.sin(x))) for x in angles]

@@ -146,7 +146,7 @@ def spin(
     body: Body = AS_STORED,
     output: Output = SHOWN,
 ) -> int:
-    """Tell how a body moves, free, with wheels or as a top: mode, periods, stability; exact at any time.
+    """Compute the motion of a free body, a body with wheels, or a top: mode, periods, stability.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def flyby(
     body: Body = AS_STORED,
     output: Output = SHOWN,
 ) -> int:
-    """Tell what a planet's pull makes of the spin of a tumbling asteroid, from many clones with all phases.
+    """Simulate many copies of a tumbling asteroid, each with another rotation phase, past a planet.
 
     Parameters
     ----------

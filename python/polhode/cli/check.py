@@ -91,7 +91,7 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
 
 
 def _gathered(notes: Iterable[str]) -> list[str]:
-    """Tell in one line each of all meshes that were not found, and of all whose hulls were taken."""
+    """Describe in one line each of all meshes that were not found, and of all whose hulls were taken."""
     told: list[str] = []
     lost: list[str] = []
     hulls: list[str] = []
@@ -143,7 +143,7 @@ def _warnings(robot: robots.Robot, verdicts: list[robots.Verdict], failing: froz
 
 
 def _filling(options: CheckOptions) -> dict[str, float]:
-    """Give the density or the mass of links for which the file says none."""
+    """Return the density or the mass of links for which the file says none."""
     if options.density is not None and options.mass is not None:
         raise PolhodeError("--density and --mass: give one of them, not both")
     found: dict[str, float] = {}

@@ -56,7 +56,7 @@ class Components:
 
 
 def has_names(density: str | None) -> bool:
-    """Tell whether a density is given by component."""
+    """Return whether a density is given by component."""
     return density is not None and "=" in density
 
 
@@ -95,7 +95,7 @@ def overlaps_beside(loaded: Loaded, solid: MeshSolid, options: BodyOptions, scal
 
 
 def weighed(loaded: Loaded, solid: MeshSolid, options: BodyOptions, scale: float, weld: float) -> MeshSolid:
-    """Give each component its own density."""
+    """Assign each component its own density."""
     if loaded.cad is not None:
         raise PolhodeError(
             "--density: components of CAD have the densities of their materials; give one number for "

@@ -151,7 +151,7 @@ def _check_spread(options: EnsembleOptions) -> None:
 def _arguments(
     file: Path | None, options: EnsembleOptions, body: BodyOptions
 ) -> tuple[dict[str, Any], list[str]]:
-    """Give what `polhode.ensemble` takes of the body, the start and the load; and notes."""
+    """Return what `polhode.ensemble` takes of the body, the start and the load; and notes."""
     notes: list[str] = []
     if options.moments:
         given, one = _of_moments(options, body)
@@ -213,7 +213,7 @@ def _attitude(words: tuple[str, ...]) -> Any:
 
 
 def _option(place: str) -> str:
-    """Give the option of what is drawn."""
+    """Return the option of what is drawn."""
     names = {"body.0": "mass", "body.1": "moments", "body.center_of_mass": "center"}
     return names.get(place, place.partition(".")[0])
 
@@ -317,7 +317,7 @@ def saved(many: Ensemble, path: Path) -> dict[str, int]:
 
 
 def _parts(path: Path) -> Path:
-    """Give the folder of the chunks of a file, until all are there."""
+    """Return the folder of the chunks of a file, until all are there."""
     return path.with_name(f"{path.name}.parts")
 
 
@@ -374,7 +374,7 @@ SHARES: Final = (0.05, 0.5, 0.95)
 
 
 def numbers(motion: Any) -> Any:
-    """Give the numbers of members at the end, shape (members, 6).
+    """Return the numbers of members at the end, shape (members, 6).
 
     Parameters
     ----------
@@ -393,13 +393,13 @@ def numbers(motion: Any) -> Any:
 
 
 def kept(*, has_modes: bool) -> dict[str, Reduction]:
-    """Give the reductions; modes only of members that are free."""
+    """Return the reductions; modes only of members that are free."""
     both = {"spread": reductions.covariance(numbers), "shares": reductions.quantiles(SHARES, numbers)}
     return both | ({"modes": reductions.mode_changes()} if has_modes else {})
 
 
 def numbers_table(found: dict[str, Any]) -> Table:
-    """Tell the spread of each number."""
+    """Return the spread of each number."""
     columns = (
         Column("name", "number"),
         Column("mean", "mean"),
@@ -424,7 +424,7 @@ def numbers_table(found: dict[str, Any]) -> Table:
 
 
 def modes_table(found: dict[str, Any]) -> Table:
-    """Tell how many members rotate in which mode, which free ones keep."""
+    """Return how many members rotate in which mode, which free ones keep."""
     modes = found["modes"]
     shares = modes.table.sum(axis=0) / modes.table.sum()
     rows = [
@@ -480,7 +480,7 @@ def drawn_number(text: str, unit: str, option: str) -> Any:
 
 
 def middle_of(numbers: Any) -> Any:
-    """Give the numbers themselves, or what their distribution is about."""
+    """Return the numbers themselves, or what their distribution is about."""
     if isinstance(numbers, distributions.Normal):
         return numbers.mean
     if isinstance(numbers, distributions.Uniform):
@@ -527,7 +527,7 @@ def _bounds(part: str) -> list[str]:
 
 @contextmanager
 def client_at(address: str | None) -> Iterator[Any]:
-    """Give a client of the scheduler at an address; None without one.
+    """Return a client of the scheduler at an address; None without one.
 
     Parameters
     ----------

@@ -63,7 +63,7 @@ def _begin() -> bytes:
 
 @contextmanager
 def as_file(file: Path) -> Iterator[Path]:
-    """Give the file itself; standard input as a file whose suffix tells its content.
+    """Return the file itself; standard input as a file whose suffix tells its content.
 
     Parameters
     ----------

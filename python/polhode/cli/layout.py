@@ -429,7 +429,7 @@ def _object(document: dict[str, Any], key: str) -> dict[str, Any]:
 
 
 def _beside_sigma(ours: Any, theirs: Any, sigma: Any, other: Any) -> dict[str, Any]:
-    """Give the component that differs by the most of its sigmas, where one of the two reports has sigmas."""
+    """Return component that differs by the most of its sigmas, where one of the two reports has sigmas."""
     if sigma is None and other is None:
         return {}
     try:
@@ -475,7 +475,7 @@ def _leaves(value: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]
 
 
 def _shown(value: Any) -> Any:
-    """Give what was expected as it is, or as text where it is no array."""
+    """Return what was expected as it is, or as text where it is no array."""
     try:
         np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):

@@ -87,7 +87,7 @@ def draw_ledger(made: Ledger, options: LedgerOptions) -> None:
 
 
 def _table(file: Path) -> Any:
-    """Give the file, or the table that comes on standard input."""
+    """Return the file, or the table that comes on standard input."""
     if file != STDIN:
         return file
     data = sys.stdin.buffer.read()
@@ -107,7 +107,7 @@ def _top(made: Ledger, options: LedgerOptions) -> Part:
 
 
 def node_row(node: Part, top: Part) -> dict[str, Any]:
-    """Tell mass and centre of a node."""
+    """Describe mass and centre of a node."""
     row = {
         "id": _named(node, top),
         "parent": node.parent.id if node.parent is not None else None,
@@ -123,7 +123,7 @@ def node_row(node: Part, top: Part) -> dict[str, Any]:
 
 
 def tensor_row(node: Part, top: Part) -> dict[str, Any]:
-    """Tell the tensor of a node."""
+    """Return the tensor of a node."""
     return {"id": _named(node, top)} | {name: _cell(node, name) for name in NUMBERS[4:]}
 
 
@@ -139,7 +139,7 @@ def _cell(node: Part, name: str) -> Cell:
 
 
 def _found_shares(made: Ledger, top: Part, options: LedgerOptions) -> Shares | None:
-    """Give who contributes; None where nothing that the number depends on is uncertain."""
+    """Return who contributes; None where nothing that the number depends on is uncertain."""
     try:
         return made.variance_shares(options.of, top.id)
     except PolhodeError:

@@ -197,7 +197,7 @@ def _of_unit(loaded: Loaded, asked: str | None) -> list[str]:
 
 
 def _shape(loaded: Loaded, weld: float, scale: float) -> Mesh | None:
-    """Give the mesh as it is drawn, in the unit of the body; solids of CAD have none."""
+    """Return the mesh as it is drawn, in the unit of the body; solids of CAD have none."""
     if loaded.cad is not None:
         return None
     mesh = weld_within(loaded.mesh, weld) if weld != 0.0 else loaded.mesh

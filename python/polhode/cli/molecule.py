@@ -319,7 +319,7 @@ def _moments(body: RigidBody, rtol: float | None = None) -> _Moments:
 
 
 def straightened(body: RigidBody, rtol: float | None = None) -> list[str]:
-    """Give a note where a molecule counts as linear although the last digits of its file bend it."""
+    """Return a note where a molecule counts as linear although the last digits of its file bend it."""
     least = body.principal_moments[0]
     if least == 0.0 or body.principal.classify(rtol) != "linear":
         return []
@@ -380,7 +380,7 @@ def rotation_fields(loaded: LoadedBody, rtol: float | None) -> list[Field]:
 
 
 def isotopologue_row(name: str, body: RigidBody, rtol: float | None) -> dict[str, Any]:
-    """Tell of one isotopologue, as the fields above."""
+    """Return of one isotopologue, as the fields above."""
     moments = _moments(body, rtol)
     values = moments.values
     constants = rotational_constants(values, "MHz")

@@ -306,7 +306,7 @@ class FreeKind:
         self._motion = motion
 
     def fields(self, rate: float, rate_unit: str) -> list[Field]:
-        """Tell the mode, the periods and the angles from L."""
+        """Return the mode, the periods and the angles from L."""
         motion = self._motion
         angles, periods = np.rad2deg(motion.nutation), motion.periods
         of_angles = of_shape(motion)
@@ -464,7 +464,7 @@ class FreeKind:
         ]
 
     def constants(self, moment_unit: str) -> list[Field]:
-        """Give what is conserved: the energy and the angular momentum."""
+        """Return what is conserved: the energy and the angular momentum."""
         motion, unit = self._motion, f"{moment_unit}/s"
         momentum = motion.angular_momentum
         size = float(lengths(momentum))
@@ -475,7 +475,7 @@ class FreeKind:
         ]
 
     def stability(self) -> list[Field]:
-        """Tell whether steady spins with this angular momentum are stable."""
+        """Return whether steady spins with this angular momentum are stable."""
         squares = self._motion.stability
         words = ["stable" if x > 0 else "unstable" if x < 0 else "neutral" for x in squares]
         words = ["undefined" if np.isnan(x) else word for x, word in zip(squares, words, strict=True)]
@@ -487,7 +487,7 @@ class FreeKind:
         ]
 
     def drifts(self, trajectory: Trajectory) -> list[Field]:
-        """Tell how well the trajectory keeps what is conserved."""
+        """Describe how well the trajectory keeps what is conserved."""
         energy = trajectory.kinetic_energy().total
         momentum = trajectory.angular_momentum().total
         hint = "largest, relative; the vector in space"
@@ -509,7 +509,7 @@ class TopKind:
         self._motion = motion
 
     def fields(self, rate: float, rate_unit: str) -> list[Field]:
-        """Tell how the axis nods and goes round."""
+        """Describe how the axis nods and goes round."""
         motion = self._motion
         limits = np.rad2deg(motion.nutation_limits)
         return [
@@ -540,7 +540,7 @@ class TopKind:
         return [*period_fields("turn_period", "one turn", 2.0 * np.pi / speed, "about the axis", {}), *fields]
 
     def constants(self, moment_unit: str) -> list[Field]:
-        """Give what is conserved: the energy and the angular momentum about the vertical."""
+        """Return what is conserved: the energy and the angular momentum about the vertical."""
         start = self._motion.at([0.0])
         kinetic, potential = self._energies(start)
         upright = start.angular_momentum().total[0, 2]
@@ -551,12 +551,12 @@ class TopKind:
         ]
 
     def stability(self) -> list[Field]:
-        """Tell whether the top would sleep upright with this spin about its axis."""
+        """Return whether the top would sleep upright with this spin about its axis."""
         is_stable = abs(self._motion.axial_spin) >= self._motion.sleeping_limit
         return [Field("stability", "upright", "stable" if is_stable else "unstable")]
 
     def drifts(self, trajectory: Trajectory) -> list[Field]:
-        """Tell how well the trajectory keeps what is conserved."""
+        """Describe how well the trajectory keeps what is conserved."""
         kinetic, potential = self._energies(trajectory)
         momentum = trajectory.angular_momentum().total
         energy = drift(kinetic + potential, kinetic + np.abs(potential))
@@ -573,7 +573,7 @@ class TopKind:
 
 
 def period_fields(key: str, label: str, seconds: float, hint: str, told: Told) -> list[Field]:
-    """Give a period in seconds, and a long one in days too."""
+    """Return a period in seconds, and a long one in days too."""
     fields = [Field(key, label, seconds, "s", hint, **told)]
     if np.isfinite(seconds) and seconds >= 3600.0:
         if "sigma" in told:
@@ -672,7 +672,7 @@ class GyrostatKind:
         self._rate, self._rate_unit = 1.0, "rad/s"
 
     def fields(self, rate: float, rate_unit: str) -> list[Field]:
-        """Tell how L moves in the body, and the body about L."""
+        """Describe how L moves in the body, and the body about L."""
         self._rate, self._rate_unit = rate, rate_unit
         motion = self._motion
         mode = str(motion.mode)
@@ -711,7 +711,7 @@ class GyrostatKind:
         return [*turn, Field("wobble_period", "wobble", None, hint=why, cells=["none"])]
 
     def constants(self, moment_unit: str) -> list[Field]:
-        """Give what is conserved: the energy, the angular momentum, and what of it is inside."""
+        """Return what is conserved: the energy, the angular momentum, and what of it is inside."""
         motion, unit = self._motion, f"{moment_unit}/s"
         momentum, inside = motion.angular_momentum, motion.rotor
         size, held = float(lengths(momentum)), float(lengths(inside))
@@ -726,7 +726,7 @@ class GyrostatKind:
         ]
 
     def stability(self) -> list[Field | Table]:
-        """Give the steady rotations with this length of L."""
+        """Return the steady rotations with this length of L."""
         motion = self._motion
         if not float(lengths(motion.angular_momentum)) > 0.0:
             return [Field("stability", "steady rotations", "none with an axis of its own: L is zero")]
@@ -760,7 +760,7 @@ class GyrostatKind:
         ]
 
     def drifts(self, trajectory: Trajectory) -> list[Field]:
-        """Tell how well the trajectory keeps what is conserved."""
+        """Describe how well the trajectory keeps what is conserved."""
         energy = trajectory.kinetic_energy().total
         momentum = trajectory.angular_momentum().total
         held = float(lengths(self._motion.rotor))
@@ -782,7 +782,7 @@ class GyrostatKind:
 
 
 def _cell(vector: Floats, form: str) -> Cell:
-    """Give a vector, and how a table shows it."""
+    """Return a vector, and how a table shows it."""
     numbers = _clean(vector)
     return Cell(" ".join(f"{x:{form}}" for x in numbers), numbers)
 
@@ -823,7 +823,7 @@ def of_shape(motion: FreeMotion) -> Callable[[str], Told]:
 
 
 def of_end(motion: FreeMotion | HeavyTop | GyrostatMotion, until: float, axes: Floats, rate: float) -> Told:
-    """Give it at the end."""
+    """Return the uncertain numbers at the end."""
     found = _end(motion, until)
     if found is None:
         return {}
@@ -851,7 +851,7 @@ def attitude_field(motion: FreeMotion | HeavyTop | GyrostatMotion, until: float)
 
 
 def _end(motion: FreeMotion | HeavyTop | GyrostatMotion, until: float) -> tuple[Floats, Any] | None:
-    """Give the covariance of attitude and angular velocity at the end, and what of it is linear."""
+    """Return the covariance of attitude and angular velocity at the end, and what of it is linear."""
     run = motion.at([0.0, until])
     if run.covariance is None or run.sigma is None:
         return None
@@ -860,7 +860,7 @@ def _end(motion: FreeMotion | HeavyTop | GyrostatMotion, until: float) -> tuple[
 
 
 def _along(axes: Floats, covariance: Floats) -> Floats:
-    """Give the standard deviations of components along axes, the columns."""
+    """Return the standard deviations of components along axes, the columns."""
     return np.sqrt(np.maximum(np.diagonal(axes.T @ covariance @ axes), 0.0))
 
 
@@ -882,7 +882,7 @@ def check_paths(paths: Sequence[Path]) -> None:
 
 
 def drawable(loaded: LoadedBody, options: BodyOptions) -> tuple[Part | None, str]:
-    """Give the mesh as it is drawn, if there is one, and a note where it is coarser."""
+    """Return the mesh as it is drawn, if there is one, and a note where it is coarser."""
     if loaded.shape is None:
         return None, ""
     vertices, faces, side = joined(loaded.shape.vertices, loaded.shape.faces, _MOST)
@@ -931,7 +931,7 @@ def save(
 
 
 def _between(samples: Trajectory) -> tuple[str, ...]:
-    """Give a note where the body turns so far between two times that the numbers do not show how."""
+    """Return a note where the body turns so far between two times that the numbers do not show how."""
     widest = float(turns(samples.t, samples.omega).max())
     if widest < np.pi:
         return ()

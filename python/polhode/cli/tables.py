@@ -61,7 +61,7 @@ class FileUnits:
         sigma: ArrayLike | None = None,
         linear: ArrayLike | None = None,
     ) -> list[Field]:
-        """Give powers of length and mass, and where the file has other units also in those.
+        """Return powers of length and mass, and where the file has other units also in those.
 
         Parameters
         ----------
@@ -217,14 +217,14 @@ class Told(TypedDict, total=False):
 
 
 def told(body: RigidBody, name: str) -> Told:
-    """Give a number of :class:`polhode.results.Sigma` with its flag."""
+    """Return a number of :class:`polhode.results.Sigma` with its flag."""
     if body.sigma is None:
         return {}
     return {"sigma": getattr(body.sigma, name), "linear": getattr(body.sigma.linear, name)}
 
 
 def squared(value: Floats, of_value: Told) -> Told:
-    """Give the sigma of the square of a number."""
+    """Return the sigma of the square of a number."""
     if not of_value:
         return {}
     sigma = np.asarray(of_value["sigma"])
@@ -241,7 +241,7 @@ def about_point(body: RigidBody, point: Floats) -> Told:
 
 
 def moments_slopes(body: RigidBody) -> Floats | None:
-    """Give what one sigma of each variable does to the principal moments, shape (k, 3).
+    """Return what one sigma of each variable does to the principal moments, shape (k, 3).
 
     Each moment is e·I e, and turning the axes e adds nothing to it at first. Sums of these cancel to
     rounding, those of a covariance to its root.

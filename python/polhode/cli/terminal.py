@@ -161,7 +161,7 @@ _LARGE_FILE: Final = 1 << 26
 
 @contextmanager
 def progress(what: str, *, is_long: bool = True) -> Iterator[Callable[[float], object] | None]:
-    """Give a function that takes the fraction done; None where no bar is drawn."""
+    """Return a function that takes the fraction done; None where no bar is drawn."""
     if not (is_long and sys.stderr.isatty()):
         yield None
         return
@@ -176,7 +176,7 @@ def progress(what: str, *, is_long: bool = True) -> Iterator[Callable[[float], o
 
 @contextmanager
 def reading_progress(file: Path) -> Iterator[Callable[[float], object] | None]:
-    """Tell how much of a large file is read."""
+    """Describe how much of a large file is read."""
     is_long = file.is_file() and file.stat().st_size >= _LARGE_FILE
     with progress(f"reading {file.name}", is_long=is_long) as tell:
         yield tell

@@ -74,7 +74,7 @@ def _apophis() -> Numbers:
 
 
 def _diatomic(masses: tuple[float, float], length: float) -> Callable[[], Numbers]:
-    """Give the rotational constant of two atoms at a distance in angstroms, in 1/cm."""
+    """Return the rotational constant of two atoms at a distance in angstroms, in 1/cm."""
 
     def compute() -> Numbers:
         body = RigidBody.from_particles(masses, [(0.0, 0.0, 0.0), (0.0, 0.0, length)])
@@ -260,13 +260,13 @@ def machine_fields() -> list[Field]:
 
 
 def as_text() -> str:
-    """Give what ``polhode --version --verbose`` prints."""
+    """Return what ``polhode --version --verbose`` prints."""
     fields = machine_fields()
     return "\n".join(f"{field.label:<16} {field.value!s}" for field in fields)
 
 
 def _libraries() -> dict[str, str]:
-    """Give the versions of those libraries that polhode names and that are there."""
+    """Return the versions of those libraries that polhode names and that are there."""
     try:
         needs = requires("polhode") or []
     except PackageNotFoundError:  # a source tree on the path
@@ -282,7 +282,7 @@ def _libraries() -> dict[str, str]:
 
 
 def _name(need: str) -> str:
-    """Give the distribution that a requirement names."""
+    """Return the distribution that a requirement names."""
     for stop in range(len(need)):
         if not (need[stop].isalnum() or need[stop] in "-_."):
             return need[:stop]

@@ -168,13 +168,13 @@ def _line(
 
 
 def _beyond(tip: Floats) -> Floats:
-    """Give the middle of a name beyond the tip of a line from the middle, within the drawing."""
+    """Return the middle of a name beyond the tip of a line from the middle, within the drawing."""
     at: Floats = tip[:2] * (1.0 + 9.0 / (float(np.hypot(*tip[:2])) or 1.0))
     return np.clip(at, -_EDGE, _EDGE)
 
 
 def _free_place(at: Floats, taken: list[Floats]) -> Floats:
-    """Give this place for a name, or one to its left or right where another name stands on it."""
+    """Return this place for a name, or one to its left or right where another name stands on it."""
     inward = -1.0 if at[0] > 0.0 else 1.0
     tried = [at + np.array([step * inward * _LETTER, 0.0]) for step in (0.0, 1.0, -1.0, 2.0)]
     return next((one for one in tried if all(np.abs(one - other).max() >= _LETTER for other in taken)), at)

@@ -38,7 +38,7 @@ class Part:
     _picks: tuple[tuple[list[int], Any], ...]
 
     def number(self, position: int, axes: int = 0) -> NDArray[np.float64]:
-        """Give an argument of that function, for this one of a stack.
+        """Return an argument of that function, for this one of a stack.
 
         Parameters
         ----------

@@ -47,7 +47,7 @@ class Pivot:
 
 
 def top_of(trajectory: Trajectory) -> HeavyTop | None:
-    """Give the top in closed form from the first state of a trajectory on; None where it is no heavy top."""
+    """Return top in closed form from the first state of a trajectory on; None where it is no heavy top."""
     if not trajectory.pivoted or repr(trajectory.load) != _GRAVITY:
         return None
     gravity = trajectory.force()[0] / trajectory.body.mass
@@ -58,7 +58,7 @@ def top_of(trajectory: Trajectory) -> HeavyTop | None:
 
 
 def path_of(motion: HeavyTop) -> str:
-    """Tell what the axis of a top draws: ``HeavyTop.path``, but ``steady`` where it nods by rounding alone.
+    """Return kind of path of a top's axis: ``HeavyTop.path``, but ``steady`` where it nods by rounding alone.
 
     180 degrees are not a float in radians: a top that hangs straight down with them is off by 1e-16, and what
     it draws has cusps of that size.

@@ -115,7 +115,7 @@ def fastest(motion: FreeMotion | HeavyTop | GyrostatMotion) -> float:
 
 
 def once_round(motion: GyrostatMotion) -> Floats:
-    """Give times in which ω of one gyrostat comes to every place in the body to which it ever comes."""
+    """Return times in which ω of one gyrostat comes to every place in the body to which it ever comes."""
     period = float(motion.period)
     if str(motion.mode) == "steady":
         return np.zeros(1)
@@ -219,7 +219,7 @@ def motion_times(
 
 
 def _ellipsoid(motion: FreeMotion | HeavyTop | GyrostatMotion) -> tuple[Floats, Floats]:
-    """Give moments and axes of the ellipsoid ω·Iω = 2T on which ω is, or near which."""
+    """Return moments and axes of the ellipsoid ω·Iω = 2T on which ω is, or near which."""
     if isinstance(motion, _core.GyrostatMotion):
         moments, axes = np.linalg.eigh(motion.gyrostat.inertia)
         return moments, axes
@@ -282,7 +282,7 @@ _FINEST: Final = np.array([1.0, 2.0, 5.0, 10.0])
 
 
 def pace(length: float, wished: float, least: float, time_unit: str) -> float:
-    """Give the seconds on the screen of a motion: its own, or those of slow or fast motion by a round number.
+    """Return seconds on the screen of a motion: its own, or those of slow or fast motion by a round number.
 
     Parameters
     ----------
@@ -485,7 +485,7 @@ def _pictures(
 
 
 def _judged(angle: float, where: str, way_out: str) -> list[str]:
-    """Give a note where the turn from one picture to the next is large; an error where it is too large."""
+    """Return a note where the turn from one picture to the next is large; an error where it is too large."""
     if angle >= np.pi:
         raise ValueError(
             f"{where} the body turns by up to {np.rad2deg(angle):.4g} deg, past the half turn beyond which a "
@@ -502,7 +502,7 @@ def _judged(angle: float, where: str, way_out: str) -> list[str]:
 def _on_screen(
     length: float, rate: float, duration: float | None, time_unit: str | None
 ) -> tuple[float, list[str]]:
-    """Give the seconds that a page or a window takes, with no turn above `TURN` between pictures; and notes.
+    """Return seconds that a page or a window takes, with no turn above `TURN` between pictures; and notes.
 
     A page, which names its speed, runs at one that has a name, in real time where that can be watched.
     """

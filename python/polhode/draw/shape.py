@@ -107,7 +107,7 @@ def check_size(numbers: Floats, what: str, unit: str) -> None:
 
 
 def notes_on(shape: Shape) -> tuple[str, ...]:
-    """Tell of a shape that is drawn coarser than it is, or so far off that it is a dot."""
+    """Return of a shape that is drawn coarser than it is, or so far off that it is a dot."""
     size, far = float(np.ptp(shape.vertices, axis=0).max()), longest(shape.vertices)
     notes: list[str] = []
     if shape.left_out:
@@ -124,12 +124,12 @@ def notes_on(shape: Shape) -> tuple[str, ...]:
 
 
 def longest(vectors: Floats) -> float:
-    """Give the length of the longest of vectors (n, 3), to draw them by; 1 where all are zero."""
+    """Return the length of the longest of vectors (n, 3), to draw them by; 1 where all are zero."""
     return float(np.linalg.norm(vectors, axis=-1).max()) or 1.0
 
 
 def body_shape(body: RigidBody, about: Floats, *, is_cut: bool = True) -> tuple[Shape, tuple[str, ...]]:
-    """Give what a body is drawn as, and what is not drawn of it.
+    """Return what a body is drawn as, and what is not drawn of it.
 
     It is the shapes that it was made of, where they are known, else the uniform box with its mass and
     inertia. A box has faces in six colours, another part has one; a round part has quarters in two shades.
@@ -256,7 +256,7 @@ def _made(
     about: Floats,
     longest_edge: float | None,
 ) -> Shape:
-    """Give a surface with its triangles cut until no edge is longer than that, if it is given."""
+    """Return a surface with its triangles cut until no edge is longer than that, if it is given."""
     if longest_edge is None:
         return Shape(points - about, faces, colors)
     pieces, owner = cut(points[faces], longest_edge, at_most=max(_MOST, len(faces)))
@@ -311,7 +311,7 @@ class Piece:
 def pieces_of(
     body: RigidBody, box: Callable[[RigidBody], Surface]
 ) -> tuple[list[Piece] | None, tuple[str, ...]]:
-    """Give the parts that one body was made of, and what is not drawn of them.
+    """Return the parts that one body was made of, and what is not drawn of them.
 
     Parameters
     ----------
@@ -414,7 +414,7 @@ def _has_area(vertices: Floats, faces: NDArray[np.int64]) -> bool:
 
 
 def _thickened(name: str, numbers: Floats, segments: int) -> Surface:
-    """Give a shape that is a line a hundredth as thick as it is long; a point has no faces."""
+    """Return a shape that is a line a hundredth as thick as it is long; a point has no faces."""
     point = np.zeros((1, 3)), np.zeros((0, 3), dtype=np.int64)
     if name.startswith("arc"):
         return point

@@ -116,7 +116,7 @@ def _in_cells(vertices: Floats, faces: Integers, low: Floats, side: float) -> tu
 
 
 def unit_normals(triangles: Floats) -> Floats:
-    """Give unit normals of triangles (m, 3, 3), on the side from which they run counterclockwise."""
+    """Return unit normals of triangles (m, 3, 3), on the side from which they run counterclockwise."""
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     unit: Floats = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
     return unit
@@ -126,7 +126,7 @@ _SEGMENTS: Final = 40
 
 
 def solid_surface(name: str, numbers: Floats, segments: int = _SEGMENTS) -> Surface | None:
-    """Give vertices and triangles, outward, of a solid in its own place; None for another shape.
+    """Return vertices and triangles, outward, of a solid in its own place; None for another shape.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ def _cylinder(radius: float, height: float) -> Floats:
 
 
 def _arc(radius: float, start: float, end: float, segments: int, z: float = 0.0) -> Floats:
-    """Give a piece of a circle about (0, z), angles from −90° at its bottom to 90° at its top."""
+    """Return a piece of a circle about (0, z), angles from −90° at its bottom to 90° at its top."""
     angles = np.deg2rad(np.linspace(start, end, max(segments // 2, 4) + 1))
     r = radius * np.cos(angles)
     r[np.abs(np.cos(angles)) < 1e-9] = 0.0
@@ -257,12 +257,12 @@ _BALL: Final = 0.06
 
 
 def both_sides(vertices: Floats, faces: Faces) -> Surface:
-    """Give a sheet that is seen from both sides."""
+    """Return a sheet that is seen from both sides."""
     return vertices, np.concatenate([faces, faces[:, ::-1]])
 
 
 def sheet_surface(name: str, numbers: Floats, segments: int = _SEGMENTS) -> Surface | None:
-    """Give the triangles of a lamina of :mod:`polhode.laminae`, from both sides; None for another shape."""
+    """Return the triangles of a lamina of :mod:`polhode.laminae`, from both sides; None for another shape."""
     if name == "polygon":
         corners = numbers.reshape(-1, 2)
         return both_sides(_flat(corners), _ears(corners))
@@ -288,7 +288,7 @@ def sheet_surface(name: str, numbers: Floats, segments: int = _SEGMENTS) -> Surf
 
 
 def wire_surface(name: str, numbers: Floats, segments: int = _SEGMENTS) -> Surface | None:
-    """Give the triangles of a rod of :mod:`polhode.rods` or a wire, made thick; None for another shape."""
+    """Return the triangles of a rod of :mod:`polhode.rods` or a wire, made thick; None for another shape."""
     if name == "rod":
         return solid_surface("cylinder", np.array([_THIN * numbers[0], numbers[0]]), 8)
     if name == "ring":
@@ -309,7 +309,7 @@ def wire_surface(name: str, numbers: Floats, segments: int = _SEGMENTS) -> Surfa
 
 
 def particles_surface(numbers: Floats) -> Surface:
-    """Give a ball for each particle, its volume as its mass: numbers are all masses, then all positions."""
+    """Return a ball for each particle, its volume as its mass: numbers are all masses, then all positions."""
     masses, positions = numbers[: len(numbers) // 4], numbers[len(numbers) // 4 :].reshape(-1, 3)
     size = float(np.ptp(positions, axis=0).max()) or 1.0
     heavy = masses > 0.0
@@ -325,7 +325,7 @@ _FEW: Final = 100
 
 
 def _small_sphere(times: int) -> Surface:
-    """Give the octahedron, each triangle cut in four so many times, its corners at distance 1."""
+    """Return the octahedron, each triangle cut in four so many times, its corners at distance 1."""
     corners = np.array(
         [(1, 0, 0), (0, 1, 0), (0, 0, 1), (-1, 0, 0), (0, -1, 0), (0, 0, -1)], dtype=np.float64
     )
@@ -341,7 +341,7 @@ def _small_sphere(times: int) -> Surface:
 
 
 def _bar(start: Floats, end: Floats, radius: float) -> Surface | None:
-    """Give a bar of six sides from point to point; nothing of no length."""
+    """Return a bar of six sides from point to point; nothing of no length."""
     along = end - start
     length = float(np.linalg.norm(along))
     if length == 0.0:

@@ -76,7 +76,7 @@ class Disc(Spin):
     half: float
 
     def circle(self, angles: Floats, radius: float, height: float) -> Floats:
-        """Give points about the axis, so far from it, and so far along it from the middle."""
+        """Return points about the axis, so far from it, and so far along it from the middle."""
         across = np.cross(self.axis, np.eye(3)[np.abs(self.axis).argmin()])
         across /= np.linalg.norm(across)
         beside = np.cross(self.axis, across)  # counterclockwise about the axis
@@ -84,11 +84,11 @@ class Disc(Spin):
         return self.middle + height * self.axis + radius * around
 
     def factor(self, between: float) -> float:
-        """Give how many times slower it is drawn where so much time goes by from picture to picture."""
+        """Return how many times slower it is drawn where so much time goes by from picture to picture."""
         return 1.0 if self.rate is None else slowed(float(np.abs(self.rate).max()) * between)
 
     def words(self, frame: int, factor: float, time_unit: str) -> str:
-        """Give its speed in a picture, and how it is drawn."""
+        """Return its speed in a picture, and how it is drawn."""
         if self.rate is None:
             return f"{self.name}: speed not known"
         drawn = f", drawn {factor:,g}× slower" if factor > 1.0 else ""
@@ -96,7 +96,7 @@ class Disc(Spin):
 
 
 def slowed(turn: float) -> float:
-    """Give the factor 1, 2, 5, 10, … by which a turning is drawn slower than it is.
+    """Return the factor 1, 2, 5, 10, … by which a turning is drawn slower than it is.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ def discs_of(footage: Footage, shape: Shape, motion: GyrostatMotion | None) -> t
 
 
 def _of_gyrostat(motion: GyrostatMotion, trajectory: Trajectory) -> list[Spin]:
-    """Give the wheels of a gyrostat, and the momentum besides them as a rotor.
+    """Return the wheels of a gyrostat, and the momentum besides them as a rotor.
 
     The integral of ω along the axis of a free one is that of a formula of six nodes between two times.
     """
@@ -171,7 +171,7 @@ def _of_gyrostat(motion: GyrostatMotion, trajectory: Trajectory) -> list[Spin]:
 
 
 def _of_load(trajectory: Trajectory) -> list[Spin]:
-    """Give the wheels and rotors of the load of a run."""
+    """Return the wheels and rotors of the load of a run."""
     spins: list[Spin] = []
     for part in parts_of(trajectory.load) if trajectory.load is not None else []:
         if part.made_by == "wheel":
@@ -182,7 +182,7 @@ def _of_load(trajectory: Trajectory) -> list[Spin]:
 
 
 def _driven(trajectory: Trajectory, wheel: Part) -> Spin:
-    """Give a wheel of a load, of which the body carries along J Ω a; between the times Ω follows cubics."""
+    """Return a wheel of a load, of which the body carries along J Ω a; between the times Ω follows cubics."""
     axis, inertia = wheel.number(0, axes=1), float(wheel.number(1))
     axis = axis / np.linalg.norm(axis)
     (state,), (own,), t = wheel.states, wheel.load.states, trajectory.t
@@ -195,7 +195,7 @@ def _driven(trajectory: Trajectory, wheel: Part) -> Spin:
 
 
 def _rotor(momentum: Floats, name: str) -> list[Spin]:
-    """Give what is known by its momentum alone: an axis, and no speed."""
+    """Return what is known by its momentum alone: an axis, and no speed."""
     size = float(np.linalg.norm(momentum))
     return [Spin(name, momentum / size, None, None)] if size > 0.0 else []
 

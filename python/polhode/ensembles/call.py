@@ -163,7 +163,7 @@ def _count(number: Any, name: str) -> int:
 
 
 def _argument(place: str, value: Any) -> Any:
-    """Give a distribution, or what is the same for all members in a form that stays as it is."""
+    """Return a distribution, or what is the same for all members in a form that stays as it is."""
     if isinstance(value, Distribution | Made) or value is None:
         return value
     if place == "body" and isinstance(value, _core.RigidBody):

@@ -68,11 +68,11 @@ class Checkpoint:
             self._read()
 
     def pending(self) -> list[int]:
-        """Give the chunks that are not in it."""
+        """Return the chunks that are not in it."""
         return [index for index in range(self.plan.chunks) if index not in self.done]
 
     def add(self, index: int) -> None:
-        """Tell that a chunk is in the tree."""
+        """Record that a chunk is in the tree."""
         self.done.add(index)
         self.is_new = True
         if time.monotonic() - self.written >= _BETWEEN:
@@ -133,7 +133,7 @@ def _joined(spans: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
 
 
 def _plain(value: Any, arrays: list[Any]) -> Any:
-    """Give a state as JSON has it, its arrays in a list."""
+    """Return a state as JSON has it, its arrays in a list."""
     match value:
         case None | bool() | int() | float():
             return value

@@ -50,12 +50,12 @@ def _library(array: Any) -> str:
 
 
 def labelled(array: Any) -> Any:
-    """Give an array with names for its axes, of xarray; else None."""
+    """Return an array with names for its axes, of xarray; else None."""
     return array if _library(array) == "xarray" and hasattr(array, "variable") else None
 
 
 def dask_array(array: Any) -> Any:
-    """Give the array of dask that an argument is or that xarray holds; else None."""
+    """Return the array of dask that an argument is or that xarray holds; else None."""
     if labelled(array) is not None:
         array = array.data if getattr(array, "chunks", None) is not None else None
     if array is None or _library(array) != "dask":
@@ -75,7 +75,7 @@ def is_stored(array: Any) -> bool:
 
 
 def in_memory(array: Any) -> Any:
-    """Give a piece of an array as what the core reads where it is; masked elements and units stay."""
+    """Return a piece of an array as what the core reads where it is; masked elements and units stay."""
     if labelled(array) is not None:
         return in_memory(array.variable.data)
     return np.asarray(array) if isinstance(array, np.memmap) else array
@@ -106,7 +106,7 @@ _FRAMES: Final = {"omega": "body", "position": "space", "velocity": "space"}
 
 
 def require_xarray() -> Any:
-    """Give the library whose datasets are the results."""
+    """Return the library whose datasets are the results."""
     return require("xarray", extra="cluster", purpose="a motion of dask arrays")
 
 
@@ -203,7 +203,7 @@ class Labels:
         self.indexes: dict[str, tuple[Any, str]] = {}
 
     def named(self, array: Any, name: str) -> Any:
-        """Give an array with names; that of its last axis is the argument's own."""
+        """Return an array with names; that of its last axis is the argument's own."""
         xarray = require_xarray()
         if labelled(array) is not None:
             found = array.rename({array.dims[-1]: f"{name} in"}).drop_vars([f"{name} in"], errors="ignore")
@@ -235,7 +235,7 @@ class Labels:
         return found
 
     def chunked(self, numbers: Any, shape: tuple[int, ...], name: str) -> Any:
-        """Give the numbers of a stack, an array of dask where it is more than one."""
+        """Return the numbers of a stack, an array of dask where it is more than one."""
         da = require("dask.array", extra="cluster", purpose="a motion of dask arrays")
         found = self.named(numbers, name)
         if not shape:
@@ -282,7 +282,7 @@ _TAILS: Final = {"omega": 3, "quaternion": 4, "position": 3, "velocity": 3}
 
 
 def motion_at(motion: Any, t: Any) -> Any:
-    """Give the states of a motion as an `xarray.Dataset` of dask arrays.
+    """Return the states of a motion as an `xarray.Dataset` of dask arrays.
 
     Parameters
     ----------
@@ -488,7 +488,7 @@ _TIGHTEST: Final = 2.3e-15
 
 
 def simulated(body: RigidBody, t: Any, omega: Any, attitude: Any, **options: Any) -> Any:
-    """Give the states of runs as an `xarray.Dataset` of dask arrays.
+    """Return the states of runs as an `xarray.Dataset` of dask arrays.
 
     Parameters
     ----------

@@ -66,12 +66,12 @@ class Plan:
         return -(-self.n // self.chunk)
 
     def bounds(self, index: int) -> tuple[int, int]:
-        """Give the first member of a chunk and how many it has."""
+        """Return the first member of a chunk and how many it has."""
         first = index * self.chunk
         return first, min(self.chunk, self.n - first)
 
     def draws(self) -> dict[str, Draw]:
-        """Give the distributions by their places; one that stands at two places is at the first."""
+        """Return the distributions by their places; one that stands at two places is at the first."""
         return {draw.place: draw for node in self.recipe.values() for draw in draws(node)}
 
     def inputs(self, first: int, count: int) -> Inputs:
@@ -93,7 +93,7 @@ class Inputs:
     drawn: dict[str, Any]
 
     def arrays(self) -> dict[str, Floats]:
-        """Give the numbers by their places, without those that are kept as the states at the start."""
+        """Return the numbers by their places, without those that are kept as the states at the start."""
         kept = self.plan.outputs
         return {
             place: array
@@ -113,7 +113,7 @@ class Inputs:
                 yield row, np.asarray(one, dtype=float)
 
     def made(self, rows: Rows) -> dict[str, Any]:
-        """Give the arguments of `simulate` for members, the body among them.
+        """Return the arguments of `simulate` for members, the body among them.
 
         Parameters
         ----------
@@ -152,7 +152,7 @@ class Inputs:
 
 
 def is_each_alone(plan: Plan) -> bool:
-    """Tell whether members have loads that cannot stand in one stack."""
+    """Return whether members have loads that cannot stand in one stack."""
     return any(
         isinstance(draw.distribution, PerMember) and draw.place == "load" for draw in plan.draws().values()
     )
@@ -255,7 +255,7 @@ Node: TypeAlias = Draw | Make | Any
 
 
 def resolved(arguments: Mapping[str, Any], seed: int) -> dict[str, Node]:
-    """Give every distribution among the arguments its source.
+    """Assign every distribution among the arguments its source of random numbers.
 
     Parameters
     ----------
@@ -302,7 +302,7 @@ def draws(node: Node) -> Iterator[Draw]:
 
 
 def value(node: Node, drawn: Mapping[str, Any], rows: Rows) -> Any:
-    """Give an argument of members.
+    """Return an argument of members.
 
     Parameters
     ----------
@@ -352,7 +352,7 @@ class Variable(NamedTuple):
 
 
 def layout(plan: Plan) -> dict[str, Variable]:
-    """Give the arrays that a chunk has, by name; the status comes last.
+    """Return the arrays that a chunk has, by name; the status comes last.
 
     Parameters
     ----------
@@ -377,7 +377,7 @@ def layout(plan: Plan) -> dict[str, Variable]:
 
 
 def coordinates(plan: Plan) -> dict[str, tuple[str, Any]]:
-    """Give the coordinates of the axes."""
+    """Return the coordinates of the axes."""
     found: dict[str, tuple[str, Any]] = {"time": ("time", plan.t)}
     for name in plan.outputs:
         if name in _AXES:
@@ -387,12 +387,12 @@ def coordinates(plan: Plan) -> dict[str, tuple[str, Any]]:
 
 
 def short_name(name: str) -> str:
-    """Give the name of a state of the load without its place."""
+    """Return the name of a state of the load without its place."""
     return name.removeprefix("states.")
 
 
 def bytes_of_member(plan: Plan) -> int:
-    """Give the size of all that is kept of a member."""
+    """Return the size of all that is kept of a member."""
     return sum(
         np.dtype(variable.dtype).itemsize * int(np.prod(variable.tail)) for variable in layout(plan).values()
     )

@@ -63,7 +63,7 @@ class Tree(Generic[S]):
         self.nodes[level, index] = state
 
     def spans(self) -> list[tuple[int, int]]:
-        """Give the blocks of each node: the first, and that after the last."""
+        """Return the blocks of each node: the first, and that after the last."""
         return [(index << level, min(index + 1 << level, self.leaves)) for level, index in self.nodes]
 
     @property
@@ -83,7 +83,7 @@ Nodes: TypeAlias = dict[Place, State]
 
 
 def tree_of(plan: Plan, reductions: tuple[Reduction, ...]) -> Tree[State]:
-    """Give the tree of all blocks, without any of them."""
+    """Return the tree of all blocks, without any of them."""
 
     def merge(one: State, other: State) -> State:
         for a, b in zip(one.parts, other.parts, strict=True):

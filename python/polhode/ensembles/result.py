@@ -337,7 +337,7 @@ def _check_room(needed: int, n: int) -> None:
 
 
 def _room() -> int | None:
-    """Give the memory of this machine; not every system tells."""
+    """Return the memory of this machine; not every system tells."""
     try:
         return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, ValueError, OSError):

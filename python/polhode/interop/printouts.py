@@ -90,7 +90,7 @@ def from_printout(
 
 
 def _matrix(numbers: ArrayLike, name: str) -> NDArray[np.float64]:
-    """Give the matrix of three, six or nine numbers, signs as they are."""
+    """Return the matrix of three, six or nine numbers, signs as they are."""
     given = real_numbers(numbers, name).ravel()
     if len(given) == 3:
         return np.diag(given)

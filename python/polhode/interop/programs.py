@@ -154,7 +154,7 @@ def _six(tensor: Floats) -> list[float]:
 
 
 def _positive(six: list[float]) -> list[float]:
-    """Give products of inertia ∫ x y dm in place of elements."""
+    """Return products of inertia ∫ x y dm in place of elements."""
     return [*six[:3], *(0.0 - x for x in six[3:])]
 
 

@@ -323,7 +323,7 @@ class _Walk:
 
 
 def faces_of(shape: Any) -> list[Any]:
-    """Give the faces of a shape."""
+    """Return the faces of a shape."""
     return [
         occt("TopoDS").TopoDS.Face(face)
         for face in within(shape, occt("TopAbs").TopAbs_ShapeEnum.TopAbs_FACE)
@@ -331,7 +331,7 @@ def faces_of(shape: Any) -> list[Any]:
 
 
 def within(shape: Any, kind: Any, but_in: Any = None) -> Iterator[Any]:
-    """Give what of a kind is in a shape; with `but_in` alone what is in nothing of that kind."""
+    """Return what of a kind is in a shape; with `but_in` alone what is in nothing of that kind."""
     explorer = occt("TopExp").TopExp_Explorer
     found = explorer(shape, kind) if but_in is None else explorer(shape, kind, but_in)
     while found.More():
@@ -340,7 +340,7 @@ def within(shape: Any, kind: Any, but_in: Any = None) -> Iterator[Any]:
 
 
 def box_of(shape: Any) -> tuple[Floats, float]:
-    """Give the middle of the box around a shape, and half of its diagonal."""
+    """Return the middle of the box around a shape, and half of its diagonal."""
     box = occt("Bnd").Bnd_Box()
     occt("BRepBndLib").BRepBndLib.Add_s(shape, box)
     if box.IsVoid():
@@ -390,7 +390,7 @@ _OF_OCCT: Final = {("GRAM", 1e-3, 3.0), ("METRE", 1e-2, 2.0)}
 
 
 def densities_of(text: str) -> list[float] | None:
-    """Give the densities of a file, each once and ascending; None where a unit is not understood.
+    """Return the densities of a file, each once and ascending; None where a unit is not understood.
 
     Parameters
     ----------
@@ -501,13 +501,13 @@ def overlaps_told(cad: CadFile, pairs: Sequence[Pair], fault: str = "") -> tuple
 
 
 def near_pairs(parts: Sequence[CadPart]) -> list[tuple[int, int]]:
-    """Give the pairs of solids that may share matter; none where they are too many to be looked at."""
+    """Return the pairs of solids that may share matter; none where they are too many to be looked at."""
     near = _meeting(parts)
     return near if len(near) <= _MOST_PAIRS else []
 
 
 def _meeting(parts: Sequence[CadPart]) -> list[tuple[int, int]]:
-    """Give the pairs whose spheres around their boxes meet, the larger one first."""
+    """Return the pairs whose spheres around their boxes meet, the larger one first."""
     middles = np.array([part.rotation @ part.moments.about + part.position for part in parts])
     reaches = np.array([part.moments.reach for part in parts])
     volumes = np.array([part.moments.volume for part in parts])
@@ -521,7 +521,7 @@ def _meeting(parts: Sequence[CadPart]) -> list[tuple[int, int]]:
 
 
 def volume_shared(one: Any, other: Any, least: float) -> float | None:
-    """Give the volume that two placed solids share, in mm^3; None where OCCT does not tell.
+    """Return the volume that two placed solids share, in mm^3; None where OCCT does not tell.
 
     Parameters
     ----------
@@ -551,7 +551,7 @@ def volume_shared(one: Any, other: Any, least: float) -> float | None:
 
 
 def _apart(one: Any, other: Any) -> bool:
-    """Tell whether the boxes around two solids do not meet."""
+    """Return whether the boxes around two solids do not meet."""
     boxes = [occt("Bnd").Bnd_Box(), occt("Bnd").Bnd_Box()]
     for shape, box in zip((one, other), boxes, strict=True):
         occt("BRepBndLib").BRepBndLib.Add_s(shape, box)
@@ -559,7 +559,7 @@ def _apart(one: Any, other: Any) -> bool:
 
 
 def _holds_corner(outer: Any, inner: Any) -> bool:
-    """Tell whether a corner of one solid lies well within the other, so that they share something."""
+    """Return whether a corner of one solid lies well within the other, so that they share something."""
     kinds = occt("TopAbs")
     classifier = occt("BRepClass3d").BRepClass3d_SolidClassifier(outer)
     for vertex in within(inner, kinds.TopAbs_ShapeEnum.TopAbs_VERTEX):
@@ -601,7 +601,7 @@ class SolidPart(NamedTuple):
 def solids_of(
     cad: CadFile, density: Number | None = None, mass: Number | None = None
 ) -> tuple[_core.RigidBody, tuple[SolidPart, ...]]:
-    """Give the whole and its parts.
+    """Return the whole and its parts.
 
     Parameters
     ----------
@@ -647,7 +647,7 @@ def _quaternion(rotation: Floats) -> Floats:
 
 
 def _at_density_1(moments: Moments) -> _core.RigidBody:
-    """Give the body of a solid before it is placed, with the bounds of the integration."""
+    """Return the body of a solid before it is placed, with the bounds of the integration."""
     volume, reach = moments.volume, moments.reach
     offset = moments.first / volume
     spread = moments.second - np.outer(offset, offset) * volume

@@ -67,7 +67,7 @@ class FaceSurface:
 
 
 def surface_of(face: Any) -> FaceSurface:
-    """Give the surface of a face of OCCT, in the face's own place."""
+    """Return the surface of a face of OCCT, in the face's own place."""
     adaptor_module = occt("BRepAdaptor")
     kinds = occt("GeomAbs").GeomAbs_SurfaceType
     adaptor = adaptor_module.BRepAdaptor_Surface(face, False)
@@ -217,7 +217,7 @@ def _spline(adaptor: Any) -> FaceSurface:
 
 
 def _knots(spline: Any, axis: str) -> Floats:
-    """Give the knots, each as often as it counts."""
+    """Return the knots, each as often as it counts."""
     count = getattr(spline, f"Nb{axis}Knots")()
     knot, times = getattr(spline, f"{axis}Knot"), getattr(spline, f"{axis}Multiplicity")
     return np.repeat([knot(i) for i in range(1, count + 1)], [times(i) for i in range(1, count + 1)])

@@ -68,7 +68,7 @@ def read_cad_apart(path: Path) -> CadFile:
 
 
 def _answer(process: subprocess.Popen[bytes], path: Path) -> tuple[CadFile, list[Pair], bool]:
-    """Give what a file holds and the pairs that were looked at; and whether that was ended before its end."""
+    """Return what a file holds, the pairs that were looked at, and whether that came to its end."""
     assert process.stdout is not None  # it is a pipe
     try:
         cad: CadFile | tuple[str, str] = pickle.load(process.stdout)

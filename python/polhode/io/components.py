@@ -102,7 +102,7 @@ class Overlap(NamedTuple):
 
 
 def labels(faces: Integers, count: int) -> NDArray[np.intp]:
-    """Give each face the number of its component: those that share vertices, in the order of the faces."""
+    """Return the number of the component of each face: a component is the faces that share vertices."""
     label = np.arange(count)
     corners = np.ascontiguousarray(faces.T)
     while True:
@@ -196,7 +196,7 @@ def parts_of(
 
 
 def meeting(parts: Sequence[Part]) -> list[tuple[int, int]]:
-    """Give the pairs of parts whose boxes meet, the larger one first."""
+    """Return the pairs of parts whose boxes meet, the larger one first."""
     used = [part.vertices[part.faces] for part in parts]
     low = np.array([corners.min(axis=(0, 1)) for corners in used])
     high = np.array([corners.max(axis=(0, 1)) for corners in used])
@@ -242,7 +242,7 @@ def _shared(large: Part, small: Part, of_large: Floats, of_small: Floats) -> Ove
 
 
 def winding(points: Floats, triangles: Floats) -> Floats:
-    """Give how often a surface winds around points: 1 within, 0 without, by the solid angles of its faces."""
+    """Compute how often a surface winds around points: 1 within, 0 without, by solid angles of faces."""
     totals = []
     for point in points:
         a, b, c = np.moveaxis(triangles - point, 1, 0)
@@ -254,7 +254,7 @@ def winding(points: Floats, triangles: Floats) -> Floats:
 
 
 def _share_inside(of: Floats, triangles: Floats) -> float:
-    """Give the share of the corners of one, or of up to 12 of them, that lie within the other."""
+    """Return the share of the corners of one, or of up to 12 of them, that lie within the other."""
     corners = np.unique(of.reshape(-1, 3), axis=0)
     low, high = triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))
     near = corners[((corners > low) & (corners < high)).all(axis=1)]
@@ -266,13 +266,13 @@ def _share_inside(of: Floats, triangles: Floats) -> float:
 
 
 def _boxes(triangles: Floats) -> tuple[Floats, Floats]:
-    """Give the lower and the upper corners of the boxes around triangles."""
+    """Return the lower and the upper corners of the boxes around triangles."""
     a, b, c = np.moveaxis(triangles, 1, 0)
     return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
 
 
 def _is_inside(point: Floats, triangles: Floats, low: Floats, high: Floats) -> bool:
-    """Tell whether a closed surface is around a point, from the boxes of its triangles too.
+    """Return whether a closed surface is around a point, from the boxes of its triangles too.
 
     Triangles are counted that a ray upward from the point crosses, by the sign of their normals; where it
     passes near an edge, or the point near a face, the solid angles decide.
@@ -342,7 +342,7 @@ def overlapping(vertices: Floats, faces: Integers, unit: str = " m^3") -> list[s
 
 
 def groups_of(path: Path) -> list[str]:
-    """Give the name of the group (``o``, else ``g``) of each triangle of an OBJ file that is not packed."""
+    """Return the name of the group (``o``, else ``g``) of each triangle of an OBJ file that is not packed."""
     found: list[str] = []
     names = {"o": "", "g": ""}
     with path.open(encoding="utf-8", errors="replace") as lines:
@@ -362,7 +362,7 @@ def groups_of(path: Path) -> list[str]:
 
 
 def _names(found: list[str]) -> list[str]:
-    """Give each part the name of its group, if that is its own, else its number."""
+    """Return for each part the name of its group, if no other part has it, else its number."""
     counts = Counter(found)
     own = [name if name and counts[name] == 1 else "" for name in found]
     named = [name or str(number) for number, name in enumerate(own, start=1)]

@@ -121,7 +121,7 @@ def is_molecule(path: Path) -> bool:
 
 
 def unread(file: Path, suffix: str, readable: tuple[str, ...]) -> FileFormatError:
-    """Give the error of a file whose suffix is none that is read."""
+    """Return the error of a file whose suffix is none that is read."""
     name = f"files named {suffix}" if suffix else "files without a suffix"
     if file.suffix.lower() == _PACKED and suffix in (".json", ".npz", ".toml"):
         return FileFormatError(f"{file}: {name} are read unpacked alone; unpack it with gunzip")
@@ -133,7 +133,7 @@ def unread(file: Path, suffix: str, readable: tuple[str, ...]) -> FileFormatErro
 
 
 def content_format(head: bytes, size: int) -> tuple[str | None, bool]:
-    """Tell the format of a file's content.
+    """Return the format of a file's content.
 
     Parameters
     ----------

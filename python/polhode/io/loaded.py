@@ -110,7 +110,7 @@ class Loaded:
         return self._molecule
 
     def length(self, length_unit: str | None) -> str | None:
-        """Give the unit of the coordinates: that of the file, or the one that the caller states.
+        """Return the unit of the coordinates: that of the file, or the one that the caller states.
 
         Parameters
         ----------

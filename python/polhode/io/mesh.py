@@ -128,7 +128,7 @@ def equal_rows(rows: Floats | Integers) -> tuple[NDArray[np.intp], NDArray[np.in
 
 
 def used_vertices(faces: NDArray[np.integer], count: int) -> NDArray[np.intp]:
-    """Give the vertices that faces use, ascending; all of them are between 0 and `count`."""
+    """Return the vertices that faces use, ascending; all of them are between 0 and `count`."""
     marks = np.zeros(count, dtype=bool)
     marks[faces] = True
     return np.flatnonzero(marks)

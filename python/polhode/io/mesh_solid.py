@@ -239,7 +239,7 @@ def warn_of_overlaps(loaded: Loaded) -> None:
 
 
 def _joined(loaded: Loaded, mesh: Mesh, orient: bool) -> Loaded:
-    """Give the file with the components of its mesh joined to one solid."""
+    """Return the file with the components of its mesh joined to one solid."""
     from polhode.io.components import parts_of
     from polhode.io.union import united
 
@@ -258,7 +258,7 @@ def _joined(loaded: Loaded, mesh: Mesh, orient: bool) -> Loaded:
 def _cad_solid(
     loaded: Loaded, cad: CadFile, density: Number | None, mass: Number | None, asked: Mapping[str, object]
 ) -> MeshSolid:
-    """Give the body of the solids in a CAD file, which need no mending that a mesh may need."""
+    """Return the body of the solids in a CAD file, which need no mending that a mesh may need."""
     from polhode.io.cad_files import solids_of
 
     name = next((name for name, value in asked.items() if value), None)
@@ -272,7 +272,7 @@ def _cad_solid(
 
 
 def _value(number: Number) -> float:
-    """Give the value of a number that may have a sigma."""
+    """Return the value of a number that may have a sigma."""
     if isinstance(number, _core.Uncertain):
         return float(number.value)
     return float(number) if isinstance(number, float | int) else float(number.nominal_value)
@@ -315,7 +315,7 @@ def _repaired_solid(
 
 
 def _marked(body: _core.RigidBody, welded: int, closed: float | None) -> _core.RigidBody:
-    """Give the body of a mesh that was repaired; `closed` is the change of volume by what was filled."""
+    """Return the body of a mesh that was repaired; `closed` is the change of volume by what was filled."""
     numbers = np.array(body.__reduce__()[1][0], dtype=np.float64)
     numbers[_CHECKS] = int(numbers[_CHECKS]) | _REPAIRED
     numbers[_WELDED] = welded

@@ -229,7 +229,7 @@ def _count_words(stream: BinaryIO, budget: Budget) -> None:
 
 
 def _loaded(trimesh: Any, stream: BinaryIO, kind: str) -> Any:
-    """Give trimesh's scene of a file that can be what it says."""
+    """Return trimesh's scene of a file that can be what it says."""
     if kind == "ply":
         check_ply_size(stream)
     stream.seek(0)

@@ -143,7 +143,7 @@ _OTHERS: Final[tuple[tuple[Callable[[int], bool], str], ...]] = (
 
 @contextmanager
 def files_read() -> Iterator[list[Path]]:
-    """Give a list to which every file is added that is read in the meantime."""
+    """Return a list to which every file is added that is read in the meantime."""
     read: list[Path] = []
     outer = _READ.get()
     token = _READ.set((*outer, read))
@@ -274,7 +274,7 @@ def whole_of(stream: BinaryIO, path: str | os.PathLike[str], most: int = MOST_TE
 
 
 def with_way_out(fault: object, way_out: str) -> str:
-    """Give the words of a fault, with the way out behind them where they name none after a semicolon."""
+    """Return the words of a fault, with the way out behind them where they name none after a semicolon."""
     words = str(fault)
     return words if "; " in words else f"{words}; {way_out}"
 

@@ -117,7 +117,7 @@ def read_npz(file: Path) -> dict[str, NDArray[Any]]:
 
 
 def numbers(value: Any, name: str, file: Path, *, with_holes: bool = False) -> NDArray[np.float64]:
-    """Give a field as float64.
+    """Return a field as float64.
 
     Parameters
     ----------
@@ -145,7 +145,7 @@ def numbers(value: Any, name: str, file: Path, *, with_holes: bool = False) -> N
 
 
 def counts(value: Any, name: str, file: Path, shape: tuple[int, ...]) -> NDArray[np.int64]:
-    """Give a field as counts of a shape."""
+    """Return a field as counts of a shape."""
     exact = numbers(value, name, file)
     if exact.shape != shape:
         raise FileFormatError(f"{file}: {name} has shape {exact.shape}, expected {shape}")
@@ -221,7 +221,7 @@ def array_schema(text: str) -> dict[str, object]:
 
 
 def record_suffix(file: Path) -> str:
-    """Give the suffix of a record, ``.json`` or ``.npz``."""
+    """Return the suffix of a record, ``.json`` or ``.npz``."""
     suffix = file.suffix.lower()
     if suffix not in (".json", ".npz"):
         raise ValueError(f"path: {file} does not end in .json or .npz; name it so")
@@ -255,7 +255,7 @@ def read_record(
 
 
 def _of_later(found: object, expected: str) -> str:
-    """Give the way out where the file is of the same kind, but newer."""
+    """Return the way out where the file is of the same kind, but newer."""
     kind, _, number = str(found).partition("/")
     known, _, ours = expected.partition("/")
     if kind == known and number.isdecimal() and int(number) > int(ours):
@@ -273,7 +273,7 @@ def check_names(fields: dict[str, Any], known: Collection[str], where: str) -> N
 
 
 def required(fields: dict[str, Any], name: str, file: Path) -> Any:
-    """Give a field that every file of the format has."""
+    """Return a field that every file of the format has."""
     if name not in fields:
         raise FileFormatError(f"{file}: {name} is missing; save it again")
     return fields[name]

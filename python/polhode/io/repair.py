@@ -41,7 +41,7 @@ class RepairStep(NamedTuple):
 
 
 def resolution_of(mesh: Mesh) -> float:
-    """Give the length that 32-bit coordinates of this size just resolve."""
+    """Return the length that 32-bit coordinates of this size just resolve."""
     size = float(np.abs(mesh.vertices).max(initial=0.0))
     return float(f"{size * 2.0**-23:.0e}") if np.isfinite(size) else 0.0
 
@@ -113,7 +113,7 @@ def repaired(mesh: Mesh, weld: float = 0.0) -> tuple[Mesh, list[tuple[str, str, 
 
 
 def spanned_volume(mesh: Mesh) -> float:
-    """Give the signed volume that the faces span with the middle of their box."""
+    """Return the signed volume that the faces span with the middle of their box."""
     used = mesh.vertices[np.unique(mesh.faces)]
     middle = (used.min(axis=0) + used.max(axis=0)) / 2.0
     a, b, c = np.moveaxis(mesh.vertices[mesh.faces] - middle, 1, 0)

@@ -157,7 +157,7 @@ def read_report(path: str | PathLike[str]) -> RigidBody | None:
 
 
 def body_fields(body: RigidBody) -> dict[str, Any]:
-    """Give the fields of a body as a file holds them."""
+    """Return the fields of a body as a file holds them."""
     principal = body.principal
     return {
         **{name: getattr(body, name) for name in BODY_ARRAYS},
@@ -169,7 +169,7 @@ def body_fields(body: RigidBody) -> dict[str, Any]:
 
 
 def _doubts_fields(body: RigidBody) -> dict[str, Any]:
-    """Give what a body is uncertain by, in numbers that every file holds."""
+    """Return what a body is uncertain by, in numbers that every file holds."""
     doubts = body._doubts()
     if doubts is None:
         return {}
@@ -441,7 +441,7 @@ def read_motion(path: str | PathLike[str]) -> tuple[dict[str, Any], dict[str, An
 
 
 def _stack(shape: tuple[int, ...], bodies: tuple[int, ...], axes_of_time: int) -> tuple[int, ...]:
-    """Give the shape of the stack of motions, to which that of the bodies broadcasts."""
+    """Return the shape of the stack of motions, to which that of the bodies broadcasts."""
     stack = shape[: max(len(shape) - 1 - axes_of_time, 0)]
     fits = len(stack) >= len(bodies) and all(
         own in (1, length) for own, length in zip(bodies[::-1], stack[::-1], strict=False)
@@ -556,7 +556,7 @@ def _check_unit(quaternion: NDArray[np.float64], file: Path) -> None:
 
 
 def table_of(trajectory: Trajectory) -> tuple[dict[str, NDArray[Any]], dict[str, NDArray[Any]]]:
-    """Give a motion as columns by name: what names a row (body, time), and what stands in it.
+    """Return a motion as columns by name: what names a row (body, time), and what stands in it.
 
     Parameters
     ----------

@@ -28,12 +28,12 @@ __all__ = ["difference", "has_union", "is_closed", "shared_volume", "united"]
 
 
 def has_union() -> bool:
-    """Tell whether manifold3d is installed."""
+    """Return whether manifold3d is installed."""
     return find_spec("manifold3d") is not None
 
 
 def shared_volume(one: Surface, other: Surface) -> float:
-    """Give the volume that two closed surfaces, wound outward, have in common."""
+    """Return the volume that two closed surfaces, wound outward, have in common."""
     _, (first, second) = _centred([one, other])
     try:
         return abs(_volume(_surface(_manifold(first) ^ _manifold(second))))

@@ -22,14 +22,14 @@ _BLOCK: Final = 1 << 20
 
 
 def inner_suffix(path: Path) -> str:
-    """Give the suffix of what a file holds: ``.stl`` of ``part.stl.gz``."""
+    """Return the suffix of what a file holds: ``.stl`` of ``part.stl.gz``."""
     suffix = path.suffix.lower()
     return Path(path.stem).suffix.lower() if suffix == ".gz" else suffix
 
 
 @contextmanager
 def unpacked(path: Path, budget: Budget | None = None) -> Iterator[Path]:
-    """Give the file itself, or where it is packed with gzip what it holds, in a folder that is then removed.
+    """Return file itself, or where it is packed with gzip what it holds, in a folder that is then removed.
 
     Parameters
     ----------

@@ -88,7 +88,7 @@ def _check_counts(source: bytes, budget: Budget) -> None:
 
 
 def _around(cells: Any, pyvista: Any) -> Any:
-    """Give the surface around cells in space."""
+    """Return the surface around cells in space."""
     filters: Any = require("vtkmodules.vtkFiltersGeometry", extra="view", purpose="reading VTK's files")
     surface = filters.vtkDataSetSurfaceFilter()
     surface.SetInputData(cells)

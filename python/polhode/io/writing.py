@@ -61,7 +61,7 @@ def writing(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
 
 @contextmanager
 def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """Give the path of a new file beside the old one, which it replaces at the end.
+    """Return the path of a new file beside the old one, which it replaces at the end.
 
     For what writes to a name; :func:`writing` is for what writes into a stream.
 
@@ -107,7 +107,7 @@ def write_bytes(path: str | os.PathLike[str], data: bytes) -> None:
 
 
 def _old(path: str | os.PathLike[str]) -> os.stat_result | None:
-    """Give the status of the old file, if any; an error where nothing can be written."""
+    """Return the status of the old file, if any; an error where nothing can be written."""
     try:
         old = status_of(path)
     except FileNotFoundError:
@@ -123,7 +123,7 @@ def _old(path: str | os.PathLike[str]) -> os.stat_result | None:
 
 
 def _standard_descriptor(file: Path) -> int | None:
-    """Tell the descriptor of standard output or error where the file is one, as ``/dev/stdout`` is.
+    """Return the descriptor of standard output or error where the file is one, as ``/dev/stdout`` is.
 
     What has been written to it already stays, and its other writers go on behind.
     """

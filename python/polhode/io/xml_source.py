@@ -83,11 +83,11 @@ class Element:
         return next(self.all(tag), None)
 
     def all(self, tag: str) -> Iterator[Element]:
-        """Give the children of that name."""
+        """Return the children of that name."""
         return (child for child in self.children if child.tag == tag)
 
     def descendants(self, tag: str) -> Iterator[Element]:
-        """Give the elements of that name at any depth, in the order of the document."""
+        """Return the elements of that name at any depth, in the order of the document."""
         waiting = self.children[::-1]
         while waiting:
             element = waiting.pop()
@@ -289,7 +289,7 @@ def set_text(element: Element, value: str) -> Edit:
 
 
 def blanks_of(between: bytes) -> str:
-    """Give the blanks before an element, so that another one can be inserted with the same indentation."""
+    """Return the blanks before an element, so that another one can be inserted with the same indentation."""
     return between.decode() if between.isspace() else ""
 
 

@@ -458,7 +458,7 @@ def _near_pairs(
 def _moved_along(
     names: Sequence[str], positions: Floats, bonds: ArrayLike, sigma: Floats
 ) -> Iterator[Floats]:
-    """Tell for each bond whose length is uncertain what one sigma of it does to the positions.
+    """Describe for each bond whose length is uncertain what one sigma of it does to the positions.
 
     Parameters
     ----------
@@ -527,7 +527,7 @@ def _checked(names: Sequence[str], bonds: ArrayLike) -> list[tuple[int, int]]:
 
 
 def _beyond(names: Sequence[str], neighbours: list[list[int]], i: int, j: int) -> list[int]:
-    """Give the atoms that hang on j when its bond to i is cut."""
+    """Return the atoms that hang on j when its bond to i is cut."""
     came_from = {j: i}
     rest = [j]
     while rest:

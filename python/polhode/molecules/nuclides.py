@@ -159,7 +159,7 @@ def shifted_mass_number(symbol: str, difference: int) -> int:
 
 
 def _sigma(of: Any) -> float | None:
-    """Give the sigma of a mass; the table writes 0 or nothing where it knows none."""
+    """Return the sigma of a mass; the table writes 0 or nothing where it knows none."""
     sigma = getattr(of, "_mass_unc", None)
     return float(sigma) if sigma else None
 
@@ -211,7 +211,7 @@ def uncertain_masses(labels: Sequence[str | Isotope], masses: Masses = "most_com
 
 
 def names_of(labels: Sequence[str | Isotope]) -> list[str]:
-    """Give the names of nuclides, as ``"16O"``; those of the average where no isotope is known as common."""
+    """Return names of nuclides, as ``"16O"``; those of the average where no isotope is known as common."""
     given = _sequence(labels)
     read = iter(isotopes([label for label in given if not isinstance(label, Isotope)], "average"))
     return [(label if isinstance(label, Isotope) else next(read)).name for label in given]

@@ -38,7 +38,7 @@ AROUND: Final = ("_scheduled", "_anchored")
 
 
 def recipes(load: _core.Load | None) -> list[Recipe]:
-    """Give the functions that made the parts of a load with their arguments; of compiled ones nothing."""
+    """Return the functions that made the parts of a load with their arguments; of compiled ones nothing."""
     if load is None:
         return []
     try:
@@ -57,7 +57,7 @@ def known_states(load: _core.Load | None, made: list[Recipe]) -> set[str]:
 
 
 def numbers(recipe: Recipe) -> Iterator[tuple[str, Floats, Changed]]:
-    """Give the numbers among the arguments of a part by name, and the recipe with others in their place."""
+    """Return the numbers among the arguments of a part by name, and the recipe with others in their place."""
     around, recipe = _unwrapped(recipe)
     if around:
         for name, values, changed in numbers(recipe):
@@ -83,7 +83,7 @@ def numbers(recipe: Recipe) -> Iterator[tuple[str, Floats, Changed]]:
 
 
 def _unwrapped(recipe: Recipe) -> tuple[list[Recipe], Recipe]:
-    """Give what was done to a part, the last first and without the part, and the part."""
+    """Return what was done to a part, the last first and without the part, and the part."""
     around: list[Recipe] = []
     while recipe[0] in AROUND:
         around.append((recipe[0], recipe[1][1:]))
@@ -102,7 +102,7 @@ def _wrapped(around: list[Recipe], changed: Changed) -> Changed:
 
 
 def _fields_of(path: Any) -> Iterator[tuple[str, Floats, Callable[[Floats], Any]]]:
-    """Give the numbers of an orbit or of a field along one by name, and how to put others in their place."""
+    """Return numbers of an orbit or of a field along one by name, and how to put others in their place."""
     for field in fields(path):
         value = getattr(path, field.name)
         if is_dataclass(value):
@@ -176,7 +176,7 @@ class _Starts(NamedTuple):
 
 
 def by_differences(self: Trajectory) -> MotionSensitivity:
-    """Give the derivatives by differences of order six of motions simulated tightly."""
+    """Return the derivatives by differences of order six of motions simulated tightly."""
     stack = self.omega.shape[:-2]
     rows = [_Row(self, stack, row).sensitivity() for row in range(int(np.prod(stack, dtype=int)))]
 
@@ -210,7 +210,7 @@ class _Row:
         self.tensor = self.body.inertia_about("origin") if run.pivoted else self.body.inertia
 
     def sensitivity(self) -> MotionSensitivity:
-        """Give all derivatives."""
+        """Return all derivatives."""
         run, body = self.run, self.body
         axes = (body.principal_about("origin") if run.pivoted else body.principal).axes
         moments = np.linalg.eigvalsh(self.tensor)
@@ -258,7 +258,7 @@ class _Row:
         return np.concatenate([tilt, moved.omega, *moved.states.values()], axis=-1)
 
     def starts(self, held: dict[str, Floats], count: int = 1) -> _Starts:
-        """Give the start so many times, with these states."""
+        """Return the start so many times, with these states."""
         body, many = self.body, np.ones((count, 1))
         states = {name: many * values for name, values in held.items()}
         tensor = np.tile(self.tensor, (count, 1, 1))
@@ -303,14 +303,14 @@ class _Row:
     def other_load(
         self, place: int, changed: Changed, values: Floats, index: tuple[int, ...], step: float
     ) -> _core.Load:
-        """Give the load where one of the numbers of a part is more by a step."""
+        """Return the load where one of the numbers of a part is more by a step."""
         others = values.copy()
         others[index] += step
         parts = [*self.recipes[:place], changed(others), *self.recipes[place + 1 :]]
         return _core.Load._from_parts(parts)
 
     def under(self, other: Callable[[float], _core.Load], steps: Floats) -> Floats:
-        """Give the motion under other loads."""
+        """Return the motion under other loads."""
         start = self.starts(self.given)
         return np.array([self.ends(start, other(step))[0] for step in steps])
 
@@ -388,7 +388,7 @@ class _Row:
 
 
 def _scheme(other: Callable[[float], _core.Load], step: float) -> _Scheme:
-    """Give the differences that a number takes which may have reached the least that is allowed."""
+    """Return the differences that a number takes which may have reached the least that is allowed."""
     try:
         other(float(min(CENTRAL.steps)) * step)
     except PolhodeError:
@@ -397,14 +397,14 @@ def _scheme(other: Callable[[float], _core.Load], step: float) -> _Scheme:
 
 
 def _together(sizes: Floats) -> Floats:
-    """Give the largest of the attitude and of ω for each component; each state has a unit of its own."""
+    """Return the largest of the attitude and of ω for each component; each state has a unit of its own."""
     for part in (slice(0, 3), slice(3, 6)):
         sizes[part] = sizes[part].max()
     return sizes
 
 
 def _large(ends: Floats) -> Floats:
-    """Give what is large in each number of motions: of an attitude, one."""
+    """Return what is large in each number of motions: of an attitude, one."""
     large = _together(np.abs(ends).max(axis=(0, 1)))
     large[:3] = 1.0
     return large

@@ -112,7 +112,7 @@ class Wheel:
             return np.true_divide(self.momentum, self.inertia)[()]
 
     def __eq__(self, other: object) -> bool:
-        """Tell whether all numbers are equal."""
+        """Return whether all numbers are equal."""
         if not isinstance(other, Wheel):
             return NotImplemented
         return self.mode == other.mode and all(
@@ -188,7 +188,7 @@ def wheel(
 
 
 def _plain(numbers: Any) -> Any:
-    """Give a float for a single number."""
+    """Return a float for a single number."""
     array = np.array(numbers)
     array.flags.writeable = False
     return float(array) if array.ndim == 0 else array

@@ -19,7 +19,7 @@ __all__ = [
 
 
 def lengths(vectors: Any) -> NDArray[np.float64]:
-    """Give the Euclidean norms along the last axis, without overflow or underflow."""
+    """Return the Euclidean norms along the last axis, without overflow or underflow."""
     vectors = np.asarray(vectors, dtype=float)
     largest = np.abs(vectors).max(axis=-1, keepdims=True)
     power = np.frexp(np.where(np.isfinite(largest), largest, 1.0))[1]
@@ -28,7 +28,7 @@ def lengths(vectors: Any) -> NDArray[np.float64]:
 
 
 def changes(values: Floats, size: Floats) -> tuple[Floats, Floats]:
-    """Give the sizes of the changes since the start, and the largest size on the way.
+    """Return the sizes of the changes since the start, and the largest size on the way.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def changes(values: Floats, size: Floats) -> tuple[Floats, Floats]:
 
 
 def drift(values: Floats, size: Floats) -> Any:
-    """Give the largest change since the start, relative to the largest size; see :func:`changes`."""
+    """Return the largest change since the start, relative to the largest size; see :func:`changes`."""
     change, largest = changes(values, size)
     found = np.divide(
         np.nanmax(change, axis=-1), largest, out=np.zeros_like(largest), where=np.asarray(largest > 0)

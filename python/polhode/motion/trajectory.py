@@ -137,7 +137,7 @@ class Trajectory(metaclass=Hinting):
             return value
 
     def __getstate__(self) -> dict[str, Any]:
-        """Give all attributes, for copy and pickle."""
+        """Return all attributes, for copy and pickle."""
         held = {
             name: self.__dict__[name]
             for name in ("_within", "_was_loaded", "_given", "_began")
@@ -238,7 +238,7 @@ class Trajectory(metaclass=Hinting):
         return self.position + _core.rotate(self.quaternion, self._per_time(arm))
 
     def invariants(self) -> Invariants:
-        """Give the conserved quantities of the motion, and how far the numbers have drifted from them.
+        """Return the conserved quantities of the motion, and how far the numbers have drifted from them.
 
         Returns
         -------
@@ -275,7 +275,7 @@ class Trajectory(metaclass=Hinting):
         )
 
     def state(self, index: int = -1) -> State:
-        """Give the state at one of the times, to go on from or to begin anew with.
+        """Return the state at one of the times, to go on from or to begin anew with.
 
         Parameters
         ----------
@@ -481,7 +481,7 @@ class Trajectory(metaclass=Hinting):
         )
 
     def sensitivity(self, method: Literal["series", "differences"] = "series") -> MotionSensitivity:
-        """Tell how the motion depends on its start, on the body and on the numbers of the load.
+        """Describe how the motion depends on its start, on the body and on the numbers of the load.
 
         Parameters
         ----------
@@ -673,7 +673,7 @@ class Trajectory(metaclass=Hinting):
         save_trajectory(self, path)
 
     def to_xarray(self) -> Dataset:
-        """Give the motion as an :class:`xarray.Dataset`; needs xarray.
+        """Return the motion as an :class:`xarray.Dataset`; needs xarray.
 
         Returns
         -------
@@ -706,7 +706,7 @@ class Trajectory(metaclass=Hinting):
         return dataset
 
     def to_pandas(self) -> DataFrame:
-        """Give the motion as a :class:`pandas.DataFrame`; needs pandas.
+        """Return the motion as a :class:`pandas.DataFrame`; needs pandas.
 
         Returns
         -------
@@ -798,7 +798,7 @@ class Trajectory(metaclass=Hinting):
 
     @cached_property
     def covariance(self) -> Floats | None:
-        """Give the covariance of (δ, ω) at every time, shape (..., T, 6, 6); None where nothing is uncertain.
+        """Return covariance of (δ, ω) at every time, shape (..., T, 6, 6); None where nothing is uncertain.
 
         δ is a small rotation from the attitude, ``R → R exp(δ×)``, components in the body frame, in radians.
         It comes from the covariance of the body, and from `omega` and `attitude` at the start if they were
@@ -820,7 +820,7 @@ class Trajectory(metaclass=Hinting):
 
     @cached_property
     def sigma(self) -> StateSigma | None:
-        """Give standard deviations of attitude and angular velocity, shape (..., T, 3) each, or None."""
+        """Return standard deviations of attitude and angular velocity, shape (..., T, 3) each, or None."""
         from polhode.uncertainty.motion import state_sigma
 
         return state_sigma(self)
@@ -857,7 +857,7 @@ class Trajectory(metaclass=Hinting):
         return motion_html(self)
 
     def _bodies(self) -> _core.RigidBody:
-        """Give the body or stack with axes for time, along which it broadcasts."""
+        """Return the body or stack with axes for time, along which it broadcasts."""
         return self.body[(..., *self._time_axes())]
 
     def _time_axes(self) -> tuple[None, ...]:
@@ -873,14 +873,14 @@ class Trajectory(metaclass=Hinting):
             )
 
     def _per_time(self, vectors: Floats) -> Floats:
-        """Give vectors the axes of time before their components."""
+        """Return vectors with the axes of time before their components."""
         return vectors[(..., *self._time_axes(), slice(None))]
 
     def _reference(self) -> Floats:
         return self._per_time(self.about)
 
     def _over_time(self, load: _core.Load) -> _core.Load:
-        """Give a stack of loads an axis for time, along which it broadcasts."""
+        """Return a stack of loads with an axis for time, along which it broadcasts."""
         return load[(..., *self._time_axes())] if load.shape else load
 
     def _states(self) -> tuple[Floats, ...]:
@@ -890,7 +890,7 @@ class Trajectory(metaclass=Hinting):
         return self.states or None
 
     def _is_loaded(self) -> bool:
-        """Tell whether a load acted, which a motion from a file does not have."""
+        """Return whether a load acted, which a motion from a file does not have."""
         return self.load is not None or "_was_loaded" in self.__dict__
 
     def _about_word(self) -> Literal["origin", "center_of_mass"]:
@@ -911,7 +911,7 @@ class Trajectory(metaclass=Hinting):
         )
 
     def _kept_directions(self) -> Any:
-        """Give the directions along which L is conserved: True for all, unit vectors, or None."""
+        """Return the directions along which L is conserved: True for all, unit vectors, or None."""
         if self.load is None:
             return None if self._is_loaded() else True
         return self.load.keeps_momentum(self._about_word())
@@ -935,12 +935,12 @@ class Trajectory(metaclass=Hinting):
             )
 
     def _rotor_inside(self) -> tuple[Floats, Floats]:
-        """Give the momentum h inside a gyrostat, and Σ J a aᵀ of its free wheels."""
+        """Return the momentum h inside a gyrostat, and Σ J a aᵀ of its free wheels."""
         motion: _core.GyrostatMotion = self.__dict__["_within"]
         return motion.rotor, motion.gyrostat._rotor()[1]
 
     def _carried_now(self) -> tuple[Floats, Floats] | None:
-        """Give momentum and energy of what the body carries along under the load, or as a gyrostat."""
+        """Return momentum and energy of what the body carries along under the load, or as a gyrostat."""
         if "_within" in self.__dict__:
             momentum, free = self._rotor_inside()
             of_free = np.einsum(
@@ -988,7 +988,7 @@ class Trajectory(metaclass=Hinting):
         return load + _core.rotor(rest)
 
     def _exact(self) -> _core.FreeMotion | _core.GyrostatMotion | None:
-        """Give the motion in closed form from the first state on, of one body; None where none is known."""
+        """Return the motion in closed form from the first state on, of one body; None where none is known."""
         if self._is_loaded() or self.pivoted:
             return None
         if "_within" not in self.__dict__:
@@ -1021,7 +1021,7 @@ def _unwrapped(angles: Floats) -> Floats:
 
 
 def _at(one: Wheel, slower: Floats) -> Wheel:
-    """Give a wheel as it turns where ω is less by so much: one that is free keeps ``J (Ω + a·ω)``."""
+    """Return a wheel as it turns where ω is less by so much: one that is free keeps ``J (Ω + a·ω)``."""
     if one.mode == "held":
         return one
     along = (one.axis / np.linalg.norm(one.axis)) @ slower

@@ -281,7 +281,7 @@ def fixed(robot: Robot, verdicts: Sequence[Verdict], words: Collection[str] = FA
 
 
 def _walk(element: Element) -> list[str]:
-    """Give every tag of a document."""
+    """Return every tag of a document."""
     waiting, tags = [element], []
     while waiting:
         item = waiting.pop()

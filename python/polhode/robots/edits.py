@@ -47,7 +47,7 @@ def indented(source: bytes, parent: Element, opening: str, inner: Iterable[str],
 
 
 def _blanks_before(source: bytes, start: int, end: int) -> str:
-    """Give the blanks before an element, behind a comment or the start of its parent."""
+    """Return the blanks before an element, behind a comment or the start of its parent."""
     between = source[start:end]
     return between[len(between.rstrip()) :].decode()
 

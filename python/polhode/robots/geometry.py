@@ -131,12 +131,12 @@ class GeometryReader:
         return Geometry(body, volume, role, low, high, len(boxes) - len(known), told)
 
     def filled(self, link: Link) -> RigidBody | None:
-        """Give the shapes filled with density 1, whatever the file says of their masses."""
+        """Return the shapes filled with density 1, whatever the file says of their masses."""
         plain = replace(link, shapes=tuple(replace(s, density=1.0, mass=None) for s in link.shapes))
         return self._whole(plain, link.folder or self._folder, {})[0]
 
     def coarseness(self, link: Link) -> float:
-        """Give how far the shapes may miss the surface they stand for, in metres.
+        """Return how far the shapes may miss the surface they stand for, in metres.
 
         A mesh misses a round surface by the sagitta of its facets; a box, a cylinder and the like only stand
         for the true part, which is taken to be within 2 % of their diagonal.
@@ -181,7 +181,7 @@ class GeometryReader:
         return None, 0.0, role, marker if np.isfinite(marker) else None
 
     def _body(self, shape: Shape, folder: Path, notes: dict[str, str]) -> tuple[RigidBody, float] | None:
-        """Give the body of a shape where it stands, and its volume."""
+        """Return the body of a shape where it stands, and its volume."""
         if shape.problem:
             return None
         key = (folder, shape.kind, shape.mesh, shape.size, shape.counting)
@@ -200,7 +200,7 @@ class GeometryReader:
         return placed.scaled(mass=weight), float(solid.mass)
 
     def _mesh_solid(self, shape: Shape, folder: Path) -> tuple[RigidBody | None, str]:
-        """Give the solid that a mesh bounds, or its convex hull, and what has to be said of it."""
+        """Return the solid that a mesh bounds, or its convex hull, and what has to be said of it."""
         read, name = self._mesh(shape.mesh, folder), shortened(shape.mesh)
         if isinstance(read, str):
             return None, read
@@ -296,7 +296,7 @@ class GeometryReader:
 
 
 def _of_cad(cad: CadFile) -> _Read:
-    """Give the solids of a CAD file with density 1, in metres, and the corners of wide boxes around them."""
+    """Return solids of a CAD file with density 1, in metres, and the corners of wide boxes around them."""
     from polhode.io.cad_files import solids_of
 
     signs = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
@@ -312,7 +312,7 @@ def _of_cad(cad: CadFile) -> _Read:
 
 
 def _counted(name: str, legacy: RigidBody, solid: RigidBody | None) -> tuple[RigidBody, str]:
-    """Give what MuJoCo takes a mesh for, and say where that is not what it fills."""
+    """Return what MuJoCo takes a mesh for, and say where that is not what it fills."""
     by = 'MuJoCo\'s inertia="legacy", its default'
     if solid is None:
         return legacy, f"mesh {name} does not bound a solid: {by}, adds the tetrahedra of its triangles"
@@ -342,7 +342,7 @@ def _overlapping(name: str, vertices: Floats, faces: NDArray[np.int64]) -> str:
 
 
 def _solid(shape: Shape) -> tuple[RigidBody | None, str]:
-    """Give the solid of a shape that is no mesh, or why there is none."""
+    """Return the solid of a shape that is no mesh, or why there is none."""
     if shape.kind not in _SOLIDS:
         return None, f"a shape of kind {quoted(shape.kind)} has no volume that could be told"
     try:
@@ -362,7 +362,7 @@ _SMOOTH: Final = np.deg2rad(40.0)
 
 
 def sagitta(vertices: NDArray[np.float64], faces: NDArray[np.integer]) -> float:
-    r"""Give the largest height of an arc over the facets that stand for it.
+    r"""Return the largest height of an arc over the facets that stand for it.
 
     Two facets of width w that meet at an angle θ (between their normals) are chords of one arc,
     :math:`w = 2 r \sin(\theta/2)`, whose height over a chord is

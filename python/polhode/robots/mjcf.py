@@ -172,7 +172,7 @@ class _Reader:
         yield from self.below(body, inherited, key)
 
     def _joint(self, body: Element, name: str, above: str, key: str) -> Joint:
-        """Tell what moves a body: its joints, else nothing."""
+        """Return what moves a body: its joints, else nothing."""
         free = [*self.members(body, "freejoint", Place.here(), None)]
         joints = [*free, *self.members(body, "joint", Place.here(), None)]
         if not joints:
@@ -183,7 +183,7 @@ class _Reader:
     def members(
         self, parent: Element, tag: str, place: Place, inherited: str | None, problem: str = ""
     ) -> Iterator[Member]:
-        """Give the elements of a body or the world, those in frames too."""
+        """Return the elements of a body or the world, those in frames too."""
         for child in parent.children:
             if child.tag == tag:
                 yield Member(child, place, inherited, problem)
@@ -195,14 +195,14 @@ class _Reader:
                 yield from self._copied(child, tag, Member(child, place, inherited, problem))
 
     def _step(self, element: Element, attributes: dict[str, str]) -> tuple[Place, str]:
-        """Give a frame, and what is wrong with it: that ends the verdict of what stands in it alone."""
+        """Return a frame, and what is wrong with it: that ends the verdict of what stands in it alone."""
         try:
             return self._place(element, attributes), ""
         except FileFormatError as error:
             return Place.here(), str(error)
 
     def _copied(self, replicate: Element, tag: str, first: Member) -> Iterator[Member]:
-        """Give the elements of every copy; bodies once, as they are the same in all."""
+        """Return the elements of every copy; bodies once, as they are the same in all."""
         attributes = replicate.attributes
         turn = {"pos": attributes.get("offset", "0 0 0"), "euler": attributes.get("euler", "0 0 0")}
         step, fault = self._step(replicate, turn)
@@ -270,7 +270,7 @@ class _Reader:
         yield from self.below(frame.element, inherited, above)
 
     def everything(self, parent: Element, tag: str, inherited: str | None) -> Iterator[Member]:
-        """Give every body, or every frame, below a body or the world."""
+        """Return every body, or every frame, below a body or the world."""
         for child in parent.children:
             if child.tag not in ("body", "frame", "replicate"):
                 continue
@@ -428,7 +428,7 @@ def compiler_of(compilers: Sequence[Element]) -> Compiler:
 
 
 def total_mass_of(compilers: Sequence[Element]) -> float:
-    """Give the mass that ``settotalmass`` sets for all bodies together; 0 where it does not."""
+    """Return the mass that ``settotalmass`` sets for all bodies together; 0 where it does not."""
     return max(_number(compilers, "settotalmass"), 0.0)
 
 
@@ -480,7 +480,7 @@ def _bounded(compiler: Compiler, verdict: Verdict) -> Verdict:
 
 
 def _mass(link: Link, verdict: Verdict) -> float | None:
-    """Give the mass of a body as it is before ``settotalmass``; None where it is not known."""
+    """Return the mass of a body as it is before ``settotalmass``; None where it is not known."""
     if verdict.mass is None and verdict.verdict in ("none", "missing"):
         return link.compiler.mass if link.compiler else 0.0
     if verdict.mass is None:
@@ -499,7 +499,7 @@ def _told(verdict: Verdict, words: str, mass: float | None = None, moments: Any 
 
 
 def matrix(quaternion: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Give the rotation of a unit quaternion, scalar last."""
+    """Return the rotation of a unit quaternion, scalar last."""
     return np.stack([rotate(quaternion, axis) for axis in np.eye(3)], axis=-1)
 
 
@@ -514,7 +514,7 @@ def mesh_shape(
     *,
     weighs: bool,
 ) -> Shape:
-    """Give the shape of a geom that is a mesh.
+    """Return the shape of a geom that is a mesh.
 
     MuJoCo moves the vertices by minus `refpos`, turns them by the inverse of `refquat`, and then scales them.
 
@@ -548,7 +548,7 @@ def mesh_shape(
 
 
 def legacy_solid(vertices: NDArray[np.float64], faces: NDArray[np.integer]) -> RigidBody:
-    """Give the matter of density 1 that MuJoCo takes a mesh for with ``inertia="legacy"``, its default.
+    """Return the matter of density 1 that MuJoCo takes a mesh for with ``inertia="legacy"``, its default.
 
     The tetrahedra from the centroid of the surface to its triangles all count as full, whichever way they are
     wound: twice where they overlap, as where a mesh is not convex. From their centre of mass new tetrahedra
@@ -570,7 +570,7 @@ def legacy_solid(vertices: NDArray[np.float64], faces: NDArray[np.integer]) -> R
 
 
 def _volumes(corners: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Give the volumes of the tetrahedra from the origin to triangles, all positive."""
+    """Return the volumes of the tetrahedra from the origin to triangles, all positive."""
     heights = np.cross(corners[:, 0], corners[:, 1])
     found: NDArray[np.float64] = np.abs((heights * corners[:, 2]).sum(axis=1)) / 6.0
     return found
@@ -614,7 +614,7 @@ def expand_includes(root: Element, folder: Path, sources: Sources) -> None:
 
 
 def copies(replicate: Element) -> int:
-    """Give how many copies a ``<replicate>`` asks for."""
+    """Return how many copies a ``<replicate>`` asks for."""
     text = replicate.attributes.get("count")
     (count,) = numbers(replicate, text, 1, "count")
     if count != int(count) or count < 1:

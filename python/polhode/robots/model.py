@@ -47,7 +47,7 @@ class Place(NamedTuple):
 
     @classmethod
     def here(cls) -> Place:
-        """Give the frame itself."""
+        """Return the frame itself."""
         return cls(np.eye(3), np.zeros(3))
 
     def then(self, inner: Place) -> Place:
@@ -282,7 +282,7 @@ def scale(element: Element, text: str) -> tuple[float, ...]:
 
 
 def unit(element: Element, vector: Floats) -> Floats:
-    """Give the direction of a vector, or the quaternion of a rotation, of length 1.
+    """Return the direction of a vector, or the quaternion of a rotation, of length 1.
 
     Raises
     ------
@@ -299,12 +299,12 @@ def unit(element: Element, vector: Floats) -> Floats:
 
 
 def shortened(text: str, most: int = 200) -> str:
-    """Give a text, or its beginning and how long it is."""
+    """Return a text, or its beginning and how long it is."""
     return text if len(text) <= most else f"{text[:most]}... ({len(text)} characters)"
 
 
 def quoted(text: str | None, most: int = 80) -> str:
-    """Give a text between quotes alike; None where there is none."""
+    """Return a text between quotes alike; None where there is none."""
     if text is None or len(text) <= most:
         return repr(text)
     return f"{text[:most]!r}... ({len(text)} characters)"

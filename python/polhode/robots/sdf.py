@@ -382,19 +382,19 @@ def _located(include: Element, uri: str, sources: Sources, folder: Path) -> Path
 
 
 def child_text(parent: Element, tag: str) -> str:
-    """Give the text of a child; "" where there is none."""
+    """Return the text of a child; "" where there is none."""
     element = parent.find(tag)
     return element.text.strip() if element is not None else ""
 
 
 def is_true(parent: Element, tag: str, attributes: dict[str, str] | None = None) -> bool:
-    """Tell whether a child, or an attribute, says yes."""
+    """Return whether a child, or an attribute, says yes."""
     text = child_text(parent, tag) if attributes is None else attributes.get(tag, "")
     return text.lower() in ("true", "1")
 
 
 def _newest(root: Element, config: Path) -> str:
-    """Give the name of the newest file that a ``model.config`` offers."""
+    """Return the name of the newest file that a ``model.config`` offers."""
     offered = sorted(root.all("sdf"), key=_version)
     if not offered:
         raise FileFormatError(f"{config}: names no <sdf>; add the name of its file")

@@ -122,7 +122,7 @@ class Sources:
         of.spend("elements in copies", number, at.where)
 
     def name(self, prefix: str, own: str, at: Element) -> str:
-        """Give a link its name; a long one is cut, and links are counted.
+        """Return a link its name; a long one is cut, and links are counted.
 
         Raises
         ------
@@ -133,7 +133,7 @@ class Sources:
         return self.prefix(prefix + own)
 
     def prefix(self, text: str) -> str:
-        """Give what names of links begin with, cut where it is long: they all hold it."""
+        """Return what names of links begin with, cut where it is long: they all hold it."""
         return shortened(text, _LONGEST_NAME)
 
     @contextmanager
@@ -280,7 +280,7 @@ class Addresses:
         return Found(None, fault)
 
     def _candidates(self, address: str, folder: Path) -> Iterator[tuple[Path, tuple[Path, ...]]]:
-        """Give each path that an address may stand for, and the folders that it has to lie in."""
+        """Return each path that an address may stand for, and the folders that it has to lie in."""
         scheme, separator, rest = address.partition("://")
         if not separator or scheme == "file":
             plain = rest if separator else address
@@ -301,7 +301,7 @@ class Addresses:
                 yield called / inside.lstrip("/"), self._of_package(called, folder)
 
     def _by_own_name(self, folder: Path) -> dict[str, Path]:
-        """Give the packages above a model, and those within its roots, by what ``package.xml`` calls them."""
+        """Return packages above a model, and those within its roots, by what ``package.xml`` calls them."""
         if folder not in self._named:
             names: dict[str, Path] = {}
             wide = _wide(folder)
@@ -315,7 +315,7 @@ class Addresses:
         return self._named[folder]
 
     def _own(self, folder: Path) -> tuple[Path, ...]:
-        """Give the folders that a model in this folder may name files in: its own and the declared ones."""
+        """Return the folders that a model in this folder may name files in: its own and the declared ones."""
         if folder not in self._roots:
             places = dict.fromkeys((Path(os.path.realpath(folder)), _absolute(folder)))
             inside = [own_root(place) for place in places]
@@ -323,7 +323,7 @@ class Addresses:
         return self._roots[folder]
 
     def _of_package(self, home: Path, folder: Path) -> tuple[Path, ...]:
-        """Give the folders that a file of a package may lie in; the model's own where it is no package."""
+        """Return the folders that a file of a package may lie in; the model's own where it is no package."""
         own = self._own(folder)
         marks = [home / mark for mark in _PACKAGES if _kind(home / mark)[0]]
         if not marks and not any(home.is_relative_to(root) for root in own):
@@ -357,7 +357,7 @@ def own_root(folder: Path) -> Path:
 
 
 def _wide(folder: Path) -> set[Path]:
-    """Give the folders that hold everything: the user's home and those above it."""
+    """Return the folders that hold everything: the user's home and those above it."""
     try:
         home = Path(os.path.realpath(Path.home()))
     except RuntimeError:  # of a user without one
@@ -366,7 +366,7 @@ def _wide(folder: Path) -> set[Path]:
 
 
 def _folders_within(roots: Sequence[Path]) -> list[Path]:
-    """Give the folders in these, level by level; those within a package, and links, are not entered."""
+    """Return the folders in these, level by level; those within a package, and links, are not entered."""
     level, found = list(dict.fromkeys(roots)), []
     for depth in range(_DEEPEST + 1):
         found += level
@@ -386,7 +386,7 @@ def _folders_within(roots: Sequence[Path]) -> list[Path]:
 
 
 def _own_name(mark: Path) -> str:
-    """Give the name that a ``package.xml`` states; "" where there is none."""
+    """Return the name that a ``package.xml`` states; "" where there is none."""
     # A link to something else is not opened; that of an installed package leads to the source's own.
     if not _kind(mark)[0] or Path(os.path.realpath(mark)).name != mark.name:
         return ""
@@ -409,7 +409,7 @@ def _from_environment() -> Iterator[Path]:
 
 
 def _spellings(name: str) -> tuple[str, ...]:
-    """Give a path, and as it is meant where Windows wrote it."""
+    """Return a path, and as it is meant where Windows wrote it."""
     if not name:
         return ()
     return (name, name.replace("\\", "/")) if "\\" in name else (name,)

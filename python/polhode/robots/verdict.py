@@ -157,7 +157,7 @@ def judge(
 
 
 def has_own_tensor(link: Link) -> bool:
-    """Tell whether a tensor may have been measured or identified: a body has it, and it is no placeholder."""
+    """Return whether a tensor may have been measured: a body has it, and it is no placeholder."""
     declared = link.inertial
     if declared is None or link.defaults or _isotropic(declared.inertia) is not None:
         return False
@@ -174,7 +174,7 @@ def replacement(verdict: Verdict, words: Collection[str]) -> Inertial | None:
 
 
 def is_without_mass(link: Link, verdict: Verdict) -> bool:
-    """Tell whether a link fails and its file says no mass, so that a density or a mass is needed."""
+    """Return whether a link fails and its file says no mass, so that a density or a mass is needed."""
     return verdict.verdict == "missing" or ("1 kg" in link.defaults and verdict.verdict in FAILURES)
 
 
@@ -213,7 +213,7 @@ def _is_point(declared: Inertial) -> bool:
 
 
 def _reach(robot: Robot, geometry: Sequence[Geometry]) -> float:
-    """Give how far the robot reaches at most, end to end, by its joints and the shapes that were read."""
+    """Return how far the robot reaches at most, end to end, by its joints and the shapes that were read."""
     joints = sum(link.reach for link in robot.links)
     shapes = (
         float(np.linalg.norm(each.high - each.low))
@@ -370,7 +370,7 @@ class _Judging(NamedTuple):
 
 
 def _are_near(one: Floats, other: Floats) -> bool:
-    """Tell whether two tensors differ by less than a hundredth of the first."""
+    """Return whether two tensors differ by less than a hundredth of the first."""
     return bool(np.abs(one - other).max() <= 0.01 * np.abs(one).max())
 
 
@@ -385,7 +385,7 @@ def _filled(
     density: float | None,
     mass: float | None,
 ) -> list[Verdict]:
-    """Give links whose file says no mass what their shapes have, of that density or that mass together."""
+    """Return links whose file says no mass what their shapes have, of that density or that mass together."""
     if density is None and mass is None:
         return verdicts
     without = {
@@ -428,7 +428,7 @@ def _filled(
 
 
 def _farthest(declared: Floats, own: Floats) -> float | None:
-    """Give the ratio of moments that is farthest from 1, either way."""
+    """Return the ratio of moments that is farthest from 1, either way."""
     ratios = np.where(own > 0.0, declared / own, np.nan)
     distance = np.abs(np.log(np.where(ratios > 0.0, ratios, np.nan)))
     return None if np.isnan(distance).all() else float(ratios[np.nanargmax(distance)])
@@ -534,7 +534,7 @@ class _Group:
 
 
 def standings(robot: Robot, has_mass: Sequence[bool], has_spread: Sequence[bool]) -> list[Standing]:
-    """Tell for every link whether it can move and what carries mass there.
+    """Describe for every link whether it can move and what carries mass there.
 
     Parameters
     ----------
@@ -604,7 +604,7 @@ def standings(robot: Robot, has_mass: Sequence[bool], has_spread: Sequence[bool]
 
 
 def _with_mass_below(groups: Iterable[_Group]) -> set[_Group]:
-    """Give the groups that have mass, themselves or in what hangs on them."""
+    """Return the groups that have mass, themselves or in what hangs on them."""
     above: dict[_Group, list[_Group]] = {}
     waiting: list[_Group] = []
     for group in groups:

@@ -37,7 +37,7 @@ _ABOUT: Final = {
 
 
 def names() -> tuple[str, ...]:
-    """Give the names of the files.
+    """Return the names of the files.
 
     Examples
     --------
@@ -64,7 +64,7 @@ def about(name: str) -> str:
 
 
 def path(name: str) -> Path:
-    """Give the path of a file, for functions that read one.
+    """Return the path of a file, for functions that read one.
 
     Parameters
     ----------

@@ -121,11 +121,11 @@ class Shape:
         return parallel_axis(self.inertia, self.mass, away)
 
     def function(self) -> Callable[..., NDArray[Any]]:
-        """Give the tensor as a numeric function of arrays; it takes values of `arguments`."""
+        """Return the tensor as a numeric function of arrays; it takes values of `arguments`."""
         return function(self.inertia, self.arguments)
 
     def latex(self) -> str:
-        r"""Give measure and moments in LaTeX.
+        r"""Return measure and moments in LaTeX.
 
         Examples
         --------
@@ -151,12 +151,12 @@ class Shape:
 
 
 def names() -> tuple[str, ...]:
-    """Give the names of the shapes: all of `solids`, `laminae` and `rods`."""
+    """Return the names of the shapes: all of `solids`, `laminae` and `rods`."""
     return tuple(SHAPES)
 
 
 def shape(name: str, *, corners: int | None = None) -> Shape:
-    """Give the formulas of a shape by its name.
+    """Return the formulas of a shape by its name.
 
     Parameters
     ----------
@@ -257,7 +257,7 @@ def _arc() -> Row:
 
 
 def polygon(corners: int) -> Row:
-    """Give a polygon with so many corners: sums over its edges, from its first corner."""
+    """Return a polygon with so many corners: sums over its edges, from its first corner."""
     if corners < 3:
         raise ValueError(f"corners: a polygon has at least 3, got {corners}")
     points = [real(f"x_{k} y_{k}") for k in range(1, corners + 1)]

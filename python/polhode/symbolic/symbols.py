@@ -26,12 +26,12 @@ sympy: Final[Any] = require("sympy", extra="symbolic", purpose="polhode.symbolic
 
 
 def positive(names: str) -> Any:
-    """Give symbols of positive numbers."""
+    """Return symbols of positive numbers."""
     return sympy.symbols(names, positive=True)
 
 
 def real(names: str) -> Any:
-    """Give symbols of real numbers."""
+    """Return symbols of real numbers."""
     return sympy.symbols(names, real=True)
 
 

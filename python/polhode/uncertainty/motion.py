@@ -45,7 +45,7 @@ __all__ = [
 
 
 def runs_from_zero(run: Trajectory) -> list[tuple[Trajectory, Places, Places]]:
-    """Give runs of a closed form from t = 0, forwards and backwards, which meet all times of this one.
+    """Return runs of a closed form from t = 0, forwards and backwards, which meet all times of this one.
 
     With each: which of the times, flat, and their places in the run.
 
@@ -124,7 +124,7 @@ def state_covariance(self: Trajectory) -> Floats | None:
 
 
 def state_sigma(self: Trajectory) -> StateSigma | None:
-    """Give standard deviations of attitude and angular velocity, shape (..., T, 3) each, or None."""
+    """Return standard deviations of attitude and angular velocity, shape (..., T, 3) each, or None."""
     found = self.covariance
     if found is None:
         return None
@@ -135,7 +135,7 @@ def state_sigma(self: Trajectory) -> StateSigma | None:
 
 
 def spin_covariance(self: Trajectory, frame: Literal["space", "body"]) -> Floats | None:
-    """Give the covariance of L = I_P ω at every time, shape (..., T, 3, 3), or None as of `covariance`.
+    """Return the covariance of L = I_P ω at every time, shape (..., T, 3, 3), or None as of `covariance`.
 
     δL = δI ω + I δω in the body, and in space what the rotation δ of the body adds, R (δ × L).
     """
@@ -173,7 +173,7 @@ def spin_covariance(self: Trajectory, frame: Literal["space", "body"]) -> Floats
 
 
 def _of_carried(self: Trajectory) -> tuple[Floats, Floats]:
-    """Give the derivatives of the momentum carried along by ω and by the states; it is linear in both."""
+    """Return the derivatives of the momentum carried along by ω and by the states; it is linear in both."""
     load = self._acting("covariance")
     assert load is not None
     stack = self.omega.shape[:-2]
@@ -195,12 +195,12 @@ def _of_carried(self: Trajectory) -> tuple[Floats, Floats]:
 
 
 def _squares(forms: Floats) -> Floats:
-    """Give the covariance of numbers that depend on independent variables."""
+    """Return the covariance of numbers that depend on independent variables."""
     return np.asarray(np.einsum("...ik,...jk->...ij", forms, forms))
 
 
 def _forms(self: Trajectory) -> tuple[Floats | None, dict[tuple[int, ...], int]]:
-    """Give what each variable does to (δ, ω, states) per deviation, (..., T, 6 + n, k), and their columns."""
+    """Return changes of (δ, ω, states) per deviation of each variable, (..., T, 6 + n, k), and columns."""
     if not isinstance(self.uncertain_start, tuple):
         return _forms_from_zero(self)
     omega, attitude = self.uncertain_start
@@ -246,7 +246,7 @@ def _forms(self: Trajectory) -> tuple[Floats | None, dict[tuple[int, ...], int]]
 
 
 def _forms_from_zero(self: Trajectory) -> tuple[Floats | None, dict[tuple[int, ...], int]]:
-    """Give it for a closed form at any times."""
+    """Return the same for a motion in closed form, at any times."""
     stack = self.omega.shape[: self.omega.ndim - 1 - self.t.ndim]
     flat = np.zeros(0)
     columns: dict[tuple[int, ...], int] = {}
@@ -261,7 +261,7 @@ def _forms_from_zero(self: Trajectory) -> tuple[Floats | None, dict[tuple[int, .
 
 
 def _by_numbers(self: Trajectory, slopes: MotionSensitivity) -> Floats:
-    """Give the derivatives of (δ, ω, states) by the body's ten numbers, shape (..., T, 6 + n, 10).
+    """Return the derivatives of (δ, ω, states) by the body's ten numbers, shape (..., T, 6 + n, 10).
 
     The sensitivities are by the tensor about the reference point P, in its principal axes:
     ``I_P = I_C + m (d² 1 − d dᵀ)``, d from P to C.
@@ -281,7 +281,7 @@ def _by_numbers(self: Trajectory, slopes: MotionSensitivity) -> Floats:
 
 
 def _tensors(self: Trajectory) -> Floats:
-    """Give the derivatives of the tensor about P by the body's ten numbers, shape (..., 10, 3, 3)."""
+    """Return the derivatives of the tensor about P by the body's ten numbers, shape (..., 10, 3, 3)."""
     body = self.body
     d = body.center_of_mass if self.pivoted else np.zeros_like(body.center_of_mass)
     mass = np.asarray(body.mass)[..., None, None]
@@ -321,7 +321,7 @@ class StateLinear(NamedTuple):
 
 
 def state_linear(run: Trajectory) -> StateLinear:
-    """Tell at which times the sigmas of an uncertain motion are linear enough.
+    """Describe at which times the sigmas of an uncertain motion are linear enough.
 
     Runs of 256 neighbours, along random directions in the space of what is uncertain, show the terms of
     second and third order. They are run by the defaults of :meth:`polhode.RigidBody.simulate`.
@@ -341,7 +341,7 @@ def state_linear(run: Trajectory) -> StateLinear:
 
 
 def _row(run: Trajectory, stack: tuple[int, ...], row: int) -> NDArray[np.bool_]:
-    """Tell it of one motion of a stack, shape (T, 6)."""
+    """Return the same for one motion of a stack, shape (T, 6)."""
     place = np.unravel_index(row, stack)
     body, load = _taken(run.body, stack, row), _taken(run.load, stack, row)
     start = run.uncertain_start
@@ -411,13 +411,13 @@ def _product(a: Floats, b: Floats) -> Floats:
 
 
 def _exponential(angles: Floats) -> Floats:
-    """Give the quaternions of rotation vectors."""
+    """Return the quaternions of rotation vectors."""
     half = 0.5 * np.linalg.norm(angles, axis=-1, keepdims=True)
     return np.concatenate([0.5 * angles * np.sinc(half / np.pi), np.cos(half)], axis=-1)
 
 
 def _logarithm(quaternion: Floats) -> Floats:
-    """Give the rotation vectors of quaternions, of at most half a turn."""
+    """Return the rotation vectors of quaternions, of at most half a turn."""
     q = np.where(quaternion[..., 3:] < 0.0, -quaternion, quaternion)
     sine = np.linalg.norm(q[..., :3], axis=-1, keepdims=True)
     angle = 2.0 * np.arctan2(sine, q[..., 3:])

@@ -167,7 +167,7 @@ def mode_probabilities(motion: FreeMotion) -> ModeProbabilities:
 
 
 def both_positive(means: tuple[float, float], slopes: tuple[Floats, Floats]) -> float:
-    """Give the probability that two numbers are positive, jointly normal with these means.
+    """Return the probability that two numbers are positive, jointly normal with these means.
 
     Parameters
     ----------
@@ -201,5 +201,5 @@ def both_positive(means: tuple[float, float], slopes: tuple[Floats, Floats]) -> 
 
 
 def _below(x: float) -> float:
-    """Give the probability that a standard normal variable is below x."""
+    """Return the probability that a standard normal variable is below x."""
     return 0.5 * math.erfc(-x / math.sqrt(2.0))

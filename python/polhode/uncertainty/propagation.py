@@ -172,7 +172,7 @@ def propagate(
 
 
 def _numbers(f: Function, given: tuple[Any, ...], shape: tuple[int, ...] | None = None) -> Floats:
-    """Give the value of a function, which keeps its shape."""
+    """Return the value of a function, which keeps its shape."""
     value = np.asarray(f(*given), dtype=float)
     if shape is not None and value.shape != shape:
         message = f"f: its value has the shape {value.shape} here and {shape} for the body itself"
@@ -181,7 +181,7 @@ def _numbers(f: Function, given: tuple[Any, ...], shape: tuple[int, ...] | None 
 
 
 def slopes_of(f: Function, around: Neighbours, shape: tuple[int, ...]) -> Floats:
-    """Give the derivatives by one standard deviation of each direction, shape (k, numbers)."""
+    """Return the derivatives by one standard deviation of each direction, shape (k, numbers)."""
     found = []
     for direction in np.eye(around.rank):
         step = around.step(direction)
@@ -224,7 +224,7 @@ def _is_linear(f: Function, around: Neighbours, value: Floats, slopes: Floats) -
 def is_enough(
     first: Floats, change: Floats, even: Floats, variance: Floats, noise: Floats
 ) -> NDArray[np.bool_]:
-    """Tell whether the first order is enough, from random directions with normal coordinates.
+    """Return whether the first order is enough, from random directions with normal coordinates.
 
     Parameters
     ----------
@@ -366,7 +366,7 @@ class Neighbours:
             self._way = _Way(body, self._factor)
 
     def at(self, coordinates: Floats) -> tuple[Any, ...]:
-        """Give the body and the other numbers with these coordinates; their own are zero."""
+        """Return the body and the other numbers with these coordinates; their own are zero."""
         moved = self._others @ coordinates
         values: list[Any] = []
         for value in self._values:
@@ -382,7 +382,7 @@ class Neighbours:
         return tuple(self._values) if self.body is None else (self.body, *self._values)
 
     def step(self, direction: Floats) -> float:
-        """Give the longest step, up to one deviation, that leads to bodies both ways."""
+        """Return the longest step, up to one deviation, that leads to bodies both ways."""
         step = 1.0
         for _ in range(HALVINGS):
             try:
@@ -396,7 +396,7 @@ class Neighbours:
         raise PolhodeError(message)
 
     def probes(self, step: float) -> Iterator[tuple[list[tuple[Any, ...]], list[tuple[Any, ...]]]]:
-        """Give the bodies a step each way along each probe: as moved here, and as the body knows."""
+        """Return the bodies a step each way along each probe: as moved here, and as the body knows."""
         if self.body is None:
             return
         slopes, bends = self.body._probes()
@@ -452,18 +452,18 @@ class _Way:
         )
 
     def to(self, change: Floats) -> RigidBody:
-        """Give the body after a change."""
+        """Return the body after a change."""
         return _body(self._straight(change) if self._is_straight else self._turned(change))
 
     def straight_to(self, change: Floats) -> RigidBody:
-        """Give the body after a change that is right to second order."""
+        """Return the body after a change that is right to second order."""
         return _body(self._straight(change))
 
     def _straight(self, change: Floats) -> Floats:
         return self._numbers + change
 
     def _turned(self, change: Floats) -> Floats:
-        """Give the ten numbers after a change of principal moments and angles."""
+        """Return the ten numbers after a change of principal moments and angles."""
         turned = self._axes.T @ _symmetric(change[4:]) @ self._axes
         gaps = np.where(self._apart, self._moments[None, :] - self._moments[:, None], 1.0)
         angles = np.where(self._apart, turned / gaps, 0.0)
@@ -473,7 +473,7 @@ class _Way:
         return np.array([*(self._numbers[:4] + change[:4]), *(tensor[place] for place in ORDER)])
 
     def _misses(self, way: Callable[[Floats], Floats], slopes: Floats, bends: Floats) -> float:
-        """Tell how far from the body's own second order a way along its probes leads."""
+        """Describe how far from the body's own second order a way along its probes leads."""
         missed = 0.0
         for slope, bend in zip(slopes, bends, strict=True):
             even = 0.5 * (way(slope) + way(-slope)) - self._numbers
@@ -481,7 +481,7 @@ class _Way:
         return missed
 
     def _pairs_apart(self, changes: Floats) -> NDArray[np.bool_]:
-        """Tell which pairs of moments are far enough apart for the angle between their axes."""
+        """Return which pairs of moments are far enough apart for the angle between their axes."""
         apart = np.zeros((3, 3), dtype=bool)
         for i in range(3):
             for j in range(3):
@@ -546,7 +546,7 @@ def _symmetric(elements: Floats) -> Floats:
 
 
 def _rotation(angles: Floats) -> Floats:
-    """Give the exponential of an antisymmetric matrix (Rodrigues)."""
+    """Return the exponential of an antisymmetric matrix (Rodrigues)."""
     squared = angles @ angles
     angle = float(np.sqrt(max(0.0, -0.5 * np.trace(squared))))
     if angle < 1e-4:  # the next terms are below rounding

@@ -101,7 +101,7 @@ def _holds(values: Any, kinds: tuple[type, ...]) -> bool:
 
 
 def _cells(values: Any, kinds: tuple[type, ...], above: tuple[int, ...]) -> Any:
-    """Give the same nest of lists with a `_Number` in place of each."""
+    """Return the same nest of lists with a `_Number` in place of each."""
     if isinstance(values, _core.Uncertain):
         if hasattr(values.value, "as_quat"):
             raise TypeError(
@@ -157,13 +157,13 @@ class TenNumbers(NamedTuple):
 
 
 def ufloat_kinds() -> tuple[type, ...]:
-    """Give the class of their numbers, where somebody has loaded the package."""
+    """Return the class of their numbers, where somebody has loaded the package."""
     module = sys.modules.get("uncertainties")
     return () if module is None else (module.UFloat,)
 
 
 def ufloat_terms(number: Any) -> dict[tuple[int, int], float]:
-    """Give the change of one of their numbers by one standard deviation of each of our variables.
+    """Return the change of one of their numbers by one standard deviation of each of our variables.
 
     What depends on one variable there depends on one variable here, in all calls.
     """
@@ -190,7 +190,7 @@ def _words(variable: Any) -> tuple[int, int]:
 
 
 def to_ufloats(body: RigidBody) -> TenNumbers:
-    """Give the numbers of one body as numbers of the package *uncertainties*, with all their correlations.
+    """Return the numbers of one body as numbers of the package *uncertainties*, with all their correlations.
 
     Parameters
     ----------

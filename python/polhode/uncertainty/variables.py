@@ -59,7 +59,7 @@ def row_of(given: _core.Uncertain, row: int) -> _core.Uncertain:
 
 
 def changes_in_principal_axes(body: RigidBody) -> list[Floats] | None:
-    """Give W = Vᵀ δI V for one standard deviation of each variable, V the principal axes.
+    """Return W = Vᵀ δI V for one standard deviation of each variable, V the principal axes.
 
     Returns
     -------

@@ -95,7 +95,7 @@ def film(
 
 
 def _delays(count: int, duration: float) -> list[int]:
-    """Give how long each picture is shown, in milliseconds: whole hundredths of a second, as a GIF has them.
+    """Return how long each picture is shown, in milliseconds: whole hundredths of a second, as a GIF has them.
 
     Each change is the one that is nearest to its time, so that the whole takes the time that was asked for.
     """
@@ -321,7 +321,7 @@ class Picture:
         ]  # fmt: skip
 
     def _named(self, text: str, color: str, weight: str, point: Floats, middle: Floats) -> Name:
-        """Give the name of a point in space, which stands away from a point of the picture."""
+        """Return the name of a point in space, which stands away from a point of the picture."""
         at = self._on_screen(point[np.newaxis])[0]
         far = float(np.linalg.norm(at - middle))
         away = (at - middle) / far if far > 0.0 else np.array([0.0, 1.0])
@@ -329,7 +329,7 @@ class Picture:
         return Name(text, color, weight, at, away, size)
 
     def _on_screen(self, points: Floats) -> Floats:
-        """Give the pixels, from the lower left corner, at which points are seen."""
+        """Return the pixels, from the lower left corner, at which points are seen."""
         x, y, _ = self._proj.proj_transform(*points.T, self._ax.get_proj())
         seen: Floats = self._ax.transData.transform(np.stack([x, y], axis=-1))
         return seen
@@ -374,14 +374,14 @@ class Picture:
         return (1.4 + rows) * line
 
     def _time(self, frame: int) -> str:
-        """Give the time of a frame, to a thousandth of the length of the motion."""
+        """Return the time of a frame, to a thousandth of the length of the motion."""
         t = self._scene.t
         most, length = float(np.abs(t).max()), float(np.ptp(t))
         digits = 4 if length == 0.0 else int(np.clip(np.ceil(np.log10(most / length)) + 4, 4, 16))
         return f"t = {t[frame]:.{digits}g} {self._scene.time_unit}"
 
     def _width(self, text: str, **style: Any) -> float:
-        """Give the width of a text in pixels."""
+        """Return the width of a text in pixels."""
         key = text, *style.values()
         if key not in self._widths:
             one = self.figure.text(0.0, 0.0, text, parse_math=False, **style)
@@ -390,7 +390,7 @@ class Picture:
         return self._widths[key]
 
     def _line(self, style: dict[str, Any]) -> float:
-        """Give the height of a line in pixels."""
+        """Return the height of a line in pixels."""
         return 1.3 * float(style["fontsize"]) * self.dpi / 72.0
 
 

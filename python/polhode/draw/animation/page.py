@@ -94,7 +94,7 @@ def page(scene: Scene) -> str:
 
 
 def _start(scene: Scene) -> dict[str, list[float]] | None:
-    """Give the start of a free body, from which the page computes its motion itself; None of a rod."""
+    """Return the start of a free body, from which the page computes its motion itself; None of a rod."""
     if not scene.is_free or not scene.moments[0] > 0.0:
         return None
     return {
@@ -125,14 +125,14 @@ def _surface(surface: Surface) -> dict[str, Any]:
 
 
 def _in_reach(vectors: Floats) -> tuple[Floats, float]:
-    """Give vectors as short floats hold them, and the unit that they are counted in: 1, or a power of two."""
+    """Return vectors as short floats hold them, and the unit that they are counted in: a power of two."""
     size = longest(vectors)
     unit = 1.0 if _SHORT[0] < size < _SHORT[1] else float(2.0 ** np.floor(np.log2(size)))
     return vectors / unit, unit
 
 
 def _wheel(disc: Disc, unit: float) -> dict[str, Any]:
-    """Give a wheel; of a constant speed as one number, of none without a speed."""
+    """Return a wheel; of a constant speed as one number, of none without a speed."""
     rate, angle = disc.rate, disc.angle
     is_constant = rate is not None and bool((rate == rate[0]).all())
     return {
@@ -148,7 +148,7 @@ def _wheel(disc: Disc, unit: float) -> dict[str, Any]:
 
 
 def _energy(scene: Scene) -> dict[str, Any]:
-    """Give the energy at the frames, in all digits, so that a drift is the motion's own."""
+    """Return the energy at the frames, in all digits, so that a drift is the motion's own."""
     energy = scene.energy
     return {
         "kinetic": None if scene.is_free else _packed(energy.kinetic, "<f8"),

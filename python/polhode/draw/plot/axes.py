@@ -53,14 +53,14 @@ def matplotlib(module: str) -> Any:
 
 
 def axes_2d(ax: Axes | None) -> Axes:
-    """Give the axes to draw in, in a new figure where there are none."""
+    """Return the axes to draw in, in a new figure where there are none."""
     if ax is not None:
         return _checked(ax)
     return cast("Axes", matplotlib("pyplot").subplots(layout="constrained")[1])
 
 
 def axes_3d(ax: Axes3D | None) -> Axes3D:
-    """Give the axes of three dimensions to draw in, in a new figure where there are none."""
+    """Return the axes of three dimensions to draw in, in a new figure where there are none."""
     if ax is not None:
         return _checked(ax)
     figure = matplotlib("pyplot").figure(layout="constrained")
@@ -77,7 +77,7 @@ def _checked(ax: _Given) -> _Given:
 
 
 def tidy(ax: Axes) -> Axes:
-    """Give axes over time the grid and the open frame that all of them have."""
+    """Return axes over time the grid and the open frame that all of them have."""
     ax.margins(x=0.0)
     ax.grid(color="0.9", linewidth=0.6)
     ax.set_axisbelow(True)
@@ -223,7 +223,7 @@ def plain_frame(ax: Axes3D, low: ArrayLike, high: ArrayLike) -> None:
 
 
 def to_upright(normal: Floats) -> Floats:
-    """Give the rotation that takes a unit vector to the third axis by the shortest way."""
+    """Return the rotation that takes a unit vector to the third axis by the shortest way."""
     x, y, z = normal
     if z < -1.0 + 1e-12:
         return np.diag([1.0, -1.0, -1.0])
@@ -232,5 +232,5 @@ def to_upright(normal: Floats) -> Floats:
 
 
 def azimuth_beside(vector: Floats) -> float:
-    """Give the azimuth, in degrees, from which a vector leans to the right."""
+    """Return the azimuth, in degrees, from which a vector leans to the right."""
     return float(np.rad2deg(np.arctan2(vector[1], vector[0]))) - 80.0

@@ -384,7 +384,7 @@ def error_ellipses(
 def _ellipses(
     covariance: Floats, radius: float
 ) -> tuple[dict[int, tuple[Floats, Floats]], NDArray[np.bool_]]:
-    """Give semi-axes and their directions for each axis that has an ellipse, and the angles that are free.
+    """Return semi-axes and their directions for each axis that has an ellipse, and the angles that are free.
 
     Free is an angle that is not determined, and one that reaches a right angle: an axis has no sense, so
     that it may point anywhere then.

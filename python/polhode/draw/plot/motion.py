@@ -47,7 +47,7 @@ _SHOWN: Final = 1e-12
 
 
 def _until(motion: FreeMotion | HeavyTop | GyrostatMotion, end: float | None) -> Trajectory:
-    """Give as many states of one motion in closed form as its curves need."""
+    """Return as many states of one motion in closed form as its curves need."""
     check_one(motion.shape, "angular_velocity")
     if end is None:
         raise ValueError(
@@ -346,7 +346,7 @@ _INK: Final = "0.35"
 
 
 def of_omega(trajectory: Trajectory, turn: Floats | None, coverage: float | None) -> Floats | str | None:
-    """Give half the widths of the bands about ω, shape (..., T, 3).
+    """Return half the widths of the bands about ω, shape (..., T, 3).
 
     Parameters
     ----------
@@ -378,12 +378,12 @@ def of_omega(trajectory: Trajectory, turn: Floats | None, coverage: float | None
 def of_spin(
     trajectory: Trajectory, frame: Literal["space", "body"], coverage: float | None
 ) -> Floats | str | None:
-    """Give half the widths of the bands about the spin angular momentum; see `of_omega`."""
+    """Return half the widths of the bands about the spin angular momentum; see `of_omega`."""
     return _half_widths(trajectory, lambda: trajectory._spin_covariance(frame), coverage)
 
 
 def of_euler_angles(trajectory: Trajectory, sequence: str, coverage: float | None) -> Floats | str | None:
-    """Give half the widths of the bands about the Euler angles; see `of_omega`.
+    """Return half the widths of the bands about the Euler angles; see `of_omega`.
 
     Those of the first and third angle are not numbers where the second, within its band, may be one at
     which they are not defined.

@@ -181,7 +181,7 @@ def portraits(
 def _asked(
     gyrostat: Gyrostat | GyrostatMotion, momentum: float | None
 ) -> tuple[Floats, Floats, Equilibria, Floats | None]:
-    """Give the tensor, h/|L|, the equilibria and, of a motion, its path of L/|L| in the body."""
+    """Return the tensor, h/|L|, the equilibria and, of a motion, its path of L/|L| in the body."""
     if not isinstance(gyrostat, _core.GyrostatMotion):
         if momentum is None:
             raise ValueError("momentum: say how long L = I ω + h is; only a motion has one of its own")
@@ -256,7 +256,7 @@ def _curves(inertia: Floats, inside: Floats, level: float) -> Iterator[Floats]:
 
 
 def _circle(n: Floats, axis: Floats) -> Floats:
-    """Give the circle about an axis through a point of the unit sphere."""
+    """Return the circle about an axis through a point of the unit sphere."""
     height = float(n @ axis)
     across = n - height * axis
     turn = np.linspace(0.0, 2.0 * np.pi, 181)[:, np.newaxis]

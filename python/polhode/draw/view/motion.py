@@ -175,7 +175,7 @@ class _Player:
         self._show(int(np.abs(self._scene.t - time).argmin()))
 
     def take_control(self) -> None:
-        """Give the window a slider for time, and let the space bar start and stop the motion."""
+        """Return the window a slider for time, and let the space bar start and stop the motion."""
         t = self._scene.t
         self._slider = self._plotter.add_slider_widget(
             self.seek,
@@ -212,7 +212,7 @@ class _Player:
         self._plotter.render()
 
     def _rate(self) -> float:
-        """Give the time of the motion that goes by in a second."""
+        """Return the time of the motion that goes by in a second."""
         return float(np.ptp(self._scene.t) or 1.0) / self._scene.duration
 
     def _scaled(self, vectors: Floats) -> Floats:
@@ -338,7 +338,7 @@ def _fan(disc: Disc, angles: Floats, radius: float, above: float) -> Any:
 
 
 def _turned(disc: Disc, angle: float) -> Floats:
-    """Give the turn about the axis of a disc, shape (4, 4)."""
+    """Return the turn about the axis of a disc, shape (4, 4)."""
     x, y, z = disc.axis
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     turn = np.eye(4)

@@ -206,7 +206,7 @@ def _rolled(
 
 
 def _edges(table: Table, tree: Any) -> tuple[list[str], list[str]]:
-    """Give ids and parents of the rows."""
+    """Return ids and parents of the rows."""
     if "id" not in table:
         raise PolhodeError(f"{table.name or 'table'}: there is no column 'id'")
     ids = table.words("id")

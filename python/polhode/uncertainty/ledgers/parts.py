@@ -223,7 +223,7 @@ def _opposite_signs(
 
 
 def _about_origin(table: Table, leaves: Integers, where: Callable[[int], str]) -> list[int]:
-    """Give the parts whose tensor is stated about the origin."""
+    """Return the parts whose tensor is stated about the origin."""
     about = table.words("about")
     other = next((row for row in leaves.tolist() if about[row] not in _ABOUT), None)
     if other is not None:
@@ -232,14 +232,14 @@ def _about_origin(table: Table, leaves: Integers, where: Callable[[int], str]) -
 
 
 def _of_shapes(values: Floats, sigma: Floats) -> Floats:
-    """Give the draws of files or shapes: the tensor grows with the mass."""
+    """Return the draws of files or shapes: the tensor grows with the mass."""
     draws = _independent(values, sigma)
     draws[4:, 0] = values[4:] / values[0] * sigma[0]
     return draws
 
 
 def _of_origin(values: Floats, sigma: Floats) -> Floats:
-    """Give the draws of parts whose tensor about the origin is stated: z there, shifted by −c.
+    """Return the draws of parts whose tensor about the origin is stated: z there, shifted by −c.
 
     With z about the origin, δs = c δm + m δc and δI_O its own; S(−c) takes both to the centre.
     """
@@ -249,7 +249,7 @@ def _of_origin(values: Floats, sigma: Floats) -> Floats:
 
 
 def _independent(values: Floats, sigma: Floats) -> Floats:
-    """Give the effect on z of ten independent errors, shape (10, 10, n)."""
+    """Return the effect on z of ten independent errors, shape (10, 10, n)."""
     draws = np.zeros((10, 10, sigma.shape[1]))
     draws[np.arange(10), np.arange(10)] = sigma
     draws[(1, 2, 3), (1, 2, 3)] *= values[0]
@@ -344,7 +344,7 @@ def parts_of_bodies(ids: Sequence[str], bodies: Sequence[RigidBody | None]) -> P
 
 
 def _numbers(members: Sequence[tuple[list[tuple[int, ...]], Floats]]) -> dict[tuple[int, ...], int]:
-    """Give each error the place of the number that is uncertain by it more than by any other."""
+    """Return, for each error, the index of the number to which it contributes most."""
     variances: dict[tuple[int, ...], Floats] = {}
     for names, effects in members:
         for name, effect in zip(names, effects, strict=True):
@@ -361,7 +361,7 @@ def _numbers(members: Sequence[tuple[list[tuple[int, ...]], Floats]]) -> dict[tu
 
 
 def _sharing(names: list[set[tuple[int, ...]]]) -> list[list[int]]:
-    """Give the numbers of those that share a name, directly or by way of others."""
+    """Return the numbers of those that share a name, directly or by way of others."""
     groups: list[tuple[set[tuple[int, ...]], list[int]]] = []
     of_name: dict[tuple[int, ...], int] = {}
     for k, own in enumerate(names):

@@ -375,7 +375,7 @@ class Part:
         return None if sigma is None else Sigmas(*(values[self.row] for values in sigma))
 
     def with_sigma(self, number: str) -> tuple[float, float | None]:
-        """Give one of the ten numbers and its standard deviation, which is None if no part states one.
+        """Return one of the ten numbers and its standard deviation, which is None if no part states one.
 
         Parameters
         ----------
@@ -459,5 +459,5 @@ def write_json_ledger(ledger: Ledger, path: str | PathLike[str], *, covariance: 
 
 
 def _columns_of_ten(mass: Any, center: Any, inertia: Any) -> list[list[float]]:
-    """Give the ten columns as lists of floats, which print with all their digits."""
+    """Return the ten columns as lists of floats, which print with all their digits."""
     return [column.tolist() for column in (mass, *center.T, *(inertia[:, a, b] for a, b in _ELEMENTS))]

@@ -61,7 +61,7 @@ class Values(NamedTuple):
 
 
 def own_moment(d: Floats) -> Floats:
-    """Give A(d) = d² 1 − d dᵀ as (6, n) for d of shape (3, n)."""
+    """Return A(d) = d² 1 − d dᵀ as (6, n) for d of shape (3, n)."""
     x, y, z = d
     return np.stack([y * y + z * z, x * x + z * z, x * x + y * y, -x * y, -x * z, -y * z])
 
@@ -130,7 +130,7 @@ def roll_covariances(
 
 
 def shift(z: Floats, d: Floats) -> Floats:
-    """Give S(d) z: first index of `z` the ten numbers, last one the nodes, as of `d`, shape (3, n)."""
+    """Return S(d) z: first index of `z` the ten numbers, last one the nodes, as of `d`, shape (3, n)."""
     moved = z.copy()
     for j, column in enumerate(_columns(d)):
         for a, factor in column.items():
@@ -140,7 +140,7 @@ def shift(z: Floats, d: Floats) -> Floats:
 
 
 def shift_row(a: int, d: Floats) -> Floats:
-    """Give row `a` of S(d), shape (10, n): what each error of a part does to number `a` of the whole."""
+    """Return row `a` of S(d), shape (10, n): what each error of a part does to number `a` of the whole."""
     row = np.zeros((10, d.shape[1]))
     row[a] = 1.0
     for j, column in enumerate(_columns(d)):
@@ -160,12 +160,12 @@ def unpack(packed: Floats) -> Floats:
 
 
 def _shifted(matrices: Floats, d: Floats) -> Floats:
-    """Give S Q Sᵀ for Q of shape (10, 10, n)."""
+    """Return S Q Sᵀ for Q of shape (10, 10, n)."""
     return shift(shift(matrices, d).swapaxes(0, 1), d)
 
 
 def _columns(d: Floats) -> tuple[Column, Column, Column, Column]:
-    """Give the columns of S(d) beyond those of the unit matrix: the effect of δm and of the three δs."""
+    """Return the columns of S(d) beyond those of the unit matrix: the effect of δm and of the three δs."""
     x, y, z = d
     xx, yy, zz, xy, xz, yz = own_moment(d)
     return (
@@ -195,7 +195,7 @@ def _add_leaves(
 
 
 def groups(above: Integers) -> tuple[Integers, Integers, Integers]:
-    """Give the parents, where the children of each begin, and how many they are."""
+    """Return the parents, where the children of each begin, and how many they are."""
     starts = np.flatnonzero(np.diff(above, prepend=-2))
     return above[starts], starts, np.diff(starts, append=len(above))
 
@@ -275,7 +275,7 @@ class Covariances:
         return sigma
 
     def matrices(self, places: Integers) -> Floats:
-        """Give covariances, shape (number of places, 10, 10)."""
+        """Return covariances, shape (number of places, 10, 10)."""
         full = np.zeros((len(places), 10, 10))
         slots = self._slot[places]
         plain, dense = np.flatnonzero(slots < 0), np.flatnonzero(slots >= 0)
@@ -287,7 +287,7 @@ class Covariances:
         return full
 
     def contributions(self, number: int, row: int) -> Contributions:
-        """Tell which part adds what to the variance of one of the ten numbers of the node in a row."""
+        """Return which part adds what to the variance of one of the ten numbers of the node in a row."""
         tree, values = self._tree, self._values
         node = int(tree.place[row])
         leaves = np.flatnonzero(tree.below(row) & tree.is_leaf)
@@ -317,7 +317,7 @@ class Covariances:
         return Contributions(rows, sources, (effect**2).T)
 
     def _of(self, places: Integers) -> Floats:
-        """Give the draws of leaves, shape (10, 10, number of places): the effect of each draw on z."""
+        """Return the draws of leaves, shape (10, 10, number of places): the effect of each draw on z."""
         draws = np.zeros((10, 10, len(places)))
         sigma = self._sigma[:, places].copy()
         sigma[1:4] *= self._values.mass[places]
@@ -328,7 +328,7 @@ class Covariances:
 
 
 def _shared_leaves(tree: Tree, names: list[str]) -> tuple[Integers, Integers]:
-    """Give the leaves, by ascending place, that share their source with another one, and the number of it."""
+    """Return leaves, by ascending place, that share their source with another one, and the number of it."""
     found: dict[str, list[int]] = {}
     for place, row in enumerate(tree.order.tolist() if names else ()):
         if names[row] and tree.is_leaf[place]:
@@ -369,7 +369,7 @@ def _rolled_draws(
 
 
 def _squared(draws: Floats) -> Floats:
-    """Give the covariances of independent draws, packed: (10, 10, n) to (55, n)."""
+    """Return the covariances of independent draws, packed: (10, 10, n) to (55, n)."""
     return pack(np.einsum("ajn,bjn->abn", draws, draws))
 
 
@@ -410,7 +410,7 @@ class Shares:
         return len(self.names)
 
     def largest(self, row: int) -> str:
-        """Give the name of the number that contributes most, of the part with this place in `names`."""
+        """Return the name of the number that contributes most, of the part with this place in `names`."""
         return NUMBERS[int(np.argmax(self.by_number[row]))]
 
     def __repr__(self) -> str:

@@ -78,7 +78,7 @@ class Table:
         return f"{self.name}: {place}" if self.name else place
 
     def words(self, column: str) -> list[str]:
-        """Give a column of text; "" where nothing is stated, or the table has no such column."""
+        """Return a column of text; "" where nothing is stated, or the table has no such column."""
         if column not in self.columns:
             return [""] * self.count
         cells = self.columns[column]
@@ -91,7 +91,7 @@ class Table:
         return words if _ABSENT.isdisjoint(words) else ["" if word in _ABSENT else word for word in words]
 
     def numbers(self, column: str, *, percent: bool = False) -> NDArray[np.float64]:
-        """Give a column of numbers, to be read only; NaN where nothing is stated.
+        """Return a column of numbers, to be read only; NaN where nothing is stated.
 
         Parameters
         ----------
@@ -137,7 +137,7 @@ class Table:
         return numbers
 
     def truths(self, column: str) -> NDArray[np.bool_]:
-        """Give a column of TRUE and FALSE; false where nothing is stated."""
+        """Return a column of TRUE and FALSE; false where nothing is stated."""
         cells = self.columns.get(column, ())
         if isinstance(cells, np.ndarray) and cells.dtype.kind == "b":
             return cells.copy()
@@ -268,7 +268,7 @@ def _from_columns(columns: dict[str, Any], argument: str) -> Table:
 
 
 def _cells(cells: Any, name: str, argument: str) -> Any:
-    """Give the cells of a column as a list or an array of one axis; None for a single value."""
+    """Return the cells of a column as a list or an array of one axis; None for a single value."""
     if isinstance(cells, list | tuple):
         return list(cells)
     if isinstance(cells, str) or np.ndim(cells) == 0:
@@ -366,21 +366,21 @@ class Tree(NamedTuple):
         return places if self.is_sorted else places[..., self.place]
 
     def depth(self) -> Integers:
-        """Give the level of each row: 0 for the root."""
+        """Return the level of each row: 0 for the root."""
         depth = np.empty_like(self.order)
         for level, places in enumerate(self.levels):
             depth[self.order[places]] = level
         return depth
 
     def below(self, row: int) -> NDArray[np.bool_]:
-        """Tell of each place whether it is the node of this row or below it."""
+        """Return of each place whether it is the node of this row or below it."""
         inside: NDArray[np.bool_] = self.order == row
         for places in self.levels[1:]:
             inside[places] |= inside[self.above[places]]
         return inside
 
     def children(self, row: int) -> tuple[int, ...]:
-        """Give the rows of the children, in the order of the table."""
+        """Return the rows of the children, in the order of the table."""
         place = self.place[row]
         start, end = np.searchsorted(self.above, (place, place + 1))
         return tuple(self.order[start:end].tolist())
@@ -438,7 +438,7 @@ def make_tree(ids: Sequence[str], parents: Sequence[str], where: Callable[[int],
 
 
 def _by_levels(parent: Integers) -> tuple[Integers, list[int]]:
-    """Give the rows that are reached from the root, level by level, and where each level begins."""
+    """Return the rows that are reached from the root, level by level, and where each level begins."""
     by_parent = np.argsort(parent, kind="stable")
     count = np.bincount(parent + 1, minlength=len(parent) + 1)
     first = np.cumsum(count) - count
