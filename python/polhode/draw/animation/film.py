@@ -95,7 +95,7 @@ def film(
 
 
 def _delays(count: int, duration: float) -> list[int]:
-    """Return how long each picture is shown, in milliseconds: whole hundredths of a second, as a GIF has them.
+    """Return how long each picture is shown, in milliseconds: whole hundredths of a second, as GIFs have.
 
     Each change is the one that is nearest to its time, so that the whole takes the time that was asked for.
     """
