@@ -24,7 +24,7 @@ STL_RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attri
 
 
 def globe(parallels: int, meridians: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Give a ball of 2 (parallels − 1) meridians triangles, its vertices row by row."""
+    """Return a ball of 2 (parallels − 1) meridians triangles, its vertices row by row."""
     theta = np.linspace(0.0, np.pi, parallels + 1)[1:-1, np.newaxis]
     phi = np.linspace(0.0, 2.0 * np.pi, meridians, endpoint=False)
     rings = np.stack(
@@ -60,7 +60,7 @@ def with_trimesh(mesh: Any) -> tuple[float, Any, Any]:
 
 
 def ours(body: RigidBody) -> tuple[float, Any, Any]:
-    """Give what is compared."""
+    """Return what is compared."""
     return body.mass, body.center_of_mass, body.inertia
 
 

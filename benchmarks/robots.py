@@ -26,7 +26,7 @@ from robots_mirrors import mirror, unpacked
 
 
 def compare(file: File, judged: Judged) -> list[tuple[str, str, str, str, str]]:
-    """Give kind, link, what was expected, by whom, and what was said with its reason."""
+    """Return kind, link, what was expected, by whom, and what was said with its reason."""
     if judged.unread:
         return [("unread", "", "", "", judged.unread)]
     told = {name for name, _, _ in unique(judged.links)}
@@ -78,7 +78,7 @@ def count_fix(file: File, folder: Path, counts: Counter[str]) -> None:
 
 
 def renewed(file: File, path: Path, folder: Path) -> File | None:
-    """Give a row with what the judges say now; None where they cannot read the file."""
+    """Return a row with what the judges say now; None where they cannot read the file."""
     judged = expectation(path, folder)
     if judged.unread or not judged.links:
         print(f"left out: {file.repository}: {file.path}: {judged.unread or 'no links'}")

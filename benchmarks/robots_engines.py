@@ -33,7 +33,7 @@ def urdf_without_shapes(path: Path) -> ET.Element:
 
 
 def refused_by_mujoco(path: Path) -> dict[str, str]:
-    """Give the links of a URDF file whose mass or inertia MuJoCo refuses; "" where the whole file."""
+    """Return the links of a URDF file whose mass or inertia MuJoCo refuses; "" where the whole file."""
     import mujoco
 
     root = urdf_without_shapes(path)
@@ -56,7 +56,7 @@ def refused_by_mujoco(path: Path) -> dict[str, str]:
 
 
 def _heal(link: ET.Element) -> None:
-    """Give a link the inertia of a body, so that the next one that is refused is told."""
+    """Return a link the inertia of a body, so that the next one that is refused is told."""
     for inertial in link.findall("inertial"):
         link.remove(inertial)
     inertial = ET.SubElement(link, "inertial")
@@ -65,7 +65,7 @@ def _heal(link: ET.Element) -> None:
 
 
 def idle_in_pinocchio(path: Path) -> tuple[list[str], bool]:
-    """Give the links that a joint moves without inertia, and whether the mass matrix is singular."""
+    """Return the links that a joint moves without inertia, and whether the mass matrix is singular."""
     import pinocchio as pin
 
     root = urdf_without_shapes(path)
@@ -187,7 +187,7 @@ def _why(load: Callable[[], object]) -> str:
 
 
 def _link(model: mujoco.MjModel, i: int) -> files.Link:
-    """Give a body as MuJoCo compiled it, each geom as the box that MuJoCo puts around it."""
+    """Return a body as MuJoCo compiled it, each geom as the box that MuJoCo puts around it."""
     import mujoco
     import trimesh
 

@@ -47,7 +47,7 @@ class Solid:
         return cls(np.asarray(hull.vertices), whole.volume, np.asarray(whole.center_mass), second)
 
     def moved(self, matrix: Array) -> Solid:
-        """Give it after an affine map."""
+        """Return it after an affine map."""
         turn, shift = matrix[:3, :3], matrix[:3, 3]
         volume = self.volume * abs(float(np.linalg.det(turn)))
         corners, center = self.corners @ turn.T + shift, turn @ self.center + shift
@@ -91,13 +91,13 @@ def numbers(text: str | None, count: int) -> Array:
 
 
 def pose_of(xyz: Array, rpy: Array) -> Array:
-    """Give the matrix of a pose."""
+    """Return the matrix of a pose."""
     matrix: Array = trimesh.transformations.compose_matrix(translate=xyz, angles=rpy)
     return matrix
 
 
 def symmetric(values: dict[str, float]) -> Array:
-    """Give a tensor by the names of its elements."""
+    """Return a tensor by the names of its elements."""
     xx, yy, zz, xy, xz, yz = (values[name] for name in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz"))
     return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
@@ -116,7 +116,7 @@ class Meshes:
                     self.packages[name[1]].add(path.parent)
 
     def find(self, address: str, robot: Path) -> Path | None:
-        """Give the file that an address means: beside the robot, or in the package that is nearest to it."""
+        """Return file that an address means: beside the robot, or in the package that is nearest to it."""
         named = re.match(r"(?:package|model)://([^/]+)/+(.+)|(?:file://)?\$\(find ([^)]+)\)/+(.+)", address)
         if not named:
             path = robot.parent / address.removeprefix("file://")
@@ -148,7 +148,7 @@ def mesh_of(path: Path) -> Solid | None:
 
 
 def shape(kind: str, size: dict[str, Any], pose: Array, meshes: Meshes, robot: Path) -> Solid | None:
-    """Give a shape in its link; None where it cannot be told."""
+    """Return a shape in its link; None where it cannot be told."""
     make = trimesh.creation
     try:
         if kind == "mesh":
@@ -256,7 +256,7 @@ def _sdf(root: ET.Element, path: Path, meshes: Meshes) -> Robot:
 def _models(
     parent: ET.Element, names: tuple[str, ...], is_static: bool
 ) -> Iterator[tuple[ET.Element, tuple[str, ...], bool]]:
-    """Give every model with its names and whether it stands still, in the order of the file."""
+    """Return every model with its names and whether it stands still, in the order of the file."""
     for element in parent:
         if element.tag == "model":
             own = (*names, element.get("name", ""))

@@ -24,13 +24,13 @@ class Judged:
 
 
 def named(name: str, place: int) -> str:
-    """Give the name of a link without those of the models around it; bodies without one are counted."""
+    """Return the name of a link without those of the models around it; bodies without one are counted."""
     return f"#{place}" if name.startswith("(body of ") else name.split("::")[-1]
 
 
 @cache
 def sourced(folder: Path) -> tuple[Path, ...]:
-    """Give the folders that hold packages, as in a workspace whose setup was sourced."""
+    """Return the folders that hold packages, as in a workspace whose setup was sourced."""
     marks = (path for mark in ("package.xml", "manifest.xml", "model.config") for path in folder.rglob(mark))
     return tuple(sorted({path.parent.parent for path in marks if path.parent != folder}))
 

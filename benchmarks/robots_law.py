@@ -35,7 +35,7 @@ OSMIUM, DENSEST = 22_590.0, 25_000.0  # kg/m^3
 
 
 def judged(robot: Robot) -> list[Said]:
-    """Give of each link a word and the rule that says it."""
+    """Return of each link a word and the rule that says it."""
     repeated = defaultdict(set)
     for link in robot.links:
         if not link.problem and not link.is_static and (moment := isotropic(link.tensor)) is not None:
@@ -99,7 +99,7 @@ def of_tensor(link: Link, copied: set[float], *, is_tied: bool = False) -> Said:
 
 
 def beyond(link: Link, low: Array, high: Array) -> str:
-    """Tell what a tensor without room is: suspect from 3 to 1000 times that of the box filled."""
+    """Return what a tensor without room is: suspect from 3 to 1000 times that of the box filled."""
     size = float(np.linalg.norm(high - low))
     times = float(np.trace(link.tensor)) / 2.0 / link.mass / (size**2 / 12.0)
     if ((link.center < low) | (link.center > high)).any():
@@ -110,7 +110,7 @@ def beyond(link: Link, low: Array, high: Array) -> str:
 
 
 def isotropic(tensor: Array) -> float | None:
-    """Give the moment of a tensor that is a multiple of the unit tensor; None for others."""
+    """Return the moment of a tensor that is a multiple of the unit tensor; None for others."""
     moment = float(f"{tensor[0, 0]:.9g}")  # the turn of its axes leaves it so
     return (
         moment
@@ -152,13 +152,13 @@ def filled(link: Link) -> tuple[Array | None, float]:
 
 
 def farthest(moments: Array, own: Array) -> float:
-    """Give the ratio of moments that is farthest from 1."""
+    """Return the ratio of moments that is farthest from 1."""
     ratios = np.maximum(moments, 1e-300) / np.maximum(own, 1e-300)
     return float(ratios[np.argmax(np.abs(np.log(ratios)))])
 
 
 def overshoot(link: Link, low: Array, high: Array) -> float:
-    """Tell by how much a box must grow on all sides so that matter within it can have the second moments."""
+    """Compute by how much a box must grow on all sides for matter within it to have the second moments."""
     second = (np.trace(link.tensor) / 2.0 * np.eye(3) - link.tensor) / link.mass
     if not np.isfinite([*second.ravel(), *low, *high]).all():
         return 0.0
@@ -189,7 +189,7 @@ def fits(second: Array, center: Array, low: Array, high: Array) -> bool:
 
 
 def standing(robot: Robot) -> tuple[set[int], set[int], set[int]]:
-    """Give the links that move, those of them that neither have mass nor are tied to some, and the tied ones.
+    """Return links that move, those of them that neither have mass nor are tied to some, and the tied ones.
 
     Tied are those fixed to another with three moments above 0, with which simulators join them, or to the
     world.

@@ -23,7 +23,7 @@ class File:
     words: dict[str, dict[str, list[str]]] = field(default_factory=dict)  # word, judges, links
 
     def expected(self, name: str) -> tuple[str, str]:
-        """Give what is expected of a link, and by whom."""
+        """Return what is expected of a link, and by whom."""
         found = ((w, by) for w, said in self.words.items() for by, names in said.items() if name in names)
         return next(found, ("good", self.by))
 
@@ -41,7 +41,7 @@ def listed() -> list[File]:
 
 
 def written(files: list[File]) -> str:
-    """Give the list as it stands in its file."""
+    """Return the list as it stands in its file."""
     rows = defaultdict(list)
     for file in files:
         rows[file.repository, file.commit, file.licence].append(file)

@@ -14,7 +14,7 @@ from typing import Any
 import psutil
 from polhode import RigidBody, ensemble
 from polhode.ensembles.cluster import chunks_of_client
-from polhode.ensembles.tree import BLOCK
+from polhode.ensembles.reduce import BLOCK
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Empty:
 
 
 def flood(client: Any, chunks: int, size: int) -> None:
-    """Tell what so many chunks cost."""
+    """Return what so many chunks cost."""
     plan = ensemble(
         RigidBody.from_principal(1.0, (1, 2, 2.5)), [0.0], (0, 0, 1), n=chunks * BLOCK, seed=1
     ).plan

@@ -82,7 +82,7 @@ def has_union(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -
     if request.param:
         pytest.importorskip("manifold3d")
     else:
-        monkeypatch.setattr("polhode.files.components.has_union", lambda: False)
+        monkeypatch.setattr("polhode.io.components.has_union", lambda: False)
     return bool(request.param)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from mesh_files import obj
 from oracles.meshes import cube
-from polhode.files.xml_source import Element, parse_xml
+from polhode.io.xml_source import Element, parse_xml
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -23,12 +23,12 @@ from command_line import run
 from mesh_files import ascii_stl, binary_stl, obj
 from oracles.meshes import cube
 from polhode import RigidBody, animation, plot, robots, solids, tops, validity
-from polhode._rounding import at_least, at_most
-from polhode.cli.text import in_options
+from polhode._format import at_least, at_most
+from polhode.cli.terminal import in_options
 from polhode.errors import FileFormatError, InvalidInertiaError, PolhodeError
-from polhode.files import load
-from polhode.files.content import EXPECTED_CONTENT
-from polhode.files.reading import words_of
+from polhode.io import load
+from polhode.io.content import EXPECTED_CONTENT
+from polhode.io.reading import words_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -11,8 +11,8 @@ import pytest
 from command_line import run, write_obj
 from oracles.meshes import box
 from polhode import Uncertain
-from polhode._quantities import amount, has_unit, quantity
 from polhode.errors import PolhodeError
+from polhode.units import amount, has_unit, quantity
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -17,8 +17,8 @@ import pytest
 from oracles.bodies import matrix
 from PIL import Image
 from polhode import RigidBody, Trajectory, animation, euler_angles, solids
-from polhode._scene import clock, footage, sampling, shape, wheels
 from polhode.animation import animate
+from polhode.draw import clock, footage, sampling, shape, wheels
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,7 @@ import pytest
 from command_line import run
 from oracles.bodies import matrix
 from polhode import RigidBody, Trajectory, euler_angles, loads, solids
-from polhode._scene.sampling import COARSE, TURN, axis_times, fastest, follow, motion_times
+from polhode.draw.sampling import COARSE, TURN, axis_times, fastest, follow, motion_times
 from test_animation import data
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def random_bodies(rng: np.random.Generator, count: int) -> list[FreeMotion]:
 
 
 class TestTimes:
-    """`polhode._scene.sampling`: one place that chooses times, for pages, films, windows and pictures."""
+    """`polhode.draw.sampling`: one place that chooses times, for pages, films, windows and pictures."""
 
     def test_free_bodies_of_every_shape(self, rng: np.random.Generator) -> None:
         for motion in random_bodies(rng, 66):

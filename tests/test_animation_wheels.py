@@ -11,7 +11,7 @@ import pytest
 from oracles.bodies import matrix
 from PIL import Image
 from polhode import RigidBody, Trajectory, loads
-from polhode._scene.sampling import TURN, fastest, motion_times
+from polhode.draw.sampling import TURN, fastest, motion_times
 from test_animation import data
 from test_animation_frames import angles, check_chords, in_space
 

@@ -15,10 +15,9 @@ from cad_files import SOLIDS, occt, primitive, write_assembly, write_step
 from command_line import one_line, run
 from polhode import RigidBody, Uncertain, assembly, solids
 from polhode.errors import FileFormatError, MeshError, PolhodeError
-from polhode.files import cad_apart, cad_file, load, read_mesh, solid_from_file
-from polhode.files.cad_file import read_cad
-from polhode.files.cad_moments import moments_of_faces
-from polhode.files.cad_solid import solids_of
+from polhode.io import cad_files, cad_process, load, read_mesh, solid_from_file
+from polhode.io.cad_files import read_cad, solids_of
+from polhode.io.cad_geometry import moments_of_faces
 
 pytest.importorskip("OCP.BRep", reason="CAD files need polhode[cad]")
 MM = 1e-3
@@ -28,7 +27,7 @@ MM = 1e-3
 def _in_this_process(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Read in this process, which is sooner, but in the tests of the other one."""
     if request.cls is not TestApart:
-        monkeypatch.setattr(cad_apart, "read_cad_apart", read_cad)
+        monkeypatch.setattr(cad_process, "read_cad_apart", read_cad)
 
 
 class TestClosedForms:
@@ -229,7 +228,7 @@ class TestRefusals:
         def worse(*given: Any) -> Any:
             return moments_of_faces(*given)._replace(error=error)
 
-        monkeypatch.setattr(cad_file, "moments_of_faces", worse)
+        monkeypatch.setattr(cad_files, "moments_of_faces", worse)
         if is_taken:
             assert RigidBody.from_file(path, density=1.0).error_bound.mass == pytest.approx(error * MM**3)
         else:
@@ -282,13 +281,13 @@ class TestApart:
 
     def test_a_break_down_is_an_error(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         path = write_step(primitive("Sphere", 10.0)(), tmp_path / "part.step")
-        monkeypatch.setattr(cad_apart, "_COMMAND", ["-c", "import os; os.kill(os.getpid(), 11)"])
+        monkeypatch.setattr(cad_process, "_COMMAND", ["-c", "import os; os.kill(os.getpid(), 11)"])
         with pytest.raises(FileFormatError, match=r"part\.step: OCCT broke down on it \(exit code -11\)"):
             load(path)
 
     def test_within_another_program(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         path = write_step(primitive("Sphere", 10.0)(), tmp_path / "part.step")
-        monkeypatch.setattr(cad_apart, "_COMMAND", ["-c", "raise SystemExit(1)"])
+        monkeypatch.setattr(cad_process, "_COMMAND", ["-c", "raise SystemExit(1)"])
         monkeypatch.setattr(sys, "executable", "")
         assert load(path).format == "STEP"
 

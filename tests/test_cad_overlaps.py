@@ -15,9 +15,9 @@ from boxes import at, written
 from cad_files import boolean, moved, occt, primitive, write_assembly, write_step
 from command_line import run
 from polhode import RigidBody, robots
-from polhode.files import cad_apart, cad_overlaps, solid_from_file
-from polhode.files.cad_file import read_with_shapes
-from polhode.files.loaded import load
+from polhode.io import cad_files, cad_process, solid_from_file
+from polhode.io.cad_files import read_with_shapes
+from polhode.io.loaded import load
 from robot_texts import link, urdf
 
 BOX = primitive("Box", 10.0, 10.0, 10.0)
@@ -78,8 +78,8 @@ def test_what_two_solids_share(name: str, tmp_path: Path) -> None:
     path = both(one, other, tmp_path / "two.step")
     (line,) = told(path)
     cad, shapes = read_with_shapes(path)
-    ((i, k),) = cad_overlaps.near_pairs(cad.parts)
-    assert cad_overlaps.volume_shared(shapes[i], shapes[k], cad.parts[k].moments.volume) == pytest.approx(
+    ((i, k),) = cad_files.near_pairs(cad.parts)
+    assert cad_files.volume_shared(shapes[i], shapes[k], cad.parts[k].moments.volume) == pytest.approx(
         volume, rel=1e-9
     )
     assert f"{volume * 1e-9:.4g} m^3" in line
@@ -92,13 +92,13 @@ def test_solids_that_share_nothing(name: str, tmp_path: Path) -> None:
     path = both(*APART[name], tmp_path / "two.step")
     cad = load(path).cad
     assert cad is not None
-    assert len(cad_overlaps.near_pairs(cad.parts)) == 1  # so that OCCT is asked
+    assert len(cad_files.near_pairs(cad.parts)) == 1  # so that OCCT is asked
     assert cad.overlaps == ()
 
 
 def test_whoever_reads_it_tells_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     # OCCT is asked once for each file, in a process that takes a second to start; who reads gets its answer.
-    monkeypatch.setattr("polhode.files.cad_apart.read_cad_apart", cache(cad_apart.read_cad_apart))
+    monkeypatch.setattr("polhode.io.cad_process.read_cad_apart", cache(cad_process.read_cad_apart))
     path = both(*SHARED["box and cylinder"][:2], tmp_path / "two.step")
     packed = tmp_path / "two.step.gz"
     packed.write_bytes(gzip.compress(path.read_bytes()))
@@ -182,21 +182,21 @@ def test_what_is_not_known_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         lines = (
             "import sys",
             "from pathlib import Path",
-            "from polhode.files import cad_apart",
+            "from polhode.io import cad_apart",
             "def shared(*_):",
             f"    {body}",
             "cad_apart.volume_shared = shared",
             "cad_apart._main(Path(sys.argv[1]), int(sys.argv[2]))",
         )
-        monkeypatch.setattr(cad_apart, "_COMMAND", ["-c", "\n".join(lines)])
-        monkeypatch.setattr(cad_apart, "_SHARING", (0.5 if "sleep" in body else 60.0, 0.0))
+        monkeypatch.setattr(cad_process, "_COMMAND", ["-c", "\n".join(lines)])
+        monkeypatch.setattr(cad_process, "_SHARING", (0.5 if "sleep" in body else 60.0, 0.0))
         (line,) = told(path)
         assert line.startswith(words)
         assert ("1 pairs of solids that are near enough to overlap were not looked at" in line) == (
             "OCCT" in words
         )
     monkeypatch.undo()
-    monkeypatch.setattr(cad_overlaps, "_MOST_PAIRS", 0)
+    monkeypatch.setattr(cad_files, "_MOST_PAIRS", 0)
     (line,) = told(path)
     assert line.startswith("1 pairs of solids are near enough to overlap, too many to look at")
     monkeypatch.undo()
@@ -212,4 +212,4 @@ def test_the_time_for_overlaps_follows_the_size_of_the_file(
     path = tmp_path / "a.step"
     with path.open("wb") as file:
         file.truncate(round(megabytes * 1e6))
-    assert cad_apart._sharing(path) == seconds
+    assert cad_process._sharing(path) == seconds

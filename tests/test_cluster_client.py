@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from polhode.cli.cluster import client_at
+from polhode.cli.ensemble import client_at
 from polhode.errors import PolhodeError
 
 dask = pytest.importorskip("dask")

@@ -196,7 +196,7 @@ def test_check_tells_where_it_does_not_search(
     most: int, is_told: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Three cubes in a row, of which two pairs meet: 4 times 12 triangles."""
-    monkeypatch.setattr("polhode.files.components._MOST_PAIRED", most)
+    monkeypatch.setattr("polhode.io.components._MOST_PAIRED", most)
     row = [at((1, 1, 1), (x, 0, 0)) for x in (0.0, 0.9995, 1.999)]
     (tmp_path / "row.obj").write_bytes(obj(*joined(*row)))
     text = urdf(link("a", 1.0, (0.2, 0.8, 0.8), '<mesh filename="row.obj"/>'))

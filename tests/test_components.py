@@ -12,9 +12,9 @@ from boxes import NESTED, SHARED, TWO, at, joined, written
 from command_line import run
 from polhode import RigidBody, solids
 from polhode.errors import MeshError
-from polhode.files import body_from_file, components
-from polhode.files.components import labels, overlaps, parts_of, winding
-from polhode.files.union import shared_volume, united
+from polhode.io import body_from_file, components
+from polhode.io.components import labels, overlaps, parts_of, winding
+from polhode.io.union import shared_volume, united
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -14,7 +14,7 @@ from oracles.dry_friction import Model
 from oracles.wheels import ATTITUDE, BODY, OMEGA, turned
 from polhode import RigidBody, loads
 from polhode.errors import InvalidInertiaError, PolhodeError
-from polhode.events import Event
+from polhode.motion.events import Event
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

@@ -164,7 +164,7 @@ def test_an_error_leaves_an_accumulator_as_it_was(cloud: Any, tmp_path: Path) ->
 
 
 def test_files_are_read_in_pieces(cloud: Any, whole: RigidBody, tmp_path: Path, monkeypatch: Any) -> None:
-    from polhode._elsewhere import particles
+    from polhode.ensembles.lazy_arrays import particles
 
     monkeypatch.setattr(particles, "_PIECE", 8192)
     masses, positions = cloud
@@ -238,7 +238,7 @@ def test_masks_and_units_within_chunks_are_refused(cloud: Any) -> None:
 
 @pytest.mark.parametrize("start", [0, 100])
 def test_errors_name_the_rows_of_the_whole(start: int, tmp_path: Path, monkeypatch: Any) -> None:
-    from polhode._elsewhere import particles
+    from polhode.ensembles.lazy_arrays import particles
 
     monkeypatch.setattr(particles, "_PIECE", 4096)
     row, places = 4096 + 17, np.ones((10_000, 3))
@@ -283,13 +283,13 @@ def test_no_library_is_imported_for_others() -> None:
         "import sys, numpy as np\n"
         "from polhode import RigidBody\n"
         "RigidBody.from_particles(np.ones(3), np.eye(3)).simulate([0, 1], (0, 0, 1))\n"
-        "assert not {'dask', 'xarray', 'zarr', 'h5py', 'polhode._elsewhere'} & set(sys.modules)"
+        "assert not {'dask', 'xarray', 'zarr', 'h5py', 'polhode.ensembles.lazy_arrays'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
 
 
 def test_workers_with_another_polhode_are_refused(cloud: Any) -> None:
-    from polhode._elsewhere import particles
+    from polhode.ensembles.lazy_arrays import particles
 
     with pytest.raises(
         RuntimeError, match=r"this worker has polhode .* and the client polhode 0\.0\.9 \(core 0000"

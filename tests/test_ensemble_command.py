@@ -17,7 +17,7 @@ import pytest
 from command_line import one_line, run, write_obj
 from oracles.meshes import cube
 from polhode import RigidBody, distributions, ensemble, loads
-from polhode.cli.ensemble_numbers import kept, numbers
+from polhode.cli.ensemble import kept, numbers
 from polhode.euler_angles import to_quaternion
 from scipy.spatial.transform import Rotation
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from polhode import RigidBody, distributions, ensemble, flybys, loads, orbits, reductions
-from polhode._reducing import Order, level_of, ordered
 from polhode.errors import PolhodeError
+from polhode.reductions import Order, level_of, ordered
 
 if TYPE_CHECKING:
     from collections.abc import Callable

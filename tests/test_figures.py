@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from polhode import RigidBody, laminae, rods, solids
-from polhode._scene.shape import body_shape
+from polhode.draw.shape import body_shape
 from scipy.spatial.transform import Rotation
 
 CORNERS = np.array([(0.0, 0, 0), (3, 0, 0), (0, 2, 0), (0, 0, 1)])

@@ -1,4 +1,4 @@
-"""Bodies and motions through files, and other libraries' objects taken as they are."""
+"""Bodies and motions through io, and other libraries' objects taken as they are."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from polhode import RigidBody, Trajectory, Uncertain, files, loads, solids
+from polhode import RigidBody, Trajectory, Uncertain, io, loads, solids
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.molecules import isotopes
 from rdkit import Chem
@@ -52,7 +52,7 @@ class TestBodies:
         fields = json.loads((tmp_path / "body.json").read_text("utf-8"))
         assert fields["mass"] == 0.7
         assert fields["center_of_mass"] == BODIES["box"].center_of_mass.tolist()
-        properties: Any = files.BODY_SCHEMA["properties"]
+        properties: Any = io.BODY_SCHEMA["properties"]
         of_uncertain_bodies = {"variable_counts", "variables", "tangents", "second_order"}
         assert set(fields) == set(properties) - of_uncertain_bodies
         assert fields["format"] == properties["format"]["const"]
@@ -67,7 +67,7 @@ class TestBodies:
             assert again == brick
             assert np.array_equal(again.covariance_with(brick), brick.covariance)
         fields = json.loads((tmp_path / "body.json").read_text("utf-8"))
-        properties: Any = files.BODY_SCHEMA["properties"]
+        properties: Any = io.BODY_SCHEMA["properties"]
         assert set(fields) == set(properties)
         del fields["numbers"]
         (tmp_path / "spoilt.json").write_text(json.dumps(fields), "utf-8")

@@ -13,7 +13,7 @@ import polhode
 import pytest
 from PIL import Image
 from polhode import euler_angles, solids
-from polhode._scene.scene import Scene
+from polhode.draw.scene import Scene
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -61,7 +61,7 @@ def texts_of(picture: Any) -> dict[str, Any]:
 class TestWords:
     @pytest.mark.parametrize("name", ["free", "top", "gyrostat"])
     def test_none_is_cut_or_written_over_another(self, name: str) -> None:
-        from polhode.animation._picture import Picture
+        from polhode.draw.animation.film import Picture
 
         scene = scene_of(motions()[name])
         for size in SIZES:
@@ -80,7 +80,7 @@ class TestWords:
                     assert min(across, along) <= 1.0, (size, frame, first, second)
 
     def test_a_long_title_has_several_lines(self) -> None:
-        from polhode.animation._picture import Picture
+        from polhode.draw.animation.film import Picture
 
         scene = scene_of(motions()["free"])
         for size, count in (((1920, 1080), 1), ((200, 200), 2)):
@@ -92,7 +92,7 @@ class TestWords:
         assert "$5 and $6" in texts_of(Picture(dollars, (200, 200), has_labels=True))
 
     def test_each_wheel_has_its_line_and_its_name(self) -> None:
-        from polhode.animation._picture import Picture
+        from polhode.draw.animation.film import Picture
 
         scene = scene_of(motions()["gyrostat"])
         picture = Picture(scene, (640, 360), has_labels=True)
@@ -102,7 +102,7 @@ class TestWords:
         assert "wheel 3" in texts_of(picture)
 
     def test_without_labels_nothing_is_written(self) -> None:
-        from polhode.animation._picture import Picture
+        from polhode.draw.animation.film import Picture
 
         picture = Picture(scene_of(motions()["gyrostat"]), (200, 200), has_labels=False)
         picture.show(0)
@@ -111,13 +111,13 @@ class TestWords:
 
     @pytest.mark.parametrize("size", [(64, 64), (203, 149), (637, 359), (1921, 1079), (4096, 64)])
     def test_pixels_are_those_that_were_asked_for(self, size: tuple[int, int]) -> None:
-        from polhode.animation._picture import Picture
+        from polhode.draw.animation.film import Picture
 
         scene = scene_of(motions()["free"])
         assert Picture(scene, size, has_labels=True).pixels().shape == (size[1], size[0], 4)
 
     def test_the_clock_tells_pictures_apart(self) -> None:
-        from polhode.animation._picture import Picture
+        from polhode.draw.animation.film import Picture
 
         run = BRICK.simulate(1e6 + np.linspace(0.0, 10.0, 301), (0.05, 2.0, 0.02))
         scene = Scene.of(run, frames=301, duration=None, shape=None, title="", time_unit="s", is_film=True)
@@ -134,7 +134,7 @@ class TestDelays:
         ("count", "duration"), [(300, 10.0), (1, 0.5), (7, 3.0), (50, 1.0), (13, 0.26), (1800, 60.0)]
     )
     def test_each_change_is_at_its_time(self, count: int, duration: float) -> None:
-        from polhode.animation.film import _delays
+        from polhode.draw.animation.film import _delays
 
         delays = np.array(_delays(count, duration))
         changes = np.cumsum(delays)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from command_line import run
-from polhode._scene.sampling import TURN, drawn_times, fastest
+from polhode.draw.sampling import TURN, drawn_times, fastest
 from test_animation_frames import BRICK, angles, check_chords, check_frames, in_space, top
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 class TestFilms:
     def test_its_pictures_are_even_and_follow(self) -> None:
-        from polhode._scene.footage import of_motion
+        from polhode.draw.sampling import of_motion
 
         motion = BRICK.free_motion((0.01, 6.0, 0.0))
         ends = motion.at([0.0, 30.0])
@@ -44,7 +44,7 @@ class TestFilms:
         assert (len(slow.chosen), slow.duration) == (300, 10.0)
 
     def test_what_it_cannot_show(self) -> None:
-        from polhode._scene.footage import of_motion
+        from polhode.draw.sampling import of_motion
 
         motion = BRICK.free_motion((0.01, 6.0, 0.0))
         film = of_motion(motion, motion.at([0.0, 1e4]), duration=None, is_film=True, time_unit="s")

@@ -1,4 +1,4 @@
-"""The forms of other libraries, against sums over particles and NumPy's own factorization."""
+"""The interop of other libraries, against sums over particles and NumPy's own factorization."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from oracles.bodies import Body, bodies
-from polhode import RigidBody, forms, laminae, solids
+from polhode import RigidBody, interop, laminae, solids
 from polhode.errors import InvalidInertiaError
 
 MASSES = np.array([1.0, 2.0, 0.5, 1.5, 3.0])
@@ -19,14 +19,14 @@ PARTICLES = RigidBody.from_particles(MASSES, POSITIONS)
 BRICK = solids.box((1.0, 2.0, 3.0), mass=2.5).translated((0.5, -0.25, 1.0))
 
 FORMS: dict[str, tuple[Callable[[RigidBody], Any], Callable[..., RigidBody]]] = {
-    "parameters": (forms.to_parameters, forms.from_parameters),
-    "pseudo_inertia": (forms.to_pseudo_inertia, forms.from_pseudo_inertia),
-    "spatial_inertia": (forms.to_spatial_inertia, forms.from_spatial_inertia),
+    "parameters": (interop.to_parameters, interop.from_parameters),
+    "pseudo_inertia": (interop.to_pseudo_inertia, interop.from_pseudo_inertia),
+    "spatial_inertia": (interop.to_spatial_inertia, interop.from_spatial_inertia),
     "spatial_inertia, linear first": (
-        lambda body: forms.to_spatial_inertia(body, "linear-angular"),
-        lambda matrix, **k: forms.from_spatial_inertia(matrix, "linear-angular", **k),
+        lambda body: interop.to_spatial_inertia(body, "linear-angular"),
+        lambda matrix, **k: interop.from_spatial_inertia(matrix, "linear-angular", **k),
     ),
-    "log_cholesky": (forms.to_log_cholesky, forms.from_log_cholesky),
+    "log_cholesky": (interop.to_log_cholesky, interop.from_log_cholesky),
 }
 
 
@@ -43,7 +43,7 @@ class TestEveryForm:
             return  # no thickness
         lever = 1 + body.mass * (data.center_of_mass @ data.center_of_mass) / data.moments[2]
         if lever > 1e4:
-            return  # about the origin the tensor is lost, as the forms are
+            return  # about the origin the tensor is lost, as the interop are
         same = back(there(body))
         assert same.isclose(body, rtol=1e-14 * (1 if name == "log_cholesky" else lever) * 10)
 
@@ -75,7 +75,7 @@ class TestEveryForm:
 def test_pseudo_inertia_is_the_sum_over_particles() -> None:
     homogeneous = np.hstack([POSITIONS, np.ones((5, 1))])
     expected = np.einsum("n,ni,nj->ij", MASSES, homogeneous, homogeneous)
-    assert forms.to_pseudo_inertia(PARTICLES) == pytest.approx(expected, rel=1e-14, abs=1e-14)
+    assert interop.to_pseudo_inertia(PARTICLES) == pytest.approx(expected, rel=1e-14, abs=1e-14)
 
 
 def test_spatial_inertia_takes_velocities_to_momenta() -> None:
@@ -83,29 +83,29 @@ def test_spatial_inertia_takes_velocities_to_momenta() -> None:
     velocities = velocity + np.cross(omega, POSITIONS)
     linear = MASSES @ velocities
     angular = MASSES @ np.cross(POSITIONS, velocities)
-    by_matrix = forms.to_spatial_inertia(PARTICLES) @ np.concatenate([omega, velocity])
+    by_matrix = interop.to_spatial_inertia(PARTICLES) @ np.concatenate([omega, velocity])
     assert by_matrix == pytest.approx(np.concatenate([angular, linear]), rel=1e-14)
-    linear_first = forms.to_spatial_inertia(PARTICLES, "linear-angular") @ np.concatenate([velocity, omega])
+    linear_first = interop.to_spatial_inertia(PARTICLES, "linear-angular") @ np.concatenate([velocity, omega])
     assert linear_first == pytest.approx(np.concatenate([linear, angular]), rel=1e-14)
 
 
 def test_parameters_are_what_the_equations_are_linear_in() -> None:
-    m, hx, hy, hz, xx, xy, yy, xz, yz, zz = forms.to_parameters(PARTICLES)
+    m, hx, hy, hz, xx, xy, yy, xz, yz, zz = interop.to_parameters(PARTICLES)
     about_origin = np.einsum("n,nij->ij", MASSES, [r @ r * np.eye(3) - np.outer(r, r) for r in POSITIONS])
     assert m == MASSES.sum()
     assert np.array([hx, hy, hz]) == pytest.approx(MASSES @ POSITIONS, rel=1e-14)
     tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     assert tensor == pytest.approx(about_origin, rel=1e-14, abs=1e-14)
-    both = forms.to_parameters(PARTICLES) + forms.to_parameters(BRICK)
-    assert forms.from_parameters(both).isclose(PARTICLES + BRICK, rtol=1e-13)
+    both = interop.to_parameters(PARTICLES) + interop.to_parameters(BRICK)
+    assert interop.from_parameters(both).isclose(PARTICLES + BRICK, rtol=1e-13)
 
 
 class TestLogCholesky:
     def test_it_is_the_logarithm_of_numpys_factor(self) -> None:
         """J = U Uᵀ with U upper triangular: the Cholesky factor of J with rows and columns reversed."""
         flip = np.eye(4)[::-1]
-        upper = flip @ np.linalg.cholesky(flip @ forms.to_pseudo_inertia(PARTICLES) @ flip) @ flip
-        alpha, d1, d2, d3, s12, s23, s13, *t = forms.to_log_cholesky(PARTICLES)
+        upper = flip @ np.linalg.cholesky(flip @ interop.to_pseudo_inertia(PARTICLES) @ flip) @ flip
+        alpha, d1, d2, d3, s12, s23, s13, *t = interop.to_log_cholesky(PARTICLES)
         u = upper / upper[3, 3]
         assert alpha == pytest.approx(np.log(upper[3, 3]), rel=1e-14)
         assert [d1, d2, d3] == pytest.approx(np.log(np.diag(u)[:3]), rel=1e-13)
@@ -115,22 +115,22 @@ class TestLogCholesky:
 
     @given(parameters=st.lists(st.floats(-2, 2), min_size=10, max_size=10))
     def test_any_ten_numbers_are_a_body(self, parameters: list[float]) -> None:
-        body = forms.from_log_cholesky(parameters)
-        assert forms.to_log_cholesky(body) == pytest.approx(parameters, rel=1e-9, abs=1e-9)
+        body = interop.from_log_cholesky(parameters)
+        assert interop.to_log_cholesky(body) == pytest.approx(parameters, rel=1e-9, abs=1e-9)
 
     def test_far_from_the_origin_nothing_is_lost(self) -> None:
         far = BRICK.translated((1e8, 0, 0))
-        assert forms.from_log_cholesky(forms.to_log_cholesky(far)).isclose(far, rtol=1e-15)
-        assert np.array_equal(forms.to_log_cholesky(far)[:7], forms.to_log_cholesky(BRICK)[:7])
+        assert interop.from_log_cholesky(interop.to_log_cholesky(far)).isclose(far, rtol=1e-15)
+        assert np.array_equal(interop.to_log_cholesky(far)[:7], interop.to_log_cholesky(BRICK)[:7])
 
     def test_a_lamina_has_none(self) -> None:
         with pytest.raises(InvalidInertiaError, match=r"no log-Cholesky.*along z is 0\.0"):
-            forms.to_log_cholesky(laminae.disk(1.0, mass=1.0))
+            interop.to_log_cholesky(laminae.disk(1.0, mass=1.0))
 
 
 class TestPositiveProducts:
     def test_products_are_minus_the_off_diagonal_elements(self) -> None:
-        moments, products = forms.to_positive_products(PARTICLES)
+        moments, products = interop.to_positive_products(PARTICLES)
         r = POSITIONS - PARTICLES.center_of_mass
         expected = [MASSES @ (r[:, i] * r[:, j]) for i, j in ((0, 1), (0, 2), (1, 2))]
         assert products == pytest.approx(expected, rel=1e-14)
@@ -154,32 +154,32 @@ class TestPositiveProducts:
 
 class TestMistakes:
     def test_an_asymmetric_pseudo_inertia(self) -> None:
-        matrix = forms.to_pseudo_inertia(BRICK)
+        matrix = interop.to_pseudo_inertia(BRICK)
         matrix[0, 3] += 0.5
         with pytest.raises(
             InvalidInertiaError, match=r"pseudo_inertia must be symmetric: element \[0\]\[3\]"
         ):
-            forms.from_pseudo_inertia(matrix)
+            interop.from_pseudo_inertia(matrix)
 
     def test_an_impossible_pseudo_inertia(self) -> None:
         with pytest.raises(InvalidInertiaError, match="triangle"):
-            forms.from_pseudo_inertia(np.diag([-1.0, 4.0, 9.0, 12.0]))
+            interop.from_pseudo_inertia(np.diag([-1.0, 4.0, 9.0, 12.0]))
         with pytest.raises(InvalidInertiaError, match="mass"):
-            forms.from_pseudo_inertia(np.diag([1.0, 4.0, 9.0, 0.0]))
+            interop.from_pseudo_inertia(np.diag([1.0, 4.0, 9.0, 0.0]))
 
     def test_the_wrong_order_is_told(self) -> None:
         with pytest.raises(InvalidInertiaError, match=r"element \[\d\]\[\d\].*order"):
-            forms.from_spatial_inertia(forms.to_spatial_inertia(BRICK), "linear-angular")
+            interop.from_spatial_inertia(interop.to_spatial_inertia(BRICK), "linear-angular")
         with pytest.raises(ValueError, match=r"order: expected \"angular-linear\""):
-            forms.to_spatial_inertia(BRICK, "angular")  # type: ignore[arg-type]
+            interop.to_spatial_inertia(BRICK, "angular")  # type: ignore[arg-type]
 
     @pytest.mark.parametrize("element", [(0, 1), (0, 3), (1, 3), (5, 2), (4, 4), (3, 5)])
     def test_an_element_that_contradicts_the_others_is_told(self, element: tuple[int, int]) -> None:
-        matrix = forms.to_spatial_inertia(BRICK)
+        matrix = interop.to_spatial_inertia(BRICK)
         matrix[element] += 1e-3
         with pytest.raises(InvalidInertiaError, match=r"symmetric|imply"):
-            forms.from_spatial_inertia(matrix)
+            interop.from_spatial_inertia(matrix)
 
     def test_rtol_admits_printed_tables(self) -> None:
-        matrix = forms.to_spatial_inertia(PARTICLES).round(3)
-        assert forms.from_spatial_inertia(matrix, rtol=1e-3).isclose(PARTICLES, rtol=1e-3)
+        matrix = interop.to_spatial_inertia(PARTICLES).round(3)
+        assert interop.from_spatial_inertia(matrix, rtol=1e-3).isclose(PARTICLES, rtol=1e-3)

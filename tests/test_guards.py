@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from command_line import run
 from polhode import RigidBody, Trajectory, laminae, principal_axes, solids, tops
-from polhode._drift import drift
 from polhode.errors import FileFormatError, InvalidInertiaError, MeshError, PolhodeError
+from polhode.motion.invariants import drift
 
 ULP = np.finfo(float).eps
 

@@ -14,7 +14,7 @@ import polhode
 import pytest
 from mesh_files import obj
 from oracles.meshes import cube
-from polhode import RigidBody, _hints, forms, laminae, loads, rods, solids
+from polhode import RigidBody, _hints, interop, laminae, loads, rods, solids
 from polhode.cli.app import app
 from polhode.cli.running import COMMANDS, OTHER_OPTIONS
 
@@ -359,7 +359,7 @@ import sys
 import polhode
 assert not {"matplotlib", "scipy", "sympy", "pandas", "trimesh"} & set(sys.modules)
 assert "polhode.plot" not in sys.modules
-polhode.plot.body, polhode.samples.names, polhode.files, polhode.units, polhode.robots, polhode.animation
+polhode.plot.body, polhode.samples.names, polhode.io, polhode.units, polhode.robots, polhode.animation
 assert "matplotlib" not in sys.modules
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
@@ -393,7 +393,9 @@ class TestCom:
             polhode.tops.free_precession(solids.cylinder(1.0, 3.0, mass=1.0), (0.1, 0, 1), about=at).body_rate
         ),
         lambda _, at: (
-            forms.from_printout(1.0, (0, 0, 1), [1, 2, 2.5, 0.1, 0, 0], products="positive", about=at).inertia
+            interop.from_printout(
+                1.0, (0, 0, 1), [1, 2, 2.5, 0.1, 0, 0], products="positive", about=at
+            ).inertia
         ),
         lambda b, at: POLHODE.ensemble(b, *SPUN, n=2, seed=1, about=at).compute().omega,
     ]

@@ -19,8 +19,8 @@ import pytest
 from hostile_files import HOSTILE, dae, doubling
 from polhode import RigidBody, Trajectory, assembly, robots
 from polhode.errors import PolhodeError
-from polhode.files import load
-from polhode.files.budget import LIMITS, Budget, LimitError
+from polhode.io import load
+from polhode.io.reading import LIMITS, Budget, LimitError
 from polhode.uncertainty import ledger
 
 SECONDS, MEGABYTES = 10.0, 1000
@@ -140,11 +140,11 @@ def test_the_process_of_occt_ends_with_its_parent(tmp_path: Path) -> None:
     """Even where it computes without end, in which no thread of Python runs."""
     pid = tmp_path / "pid"
     child = (
-        "import os, sys; from polhode.files import cad_apart; cad_apart._end_with_parent(int(sys.argv[2])); "
+        "import os, sys; from polhode.io import cad_apart; cad_apart._end_with_parent(int(sys.argv[2])); "
         f"open({str(pid)!r}, 'w').write(str(os.getpid()))\nwhile True: pass"
     )
     parent = (
-        "from pathlib import Path; from polhode.files import cad_apart; "
+        "from pathlib import Path; from polhode.io import cad_apart; "
         f"cad_apart._COMMAND = ['-c', {child!r}]; "
         f"cad_apart.read_cad_apart(Path({str(tmp_path / 'a.step')!r}))"
     )

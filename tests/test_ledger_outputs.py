@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from command_line import one_line, run
 from matplotlib.figure import Figure
-from polhode._rounding import with_sigma
+from polhode._format import with_sigma
 from polhode.uncertainty import ledger
 from random_ledgers import (
     NUMBERS,

@@ -15,7 +15,7 @@ from oracles.meshes import cube
 from polhode import RigidBody, _core
 from polhode.cli import main
 from polhode.errors import FileFormatError, MeshError
-from polhode.files import load, read_mesh, read_xyz, solid_from_file
+from polhode.io import load, read_mesh, read_xyz, solid_from_file
 
 READERS = ("read_stl", "read_plates", "stream_solid")
 NEON = "1\n\nNe 0 0 0\n"

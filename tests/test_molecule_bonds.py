@@ -8,9 +8,9 @@ import numpy as np
 import polhode
 import pytest
 from oracles.stretched import WATER, built, lengths_of, tensor, tree
-from polhode import _bonds, molecules
+from polhode import molecules
 from polhode.errors import PolhodeError
-from polhode.molecules import bonds
+from polhode.molecules import bonding, bonds
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -173,7 +173,7 @@ def test_bonds_are_found(monkeypatch: pytest.MonkeyPatch, rng: np.random.Generat
     ]
     assert expected
     for block in (1, 100, 1 << 20):
-        monkeypatch.setattr(_bonds, "_BLOCK", block)
+        monkeypatch.setattr(bonding, "_BLOCK", block)
         assert bonds(labels, places) == expected
     assert bonds(["D", "18O"], [(0, 0, 0), (0, 0, 1)]) == [(0, 1)]
     with pytest.raises(PolhodeError, match="no covalent radius of Fm"):

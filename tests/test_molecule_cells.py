@@ -14,7 +14,7 @@ import pytest
 from command_line import run
 from polhode import RigidBody
 from polhode.errors import PolhodeError
-from polhode.files import load
+from polhode.io import load
 from polhode.molecules import CellBond, bonds, cell_crossings
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from command_line import one_line, run
 from polhode import RigidBody
-from polhode._nuclides import SYMBOLS
 from polhode.errors import FileFormatError
-from polhode.files import load
+from polhode.io import load
+from polhode.molecules.nuclides import SYMBOLS
 
 # Columns as in the format's guide.
 PDB = """HEADER    WATER AND A CHLORIDE

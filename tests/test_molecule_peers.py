@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 from polhode import RigidBody
 from polhode.errors import PolhodeError
-from polhode.files import load
+from polhode.io import load
 from polhode.molecules import isotopes
 from random_molecules import Atom, Case, cases, extended_xyz, mol, pdb, v3000, xyz
 from rdkit import Chem, RDLogger

@@ -13,7 +13,7 @@ from mesh_files import dae
 from oracles.meshes import cube
 from polhode import RigidBody, assembly
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.files import load
+from polhode.io import load
 
 MODEL = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
 Box = tuple[float, float]
@@ -97,7 +97,7 @@ def test_a_negative_volume_that_cuts_the_surface(
     pytest.importorskip("manifold3d")
     path = write(tmp_path / "a.3mf", "NegativeVolume" if write is prusa else "negative_part", (5.0, 15.0))
     assert RigidBody.from_file(path, density=1.0).mass == pytest.approx(1000.0 - 125.0, rel=1e-9)
-    monkeypatch.setattr("polhode.files.subtraction.has_union", lambda: False)
+    monkeypatch.setattr("polhode.io.subtraction.has_union", lambda: False)
     with pytest.raises(FileFormatError, match=r"cuts through the surface.*pip install"):
         load(path)
 

@@ -11,7 +11,7 @@ import xml.etree.ElementTree as ElementTree
 import numpy as np
 import pytest
 from polhode import RigidBody, loads, solids
-from polhode._notebook import ellipsoid_svg
+from polhode.draw.html import ellipsoid_svg
 
 NAMESPACE = "{http://www.w3.org/2000/svg}"
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-MODULES = Path(__file__).resolve().parents[1] / "python/polhode/animation/page"
+MODULES = Path(__file__).resolve().parents[1] / "python/polhode/draw/animation/web"
 NODE = shutil.which("node")
 ASKED = """([moments, omega, attitude, times]) => {
   const body = new FreeBody(moments, omega, attitude);

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from browser import Browser, needs_browser
 from polhode import RigidBody, Trajectory, euler_angles, loads, solids
-from polhode._scene.energy import energy_of
-from polhode._scene.footage import Footage
+from polhode.draw.sampling import Footage
+from polhode.draw.scene import energy_of
 from test_page import TOLD
 
 if TYPE_CHECKING:

@@ -10,10 +10,10 @@ import pytest
 from browser import Browser, needs_browser
 from PIL import Image
 from polhode import RigidBody, Trajectory, loads
-from polhode._scene.sampling import TURN
-from polhode._scene.scene import Scene
-from polhode._scene.wheels import slowed
 from polhode.animation import animate
+from polhode.draw.sampling import TURN
+from polhode.draw.scene import Scene
+from polhode.draw.wheels import slowed
 from test_animation import data
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from numpy.typing import NDArray
-    from polhode._scene.wheels import Disc
+    from polhode.draw.wheels import Disc
 
 BODY = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
 OMEGA = (0.3, 0.2, 1.1)

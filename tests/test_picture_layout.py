@@ -22,7 +22,7 @@ from polhode import (
     solids,
     view,
 )
-from polhode.uncertainty.ledger import Ledger, ledger
+from polhode.uncertainty.ledgers import Ledger, ledger
 from scipy.spatial import ConvexHull
 
 pytest.importorskip("matplotlib")
@@ -295,7 +295,7 @@ def pixels(opacity: float, dpi: float) -> np.ndarray:
     figure = Figure(figsize=(3.0, 3.0), dpi=dpi)
     canvas: Any = FigureCanvasAgg(figure)
     ax: Any = figure.add_subplot(projection="3d", computed_zorder=False)
-    from polhode.plot._surfaces import plain_frame, solid_ellipsoid
+    from polhode.draw.plot.axes import plain_frame, solid_ellipsoid
 
     solid_ellipsoid(ax, np.ones(3), np.eye(3), np.zeros(3), opacity)
     plain_frame(ax, 3 * [-1.1], 3 * [1.1])

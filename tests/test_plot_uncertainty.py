@@ -8,7 +8,7 @@ import numpy as np
 import polhode
 import pytest
 from polhode import Uncertain, loads
-from polhode._scene.doubt import angle_covariance, axis_scatter
+from polhode.draw.plot.ellipsoid import angle_covariance, axis_scatter
 from scipy.spatial.transform import Rotation
 
 pytest.importorskip("matplotlib")
@@ -177,7 +177,7 @@ class TestEllipses:
         assert words(plot.ellipsoid(body, solid()))[1:] == ["axes not determined: anywhere"]
 
     def test_an_ellipse_over_a_right_angle_is_none(self) -> None:
-        from polhode.plot._error_ellipses import _ellipses
+        from polhode.draw.plot.ellipsoid import _ellipses
 
         covariance = np.diag([0.01, 0.01, 0.5]) ** 2.0
         assert list(_ellipses(covariance, 3.1)[0]) == [0, 1, 2]  # 1.55 < π/2

@@ -96,7 +96,7 @@ def test_pieces_of_a_file_and_draws_show_a_bar_on_a_terminal_alone(
     rows = np.memmap(tmp_path / "rows", dtype="f8", mode="w+", shape=(100_000, 4))
     rows[:] = 1.0
     body = solids.box((1, 2, 3), mass=1.0).with_sigma(mass=0.1)
-    monkeypatch.setattr("polhode._elsewhere.particles._PIECE", 4096)
+    monkeypatch.setattr("polhode.ensembles.lazy_arrays._PIECE", 4096)
     monkeypatch.setattr("polhode._progress._SILENT", 0.0)
     works: dict[str, Callable[[], object]] = {
         "100000 particles [": lambda: RigidBody.from_particles(rows[:, 0], rows[:, 1:]),

@@ -14,8 +14,7 @@ import pytest
 from command_line import one_line, run
 from polhode import Event, RigidBody, euler_angles, regions, robots
 from polhode.errors import SingularAttitudeError
-from polhode.files.budget import LIMITS
-from polhode.files.reading import MOST_TEXT
+from polhode.io.reading import LIMITS, MOST_TEXT
 from scipy.spatial.transform import Rotation
 from test_check import ROBOT
 

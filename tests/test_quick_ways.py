@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from polhode.files.collada import _FaultError, _integers
-from polhode.files.hull import _outward, _wound_alike
-from polhode.files.mesh import equal_rows, used_vertices
+from polhode.io.collada import _FaultError, _integers
+from polhode.io.hull import _outward, _wound_alike
+from polhode.io.mesh import equal_rows, used_vertices
 
 spatial = pytest.importorskip("scipy.spatial")
 

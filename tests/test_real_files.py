@@ -89,7 +89,7 @@ def test_stl_of_cad_programs(shared_data: Path) -> None:
 def test_step_of_a_cad_program(shared_data: Path) -> None:
     """SolidWorks wrote it in inches; its STL is coarser by what the tessellation takes off the holes."""
     pytest.importorskip("OCP.BRep", reason="CAD files need polhode[cad]")
-    from polhode.files import load, solid_from_file
+    from polhode.io import load, solid_from_file
 
     path = shared_data / "cad" / "featuretype.STEP"
     assert load(path).unit == "in"

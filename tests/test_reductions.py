@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from ensemble_cases import BODY, SPIN, TIMES, all_bytes, all_reductions, last_spin, twisted
 from polhode import RigidBody, distributions, ensemble, loads, reductions
-from polhode._reducing import compacted, halved, level_of, moments, ordered
-from polhode.ensembles.tree import Tree
+from polhode.ensembles.reduce import Tree
+from polhode.reductions import compacted, halved, level_of, moments, ordered
 
 N = 10_000
 

@@ -16,7 +16,7 @@ from mesh_files import binary_stl, obj
 from oracles.meshes import cube, icosphere
 from polhode import RigidBody
 from polhode.errors import MeshError, PolhodeError
-from polhode.files import solid_from_file
+from polhode.io import solid_from_file
 
 VERTICES, FACES = icosphere(2)
 VERTICES = VERTICES * np.array([3.0, 2.0, 1.0]) + np.array([0.5, -1.0, 2.0])

@@ -15,9 +15,9 @@ from command_line import run, write_obj
 from mesh_files import WRITERS
 from oracles.meshes import box
 from polhode import RigidBody
-from polhode._quantities import quantities, quantity, vector
-from polhode.cli.progress import progress
+from polhode.cli.terminal import progress
 from polhode.errors import PolhodeError
+from polhode.units import quantities, quantity, vector
 
 if TYPE_CHECKING:
     from pathlib import Path

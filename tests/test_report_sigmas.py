@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import polhode
 from polhode import Uncertain
-from polhode._notebook import body_html
 from polhode.cli.layout import Field, Report
-from polhode.cli.sigmas import about_point, angle_field, moments_slopes, note_linear, squared
+from polhode.cli.tables import about_point, angle_field, moments_slopes, note_linear, squared
+from polhode.draw.html import body_html
 
 if TYPE_CHECKING:
     import pytest

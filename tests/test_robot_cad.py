@@ -41,7 +41,7 @@ def test_without_the_extra_the_line_that_installs_it_is_told(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "ball.step").write_text("ISO-10303-21;\n")
-    monkeypatch.setattr("polhode.files.cad_kernel.find_spec", lambda _: None)
+    monkeypatch.setattr("polhode.io.cad_geometry.find_spec", lambda _: None)
     monkeypatch.setitem(sys.modules, "OCP", None)
     verdict = judged(tmp_path, 0.003)
     assert any('pip install "polhode[cad]"' in note for note in verdict.notes)

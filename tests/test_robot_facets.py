@@ -10,7 +10,7 @@ import trimesh
 from mesh_files import obj
 from oracles.meshes import cube
 from polhode import robots
-from polhode.robots.facets import sagitta
+from polhode.robots.geometry import sagitta
 from robot_texts import link, urdf
 
 if TYPE_CHECKING:

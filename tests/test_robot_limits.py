@@ -12,8 +12,8 @@ import pytest
 from command_line import one_line, run
 from polhode import robots
 from polhode.errors import FileFormatError
-from polhode.files.budget import LIMITS
-from polhode.files.xml_source import Edit, edited, parse_xml
+from polhode.io.reading import LIMITS
+from polhode.io.xml_source import Edit, edited, parse_xml
 from polhode.robots.sources import read_source, read_stream
 
 if TYPE_CHECKING:

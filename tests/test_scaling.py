@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from ensemble_cases import all_reductions, twisted
 from polhode import RigidBody, flybys, orbits
-from polhode.ensembles.reducing import nodes_of_chunk
+from polhode.ensembles.reduce import nodes_of_chunk
 
 PAGE = (Path(__file__).resolve().parents[1] / "docs" / "scaling.md").read_text("utf-8")
 CHUNK = 120 * 4096

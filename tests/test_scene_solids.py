@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from polhode import RigidBody, solids
-from polhode._scene.solids import solid_surface
+from polhode.draw.triangles import solid_surface
 
 SOLIDS: list[tuple[str, tuple[float, ...]]] = [
     ("cuboid", (1.0, 2.0, 3.0)),

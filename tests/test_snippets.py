@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 from command_line import one_line, run
-from polhode import RigidBody, forms, solids
-from polhode._snippets import PROGRAMS
+from polhode import RigidBody, interop, solids
 from polhode.errors import PolhodeError
+from polhode.interop.programs import PROGRAMS
 from polhode.robots import parse_robot
 
 AROUND = {
@@ -47,7 +47,7 @@ def test_our_reader_gives_the_same_bits(program: str) -> None:
     for body in bodies():
         if program == "mjcf" and body.principal_moments[0] <= 1e-15:
             continue  # refused, see TestTheEdge
-        text = AROUND[program].format(forms.to_text(body, program)).encode()
+        text = AROUND[program].format(interop.to_text(body, program)).encode()
         robot = parse_robot(text, name="a", folder=Path())
         inertial = robot.links[0].inertial
         assert inertial is not None
@@ -76,7 +76,7 @@ def test_products_of_two_particles() -> None:
         "matlab": r"Inertia = \[2.0, 2.0, 4.0, 0.0, 0.0, (\S+)\];",
     }
     for program, place in places.items():
-        found = re.search(place, forms.to_text(pair, program))
+        found = re.search(place, interop.to_text(pair, program))
         assert found is not None
         assert found[1] == signs.get(program, "-2.0")
 
@@ -86,25 +86,25 @@ def test_lines_of_each_program_hold_the_body() -> None:
         m, c = float(body.mass), body.center_of_mass
         simulink = [
             numbers(line.partition(":")[2].replace("m^2", ""))
-            for line in forms.to_text(body, "simulink").split("\n")[1:]
+            for line in interop.to_text(body, "simulink").split("\n")[1:]
         ]
         assert simulink[0] == [m]
         assert np.array_equal(simulink[1], c)
         yz, zx, xy = simulink[3]
         assert np.array_equal(tensor([*simulink[2], xy, zx, yz]), body.inertia)
-        part, marker = forms.to_text(body, "adams").split("\n")
+        part, marker = interop.to_text(body, "adams").split("\n")
         xx, yy, zz, xy, xz, yz = numbers(part.partition("IP=")[2])
         assert np.array_equal(tensor((xx, yy, zz, -xy, -xz, -yz)), body.inertia)
         assert np.array_equal(numbers(marker.partition("QP=")[2]), c)
-        onshape = json.loads(forms.to_text(body, "onshape"))
+        onshape = json.loads(interop.to_text(body, "onshape"))
         assert [*onshape["mass"], *onshape["centroid"]] == [m, *c]
         assert np.array_equal(np.reshape(onshape["inertia"], (3, 3)), body.inertia)
-        made, *matlab = forms.to_text(body, "matlab").split("\n")
+        made, *matlab = interop.to_text(body, "matlab").split("\n")
         assert made == 'body = rigidBody("body");'
         assert [numbers(line) for line in matlab[:2]] == [[m], c.tolist()]
         xx, yy, zz, yz, xz, xy = numbers(matlab[2])  # about the origin of its frame
         assert np.array_equal(tensor((xx, yy, zz, xy, xz, yz)), body.inertia_about("origin"))
-        text = forms.to_text(body, "pybullet")
+        text = interop.to_text(body, "pybullet")
         x, y, z, w = numbers(text.partition("Orientation=")[2].partition("]")[0])
         R = np.array(
             [
@@ -128,19 +128,19 @@ AT_ORIGIN = (1.80906323, 0.48649877, 2.28360341, -0.70069202, 0.0, 0.0)
 class TestSolidWorks:
     @pytest.mark.parametrize(("six", "about"), [(OWN, "center_of_mass"), (AT_ORIGIN, "origin")])
     def test_a_printout_in_positive_notation(self, six: Any, about: str) -> None:
-        body = forms.from_printout(MASS, CENTER, six, products="positive", about=about)
+        body = interop.from_printout(MASS, CENTER, six, products="positive", about=about)
         assert np.allclose(body.principal_moments, MOMENTS, rtol=0, atol=4e-8)
         # The axes are rows; with the other sign they would be turned the other way.
         across = body.inertia @ np.array(AXES).T - np.array(AXES).T * MOMENTS
         assert np.abs(across).max() < 4e-8
-        wrong = forms.from_printout(MASS, CENTER, OWN, products="negative")
+        wrong = interop.from_printout(MASS, CENTER, OWN, products="negative")
         assert np.abs(wrong.inertia @ np.array(AXES).T - np.array(AXES).T * MOMENTS).max() > 0.1
         xx, yy, zz, xy, xz, yz = AT_ORIGIN
         assert np.allclose(body.inertia_about("origin"), tensor((xx, yy, zz, -xy, -xz, -yz)), atol=4e-8)
 
     def test_ours_is_such_a_printout(self) -> None:
-        body = forms.from_printout(MASS, CENTER, OWN, products="positive")
-        text = forms.to_text(body, "solidworks")
+        body = interop.from_printout(MASS, CENTER, OWN, products="positive")
+        text = interop.to_text(body, "solidworks")
         rows = {letter: re.findall(rf"{letter}[xyz]{{2}} = (\S+)", text) for letter in "LI"}
         for letter, six in (("L", OWN), ("I", AT_ORIGIN)):
             found = np.array(rows[letter], float).reshape(3, 3)
@@ -156,11 +156,11 @@ def test_onshape_and_the_shape_it_was_asked_about() -> None:
     # "body", mass and tensor, in the part's axes; and assets/body.stl of that mass, by trimesh, in the same.
     told = (2.06023e-3, 1.50691e-3, 2.54354e-3, 4.48497e-10, 6.47006e-11, -2.87610e-4)
     shape = (2.059526353e-3, 1.506772201e-3, 2.542976451e-3, 0.0, 0.0, -2.873031616e-4)
-    body = forms.from_printout(2.23874, (0.0375, 0.0253843, 0.0225241), told, products="negative")
+    body = interop.from_printout(2.23874, (0.0375, 0.0253843, 0.0225241), told, products="negative")
     assert np.allclose(body.inertia, tensor(shape), rtol=2e-3, atol=1e-9)
-    found = json.loads(forms.to_text(body, "onshape"))["inertia"]
+    found = json.loads(interop.to_text(body, "onshape"))["inertia"]
     assert np.allclose(np.reshape(found, (3, 3)), tensor(told), rtol=1e-15)
-    other = forms.from_printout(2.23874, (0.0375, 0.0253843, 0.0225241), told, products="positive")
+    other = interop.from_printout(2.23874, (0.0375, 0.0253843, 0.0225241), told, products="positive")
     assert np.abs(other.inertia - tensor(shape)).max() > 5e-4
 
 
@@ -175,12 +175,12 @@ class TestThePrograms:
             body = body.scaled(
                 length=scale / body.radii_of_gyration.max() * body.mass**0.5, mass=1 / body.mass
             )
-            model = mujoco.MjModel.from_xml_string(AROUND["mjcf"].format(forms.to_text(body, "mjcf")))
+            model = mujoco.MjModel.from_xml_string(AROUND["mjcf"].format(interop.to_text(body, "mjcf")))
             self.check_mujoco(model, body)
             spec = mujoco.MjSpec()
             scope = {"body": spec.worldbody.add_body()}
             scope["body"].add_freejoint()
-            exec(forms.to_text(body, "mujoco"), scope)
+            exec(interop.to_text(body, "mujoco"), scope)
             self.check_mujoco(spec.compile(), body)
 
     def check_mujoco(self, model: Any, body: RigidBody) -> None:
@@ -193,10 +193,10 @@ class TestThePrograms:
     def test_pinocchio(self) -> None:
         pinocchio = pytest.importorskip("pinocchio")
         for body in bodies():
-            text = AROUND["urdf"].format(forms.to_text(body, "urdf"))
+            text = AROUND["urdf"].format(interop.to_text(body, "urdf"))
             read = pinocchio.buildModelFromXML(text, pinocchio.JointModelFreeFlyer()).inertias[1]
             scope: dict[str, Any] = {}
-            exec(forms.to_text(body, "pinocchio"), scope)
+            exec(interop.to_text(body, "pinocchio"), scope)
             for inertia in (read, scope["inertia"]):
                 assert inertia.mass == body.mass
                 assert np.allclose(inertia.lever, body.center_of_mass, rtol=1e-15)
@@ -212,14 +212,14 @@ class TestCommand:
     def test_it_prints_the_lines_alone(self, program: str, tmp_path: Path) -> None:
         body = RigidBody(2.0, [(3.0, -0.5, 0), (-0.5, 4.0, 0), (0, 0, 5.0)], (0, 0, 0.1))
         code, out, err = run("report", *self.WORDS, "--as", program)
-        assert (code, out) == (0, forms.to_text(body, program) + "\n")
+        assert (code, out) == (0, interop.to_text(body, program) + "\n")
         assert err.splitlines() == [
             f"polhode: note: {option} has no unit: {unit} was taken"
             for option, unit in (("--mass", "kg"), ("--com", "m"), ("--inertia", "kg m^2"))
         ]
         path = tmp_path / "x.json"
         assert run("report", *self.WORDS, "--as", program, "--output", path)[:2] == (0, "")
-        assert path.read_text() == forms.to_text(body, program) + "\n"
+        assert path.read_text() == interop.to_text(body, program) + "\n"
 
     def test_refused(self, tmp_path: Path) -> None:
         rows: list[tuple[tuple[str, ...], str]] = [
@@ -240,11 +240,11 @@ class TestCommand:
 
     def test_python_refuses(self) -> None:
         with pytest.raises(PolhodeError, match="there is no form for 'catia'; give one of urdf"):
-            forms.to_text(bodies()[0], "catia")
+            interop.to_text(bodies()[0], "catia")
         with pytest.raises(PolhodeError, match="expected one body, got a stack of shape"):
-            forms.to_text(RigidBody.stack(bodies()), "urdf")
+            interop.to_text(RigidBody.stack(bodies()), "urdf")
         flat = solids.box((1, 0, 0), mass=1.0)
         for program in ("mjcf", "mujoco"):
             with pytest.raises(PolhodeError, match="give it a thickness"):
-                forms.to_text(flat, program)
-        assert "<inertial>" in forms.to_text(flat, "urdf")
+                interop.to_text(flat, program)
+        assert "<inertial>" in interop.to_text(flat, "urdf")

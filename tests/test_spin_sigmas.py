@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from command_line import run
 from polhode import Uncertain
-from polhode._quantities import amounts
 from polhode.errors import PolhodeError
+from polhode.units import amounts
 from uncertain_bodies import RigidBody
 
 BRICK = ("spin", "--moments", "1.000 ± 0.002, 2.0, 2.5", "--format", "json")

@@ -162,7 +162,7 @@ def test_a_wheel_with_no_momentum_changes_nothing() -> None:
 
 
 def test_pictures_and_numbers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("polhode._scene.footage._SECONDS", 0.5)  # few pictures
+    monkeypatch.setattr("polhode.draw.sampling._SECONDS", 0.5)  # few pictures
     names = [tmp_path / name for name in ("a.png", "a.svg", "a.csv", "a.npz", "a.json", "a.html", "a.gif")]
     saves = [word for name in names for word in ("--save", name)]
     code, out, err = run(*BODY, "--wheel", "y, 0.7", "--until", 1, "--samples", 11, *saves)

@@ -9,7 +9,7 @@ import numpy as np
 import polhode
 import pytest
 from polhode import Uncertain
-from polhode.files import load_trajectory
+from polhode.io import load_trajectory
 from polhode.uncertainty import propagate
 from scipy.spatial.transform import Rotation
 from uncertain_bodies import RigidBody, laminae, solids

@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from oracles.meshes import box
 from polhode import Trajectory, loads, solids
-from polhode._scene.scene import Scene
-from polhode.uncertainty.ledger import ledger
+from polhode.draw.scene import Scene
+from polhode.uncertainty.ledgers import ledger
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -40,7 +40,7 @@ def as_typed(figure: Any, word: str) -> int:
 
 
 def test_films() -> None:
-    from polhode.animation._picture import Picture
+    from polhode.draw.animation.film import Picture
 
     run = motion(MATH)
     scene = Scene.of(run, frames=None, duration=None, shape=None, title=MATH, time_unit="s", is_film=True)

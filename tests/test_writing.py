@@ -18,7 +18,7 @@ import polhode
 import pytest
 from command_line import one_line, run
 from polhode import Trajectory, solids
-from polhode.files.writing import replacing, write_bytes, writing
+from polhode.io.writing import replacing, write_bytes, writing
 from writers import OLD, WRITERS
 
 PACKAGE = Path(polhode.__file__).parent
@@ -85,7 +85,7 @@ def test_killed_in_the_middle(tmp_path: Path) -> None:
     path.write_bytes(OLD)
     program = f"""
 import sys, time
-from polhode.files.writing import writing
+from polhode.io.writing import writing
 with writing({str(path)!r}) as stream:
     stream.write(bytes(1 << 20))
     print("half", flush=True)
@@ -161,7 +161,7 @@ class TestThePlace:
         """Behind what it holds already, be it a pipe or a file."""
         program = f"""
 import os
-from polhode.files.writing import write_bytes
+from polhode.io.writing import write_bytes
 os.write(1, b"before ")
 write_bytes({name!r}, b"new ")
 os.write(1, b"after")

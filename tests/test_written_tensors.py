@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from command_line import run
-from polhode import RigidBody, forms, laminae, robots, rods, solids, validity
-from polhode._snippets import PROGRAMS, inside_edge
+from polhode import RigidBody, interop, laminae, robots, rods, solids, validity
 from polhode.errors import PolhodeError
+from polhode.interop.programs import PROGRAMS, inside_edge
 from robot_texts import bare, joint, urdf
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ def numbers(text: str) -> list[float]:
 
 def printed(body: RigidBody, program: str) -> list[Floats]:
     """The tensors about C that a text of a program has; principal ones on their diagonal."""
-    text = forms.to_text(body, program)
+    text = interop.to_text(body, program)
     if program in ("urdf", "sdf"):
         element = ET.fromstring(text)
         inertia = element.find("inertia")
@@ -175,16 +175,16 @@ def check_writers(bodies: Sequence[RigidBody]) -> None:
         written = {tensor.tobytes(): (tensor, p) for p in PROGRAMS for tensor in printed(body, p)}
         for tensor, program in written.values():
             assert is_possible(tensor.tolist()), (program, body.inertia.tolist())
-    text = urdf_of([forms.to_text(body, "urdf") for body in bodies])
+    text = urdf_of([interop.to_text(body, "urdf") for body in bodies])
     assert refused_by_mujoco(text) == ""
     loaded_by_pinocchio(text, len(bodies))
-    assert refused_by_mujoco(mjcf_of([forms.to_text(body, "mjcf") for body in bodies])) == ""
+    assert refused_by_mujoco(mjcf_of([interop.to_text(body, "mjcf") for body in bodies])) == ""
     mujoco = pytest.importorskip("mujoco")
     spec = mujoco.MjSpec()
     for body in bodies:
         scope = {"body": spec.worldbody.add_body()}
         scope["body"].add_joint()
-        exec(forms.to_text(body, "mujoco"), scope)
+        exec(interop.to_text(body, "mujoco"), scope)
     model = spec.compile()
     for body, moments in zip(bodies, model.body_inertia[1:], strict=True):
         largest = float(body.principal_moments[2])
@@ -299,21 +299,21 @@ class TestTheEdge:
             turned = RigidBody.from_principal(1.0, (moment, 1e-9, 1e-9)).rotated([0.6, 0.0, 0.0, 0.8])
             for body in (RigidBody.from_principal(1.0, (moment, 1e-9, 1e-9)), turned):
                 if is_taken:
-                    text = forms.to_text(body, program)
+                    text = interop.to_text(body, program)
                     if program == "mjcf":
                         assert refused_by_mujoco(mjcf_of([text])) == ""
                     continue
                 with pytest.raises(PolhodeError, match=r"smallest moment is 9.99e-16, and MuJoCo refuses"):
-                    forms.to_text(body, program)
+                    interop.to_text(body, program)
         with pytest.raises(PolhodeError, match=r"its mass is 1e-15, and MuJoCo refuses"):
-            forms.to_text(RigidBody(1e-15, np.eye(3)), program)
+            interop.to_text(RigidBody(1e-15, np.eye(3)), program)
         with pytest.raises(PolhodeError, match=r"moment is 0, and MuJoCo refuses .* up to 1e-15 kg m\^2"):
-            forms.to_text(rods.rod(1.0, mass=1.0), program)
+            interop.to_text(rods.rod(1.0, mass=1.0), program)
         assert refused_by_mujoco(mjcf_of(['<inertial pos="0 0 0" mass="1" diaginertia="9.99e-16 1 1"/>']))
 
     def test_a_rod_is_written_as_it_is(self) -> None:
         rod = rods.rod(2.0, mass=3.0)
-        assert 'izz="0.0"' in forms.to_text(rod, "urdf")
+        assert 'izz="0.0"' in interop.to_text(rod, "urdf")
 
 
 class TestFix:
@@ -342,7 +342,7 @@ class TestFix:
     def test_a_rod_is_not_given_a_thickness(self, program: str) -> None:
         text = '<inertial pos="0 0 0" mass="3" diaginertia="1 1 0"/>'
         if program != "mjcf":
-            text = forms.to_text(rods.rod(2.0, mass=3.0), program)
+            text = interop.to_text(rods.rod(2.0, mass=3.0), program)
         around = {"urdf": urdf_of([text]), "mjcf": mjcf_of([text]), "sdf": sdf_of([text])}
         robot = parsed(around[program])
         verdicts = robots.check(robot)

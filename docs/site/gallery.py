@@ -72,7 +72,7 @@ def copy(site: Path) -> None:
 
 
 def of_package() -> str:
-    """Give a mark that changes with the package, its files and their times, and with what draws."""
+    """Return a mark that changes with the package, its files and their times, and with what draws."""
     mark = hashlib.sha256(f"{version('numpy')} {version('matplotlib')}".encode())
     package = ROOT / "python" / "polhode"
     for file in sorted(
@@ -94,12 +94,12 @@ def done(name: str, stamp: str) -> bool:
 
 
 def text_mark(name: str) -> str:
-    """Give a mark of the text of a script."""
+    """Return a mark of the text of a script."""
     return hashlib.sha256(script(name).read_bytes()).hexdigest()
 
 
 def script(name: str) -> Path:
-    """Give the file of an entry."""
+    """Return the file of an entry."""
     return ROOT / "examples" / f"{name}.py"
 
 
@@ -121,24 +121,24 @@ def run(name: str, stamp: str) -> None:
 
 
 def view(name: str) -> int:
-    """Give the number of the view of a figure that stands in the gallery."""
+    """Return the number of the view of a figure that stands in the gallery."""
     table = tomllib.loads((ROOT / "docs" / "gallery.toml").read_text("utf-8"))
     number, _ = table["thumbnails"][name]
     return int(number)
 
 
 def title(name: str) -> str:
-    """Give the heading of an entry: the name of its file."""
+    """Return the heading of an entry: the name of its file."""
     return name.replace("_", " ").capitalize().replace("T handle", "T-handle").replace("lagrange", "Lagrange")
 
 
 def says(name: str) -> str:
-    """Give what a script says of itself, on one line."""
+    """Return what a script says of itself, on one line."""
     return " ".join((ast.get_docstring(ast.parse(script(name).read_text("utf-8"))) or "").split())
 
 
 def pages(groups: dict[str, list[str]], shown: dict[str, str]) -> Iterator[tuple[str, str]]:
-    """Give the name and the text of each page."""
+    """Return the name and the text of each page."""
     listing = [
         "# Gallery\n",
         "Each picture leads to its code. Entries with ▶ also show the motion in the browser.",
@@ -159,7 +159,7 @@ def pages(groups: dict[str, list[str]], shown: dict[str, str]) -> Iterator[tuple
 
 
 def small(name: str, words: str) -> str:
-    """Give the small picture of an entry, in the colours of both modes of the page."""
+    """Return the small picture of an entry, in the colours of both modes of the page."""
     return "".join(
         f'<img class="only-{mode}" src="{name}.{mode}.png" alt="{words}" width="320" height="200"'
         ' loading="lazy">'
@@ -168,7 +168,7 @@ def small(name: str, words: str) -> str:
 
 
 def entry(name: str) -> str:
-    """Give the page of an entry."""
+    """Return the page of an entry."""
     lines = [f"# {title(name)}\n", f"{says(name)}\n"]
     if (KEPT / name / "live.html").exists():
         lines.append(
@@ -187,7 +187,7 @@ def entry(name: str) -> str:
 
 
 def made_of(name: str, function: str) -> str:
-    """Give the first line of the docstring of a function of an entry."""
+    """Return the first line of the docstring of a function of an entry."""
     for node in ast.parse(script(name).read_text("utf-8")).body:
         if isinstance(node, ast.FunctionDef) and node.name == function:
             return described(ast.get_docstring(node) or "")
@@ -195,6 +195,6 @@ def made_of(name: str, function: str) -> str:
 
 
 def described(docstring: str) -> str:
-    """Give what a figure shows: the first line of the function that draws it, as a noun."""
+    """Return what a figure shows: the first line of the function that draws it, as a noun."""
     text = docstring.partition("\n")[0].rstrip(".").removeprefix("Draw ")
     return text[:1].upper() + text[1:]

@@ -33,7 +33,7 @@ def write(docs: Path) -> None:
 
 
 def pages(table: Table) -> Iterator[tuple[str, str]]:
-    """Give the name and the text of each page."""
+    """Return the name and the text of each page."""
     listing = [INTRODUCTION]
     for group, names in table["groups"].items():
         listing += [f"\n## {group}\n", "| page | what |", "|---|---|"]
@@ -69,7 +69,7 @@ What all pages have in common ([conventions](../conventions.md), [glossary](../g
 
 
 def page(name: str, value: object, table: Table, parts: dict[str, list[str]]) -> str:
-    """Give the page of a class or of a module."""
+    """Return the page of a class or of a module."""
     short = name.removeprefix("polhode.")
     lines = [f"# {short}\n"]
     if name in table["pictures"]:
@@ -93,7 +93,7 @@ def page(name: str, value: object, table: Table, parts: dict[str, list[str]]) ->
 
 
 def part(name: str, value: object, title: str, members: list[str]) -> str:
-    """Give the page of some members of a class or of a module."""
+    """Return the page of some members of a class or of a module."""
     short = name.removeprefix("polhode.")
     lines = [f"# {short}: {title.lower()}\n", f"Of [{short}]({short}.md).\n", "```{eval-rst}"]
     for member in members:
@@ -106,7 +106,7 @@ def part(name: str, value: object, title: str, members: list[str]) -> str:
 
 
 def of_class(name: str, cls: type, apart: set[str]) -> list[str]:
-    """Give the directive of a class; of one without methods its fields are described by the class."""
+    """Return the directive of a class; of one without methods its fields are described by the class."""
     held: dict[str, object] = {}  # its own members first, then those of its bases, which have no pages
     for base in cls.__mro__:
         if base.__module__.startswith("polhode"):
@@ -131,7 +131,7 @@ def of_class(name: str, cls: type, apart: set[str]) -> list[str]:
 
 
 def of_name(name: str, value: object) -> list[str]:
-    """Give the directive of what a module holds."""
+    """Return the directive of what a module holds."""
     if inspect.isclass(value):
         return of_class(name, value, set())
     if callable(value):
@@ -142,8 +142,8 @@ def of_name(name: str, value: object) -> list[str]:
 
 
 DATA = {
-    "polhode.files.BODY_SCHEMA": "JSON Schema of the JSON file of a body, as a dict.",
-    "polhode.files.TRAJECTORY_SCHEMA": "JSON Schema of the JSON file of a motion, as a dict.",
+    "polhode.io.BODY_SCHEMA": "JSON Schema of the JSON file of a body, as a dict.",
+    "polhode.io.TRAJECTORY_SCHEMA": "JSON Schema of the JSON file of a motion, as a dict.",
     "polhode.plot.AXIS_COLORS": "Colours of the three principal axes and of components along them.",
     "polhode.plot.MOMENTUM_COLOR": "Colour of the angular momentum.",
     "polhode.plot.OMEGA_COLOR": "Colour of the angular velocity.",
@@ -155,7 +155,7 @@ DATA = {
 
 
 def found(name: str) -> object:
-    """Give the class or the module of a dotted name."""
+    """Return the class or the module of a dotted name."""
     home, _, last = name.rpartition(".")
     if last[0].isupper():
         return getattr(importlib.import_module(home), last)
@@ -163,12 +163,12 @@ def found(name: str) -> object:
 
 
 def summary(value: object) -> str:
-    """Give the first sentence of what it says of itself, on one line."""
+    """Return the first sentence of what it says of itself, on one line."""
     text = " ".join((inspect.getdoc(value) or "").split("\n\n")[0].split())
     text = re.sub(r":\w+:`~?([^`]+)`", r"`\1`", text)  # a reference, as a name
     return text.replace("|", "\\|").replace("``", "`")
 
 
 def listed(members: list[str]) -> str:
-    """Give names as code, with commas between them."""
+    """Return names as code, with commas between them."""
     return ", ".join(f"`{member}`" for member in members)

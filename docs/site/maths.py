@@ -26,7 +26,7 @@ def setup(app: Sphinx) -> dict[str, bool]:
 
 
 def mathml(source: str, as_block: bool) -> str:
-    """Give the element ``<math>`` of a formula."""
+    """Return the element ``<math>`` of a formula."""
     try:
         return CONVERTER.convert_with_local_state(source.strip(), displaystyle=as_block)
     except LatexError as error:

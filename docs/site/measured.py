@@ -21,7 +21,7 @@ def setup(app: Sphinx) -> dict[str, bool]:
 
 
 def pages() -> dict[str, str]:
-    """Give the names and the texts of the pages."""
+    """Return the names and the texts of the pages."""
     found = json.loads((BENCHMARKS / "pages.json").read_text("utf-8"))
     ratios = json.loads((BENCHMARKS / "ratios.json").read_text("utf-8"))
     return {
@@ -42,7 +42,7 @@ def where(found: dict[str, Any]) -> str:
 
 
 def elsewhere(found: dict[str, Any]) -> str:
-    """Give the page of the same problems in other programs."""
+    """Return the page of the same problems in other programs."""
     lines = [
         "# The same elsewhere\n",
         "Four problems are solved with polhode and with other programs. The tables compare the lines of "
@@ -111,7 +111,7 @@ PROBLEMS = (
 
 
 def validation(found: dict[str, Any]) -> str:
-    """Give the page of what numbers are held against."""
+    """Return the page of what numbers are held against."""
     lines = [
         "# How it is checked\n",
         "Each formula is compared with something that is not polhode: a closed form, rational numbers, "
@@ -130,7 +130,7 @@ def validation(found: dict[str, Any]) -> str:
 
 
 def performance(ratios: dict[str, Any]) -> str:
-    """Give the page of times beside the peers."""
+    """Return the page of times beside the peers."""
     has_spread = any(isinstance(kept, list) for found in ratios.values() for kept in found["ratios"].values())
     lines = [
         "# How fast it is\n",
@@ -163,7 +163,7 @@ SPREAD = " If the least and the largest of these ratios were kept, the column *l
 
 
 def table(section: str, rows: dict[str, Any], words: dict[str, tuple[str, str]]) -> list[str]:
-    """Give the table of some rows under a heading; nothing without rows."""
+    """Return the table of some rows under a heading; nothing without rows."""
     if not rows:
         return []
     has_spread = any(isinstance(kept, list) for kept in rows.values())
@@ -355,7 +355,7 @@ ROWS: dict[str, dict[str, tuple[str, str]]] = {
 
 
 def seconds(value: float) -> str:
-    """Give a time with two digits and its unit."""
+    """Return a time with two digits and its unit."""
     for scale, unit in ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs")):
         if value >= scale:
             return f"{value / scale:.2g} {unit}" if value < 99.5 * scale else f"{value / scale:.0f} {unit}"
@@ -363,5 +363,5 @@ def seconds(value: float) -> str:
 
 
 def power(value: float) -> str:
-    """Give a relative error; what is below half the spacing of numbers is rounding."""
+    """Return a relative error; what is below half the spacing of numbers is rounding."""
     return "0" if value == 0.0 else f"{value:.0e}" if value >= 1e-16 else "below 1e-16"

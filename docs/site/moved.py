@@ -37,5 +37,5 @@ def add(app: Sphinx, name: str, _template: str, context: dict[str, Any], doctree
 
 
 def anchors(tree: nodes.document) -> list[str]:
-    """Give the anchors of the sections of a page, in order."""
+    """Return the anchors of the sections of a page, in order."""
     return [each for section in tree.findall(nodes.section) for each in section["ids"]]

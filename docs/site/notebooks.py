@@ -40,7 +40,7 @@ def copy(site: Path) -> None:
 
 
 def pages() -> dict[str, str]:
-    """Give the names and the texts of the pages."""
+    """Return the names and the texts of the pages."""
     names = sorted(path.stem for path in FOLDER.glob("*.ipynb"))
     found = {f"{name}.md": page(name) for name in names}
     rows = [
@@ -60,7 +60,7 @@ def pages() -> dict[str, str]:
 
 
 def page(name: str) -> str:
-    """Give the page of a notebook: its text, its code, and below the code what it prints and shows."""
+    """Return the page of a notebook: its text, its code, and below the code what it prints and shows."""
     cells = json.loads((FOLDER / f"{name}.ipynb").read_text("utf-8"))["cells"]
     names: dict[str, Any] = {}
     lines = []
@@ -94,7 +94,7 @@ def run(source: str, names: dict[str, Any]) -> tuple[str, Any]:
 
 
 def shown(text: str, name: str) -> str:
-    """Give what a cell shows, with its moving pages as files of their own."""
+    """Return what a cell shows, with its moving pages as files of their own."""
 
     def framed(found: re.Match[str]) -> str:
         file = f"{name}.{sum(one.startswith(name + '.') for one in moving) + 1}.live.html"

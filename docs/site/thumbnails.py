@@ -97,7 +97,7 @@ def fitted(ax: Axes) -> None:
 
 
 def turned(artist: Artist) -> None:
-    """Give lines the lightness that they need on a dark page."""
+    """Return lines the lightness that they need on a dark page."""
     if isinstance(artist, Line2D):
         for part in ("color", "markeredgecolor", "markerfacecolor"):
             value = getattr(artist, f"get_{part}")()

@@ -33,7 +33,6 @@ if TYPE_CHECKING:
         errors,
         euler_angles,
         flybys,
-        forms,
         kinematics,
         labelled,
         laminae,
@@ -48,7 +47,7 @@ if TYPE_CHECKING:
         uncertainty,
         validity,
     )
-    from polhode import files as files
+    from polhode import io as io
     from polhode import molecules as molecules
     from polhode import plot as plot
     from polhode import robots as robots
@@ -69,9 +68,10 @@ if TYPE_CHECKING:
         principal_moments,
     )
     from polhode.ensembles.call import Ensemble, ensemble
-    from polhode.events import Event, Events
-    from polhode.free_motion import Cones, ErrorBar, LightCurve, Periods, Poinsot, Sensitivity
-    from polhode.gyrostat import Bifurcations, Equilibria, Wheel, wheel
+    from polhode.motion.events import Event, Events
+    from polhode.motion.free import Cones, ErrorBar, LightCurve, Periods, Poinsot, Sensitivity
+    from polhode.motion.gyrostat import Bifurcations, Equilibria, Wheel, wheel
+    from polhode.motion.trajectory import Trajectory
     from polhode.results import (
         AngularMomentum,
         ContinuousAxes,
@@ -90,7 +90,6 @@ if TYPE_CHECKING:
         Sigma,
         State,
     )
-    from polhode.trajectory import Trajectory
 else:
 
     def __getattr__(name):
@@ -115,19 +114,19 @@ else:
 
 
 _HOMES = (
-    "polhode.gyrostat",  # whose wheel is not that of loads
+    "polhode.motion.gyrostat",  # whose wheel is not that of loads
     "polhode._core",
     "polhode.results",
-    "polhode.trajectory",
-    "polhode.events",
-    "polhode.free_motion",
+    "polhode.motion.trajectory",
+    "polhode.motion.events",
+    "polhode.motion.free",
 )
 """Modules whose names are public here; the other names are modules."""
 
 _APART = dict.fromkeys(("Ensemble", "ensemble"), ("polhode.ensembles.call",))
 """Names whose module is imported for them alone: it has many files."""
 
-_LATER = ("animation", "files", "molecules", "plot", "robots", "samples", "symbolic", "units", "view")
+_LATER = ("animation", "io", "molecules", "plot", "robots", "samples", "symbolic", "units", "view")
 """Modules that a star import leaves out: some need libraries, and their names are those of many scripts."""
 
 __all__ = [
@@ -175,7 +174,7 @@ __all__ = [
     "errors",
     "euler_angles",
     "flybys",
-    "forms",
+    "interop",
     "kinematics",
     "labelled",
     "laminae",

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from polhode._typing import SupportsQuaternion, SupportsSigma
-from polhode.free_motion import Cones, ErrorBar, Periods, Poinsot, Sensitivity
-from polhode.gyrostat import Equilibria, Wheel
+from polhode.motion.free import Cones, ErrorBar, Periods, Poinsot, Sensitivity
+from polhode.motion.gyrostat import Equilibria, Wheel
+from polhode.motion.trajectory import Trajectory
 from polhode.orbits import DipoleField, Orbit, SampledOrbit
 from polhode.results import (
     AngularMomentum,
@@ -24,8 +25,7 @@ from polhode.results import (
     Provenance,
     Sigma,
 )
-from polhode.trajectory import Trajectory
-from polhode.uncertainty.motions import FromPeriods, PeriodsSigma
+from polhode.uncertainty.motion import FromPeriods, PeriodsSigma
 
 __all__ = [
     "FreeMotion",

@@ -27,7 +27,7 @@ _under_way: Final[list[_Bar]] = []
 
 @contextmanager
 def watched(what: str, progress: Progress = None) -> Iterator[Tell | None]:
-    """Give a function that takes the fraction done; None where nobody is told.
+    """Return a function that takes the fraction done; None where nobody is told.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def watched(what: str, progress: Progress = None) -> Iterator[Tell | None]:
 
 
 def bar_of_core() -> _Bar | None:
-    """Give the bar of a long run of the core; None where nobody would see it.
+    """Return the bar of a long run of the core; None where nobody would see it.
 
     That is where stderr is no terminal, in a thread, and beneath a bar of a loop in Python.
     """

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from polhode._core import RigidBody
-    from polhode.trajectory import Trajectory
+    from polhode.motion.trajectory import Trajectory
 
 __all__ = [
     "FileFormatError",

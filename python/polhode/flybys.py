@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, TypeVar, cast
 import numpy as np
 
 from polhode import _core, distributions, loads
+from polhode._format import short
 from polhode._hints import check_kind
-from polhode._repr import short
 from polhode.ensembles.call import ensemble
 from polhode.errors import PolhodeError
 from polhode.orbits import Orbit
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from polhode._core import FreeMotion, RigidBody, Uncertain
     from polhode._progress import Progress
     from polhode.ensembles.result import Ensemble
+    from polhode.motion.trajectory import Trajectory
     from polhode.orbits import SampledOrbit
-    from polhode.trajectory import Trajectory
 
     Floats = NDArray[np.float64]
 
@@ -118,7 +118,7 @@ class Flyby:
         return found
 
     def modes(self) -> dict[str, float]:
-        """Give the share of each mode among the clones after the flyby."""
+        """Return the share of each mode among the clones after the flyby."""
         names, counts = np.unique(self.after.mode[~self.failed], return_counts=True)
         return {
             str(name): float(count) / int(counts.sum()) for name, count in zip(names, counts, strict=True)
@@ -332,7 +332,7 @@ def _numbers(motion: FreeMotion) -> distributions.Normal | None:
 
 
 def _told(body: RigidBody, numbers: distributions.Normal | None, seed: int, states: Any) -> Flyby:
-    """Tell how clones tumble at the start and at the end, from the states of their ensemble."""
+    """Describe how clones tumble at the start and at the end, from the states of their ensemble."""
     omega, quaternion = states.omega.to_numpy(), states.quaternion.to_numpy()
     failed = ~np.isfinite(omega[:, -1]).all(axis=-1)
     drawn = None if numbers is None else numbers.draw(len(omega), seed=seed)
@@ -415,7 +415,7 @@ def _toward(start: Trajectory | FreeMotion, pole: Floats, around: Floats, tilt: 
 
 
 def _product(p: Floats, q: Floats) -> Floats:
-    """Give p∘q of quaternions (x, y, z, w), at unit length."""
+    """Return p∘q of quaternions (x, y, z, w), at unit length."""
     a, s, b, t = p[..., :3], p[..., 3:], q[..., :3], q[..., 3:]
     vector = s * b + t * a + np.cross(a, b)
     found = np.concatenate([vector, s * t - np.sum(a * b, axis=-1, keepdims=True)], axis=-1)

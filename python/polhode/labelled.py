@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from polhode._core import MassAccumulator, RigidBody, real_numbers
-from polhode._repr import short
+from polhode._format import short
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -129,7 +129,7 @@ class Accumulator:
             self._sums.setdefault(name, MassAccumulator()).merge(found)
 
     def finish(self) -> Labelled:
-        """Give the bodies of all labels so far; more particles may be added afterwards.
+        """Return the bodies of all labels so far; more particles may be added afterwards.
 
         Returns
         -------
@@ -169,7 +169,7 @@ def _checked(
 
 
 def _ranks(labels: Integers) -> tuple[Integers, Integers]:
-    """Give the labels that name a body, ascending, and for each particle the rank of its own."""
+    """Return the labels that name a body, ascending, and for each particle the rank of its own."""
     names, ranks = np.unique(labels, return_inverse=True)
     ranks = ranks.reshape(labels.shape).astype(np.int64)
     none = np.searchsorted(names, _NO_BODY)

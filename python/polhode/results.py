@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from polhode._principal import (
+from polhode._format import one_line, short
+from polhode.principal import (
     TOP_RTOL,
     ContinuousAxes,
     PrincipalAxes,
@@ -15,8 +16,7 @@ from polhode._principal import (
     PrincipalLinear,
     PrincipalSigma,
 )
-from polhode._repr import one_line, short
-from polhode._tops import FreePrecession, NutationDamping
+from polhode.tops import FreePrecession, NutationDamping
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -261,7 +261,7 @@ class Provenance:
         return one_line(self, told)
 
     def __str__(self) -> str:
-        """Tell it in one line, for one body."""
+        """Describe the provenance of one body in one line."""
         made = self.source if self.elements == 1 else f"{self.source} of {self.elements} elements"
         if self.source.startswith("atoms, "):
             made = f"{self.elements} {self.source}" if self.elements > 1 else f"1 atom{self.source[5:]}"

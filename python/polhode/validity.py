@@ -56,7 +56,7 @@ def nearest_valid(inertia: ArrayLike) -> NearestValid:
 
 
 def fit_in_box(body: _core.RigidBody, low: ArrayLike, high: ArrayLike) -> BoxFit:
-    """Tell whether matter inside a box can have the mass, centre of mass and tensor of a body.
+    """Return whether matter inside a box can have the mass, centre of mass and tensor of a body.
 
     The walls limit the spread of matter along each axis: ``∫ (x − C_x)² dm ≤ m (C_x − low_x) (high_x −
     C_x)``. For two axes, the means of the products of the distances from the walls cannot be negative, which

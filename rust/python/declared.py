@@ -87,7 +87,7 @@ def documented(function: str) -> dict[str, str]:
 
 
 def typed(module: str, function: str, parameter: inspect.Parameter, words: str) -> str:
-    """Give the type of a parameter."""
+    """Return the type of a parameter."""
     if literal := re.match(r"\{(.+?)\}", words):
         kinds = [f"Literal[{literal[1]}]"]
     else:
@@ -180,7 +180,7 @@ def of_stubs(text: str) -> str:
 
 
 def changed() -> dict[Path, str]:
-    """Give the files that would change, and what would stand in them."""
+    """Return the files that would change, and what would stand in them."""
     files = {STUBS: of_stubs(STUBS.read_text(encoding="utf-8"))}
     for module in MODULES:
         file = PACKAGE / f"{module}.py"

@@ -21,7 +21,7 @@ from polhode import (
     RigidBody,
     _core,
     equimomental,
-    forms,
+    interop,
     labelled,
     loads,
     molecules,
@@ -357,8 +357,8 @@ def _from_python() -> list[Call]:
     ]
     functions += [
         ("equimomental.ellipsoid", equimomental.ellipsoid, None),
-        ("forms.to_text", forms.to_text, None),
-        ("forms.from_printout", forms.from_printout, None),
+        ("forms.to_text", interop.to_text, None),
+        ("forms.from_printout", interop.from_printout, None),
         ("labelled.bodies", labelled.bodies, None),
     ]
     functions += [

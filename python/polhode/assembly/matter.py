@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from polhode import laminae, rods, solids
 from polhode._core import RigidBody
-from polhode._printed import from_printout
-from polhode.assembly.keys import COMMON, FILE, KINDS, PRINTED, check_keys, text_of
+from polhode.assembly.tables import COMMON, FILE, KINDS, PRINTED, check_keys, text_of
 from polhode.errors import PolhodeError
-from polhode.files.body import body_of_molecule, check_molecule_options
-from polhode.files.components import MOST_FACES, overlapping
-from polhode.files.content import is_molecule
-from polhode.files.loaded import load
-from polhode.files.mesh_solid import solid_of
-from polhode.files.reading import words_of
-from polhode.files.saved_body import read_report
+from polhode.interop.printouts import from_printout
+from polhode.io.body import body_of_molecule, check_molecule_options
+from polhode.io.components import MOST_FACES, overlapping
+from polhode.io.content import is_molecule
+from polhode.io.loaded import load
+from polhode.io.mesh_solid import solid_of
+from polhode.io.reading import words_of
+from polhode.io.saved import read_report
 from polhode.units import metres_per
 
 if TYPE_CHECKING:
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from polhode.assembly.numbers import Scope
-    from polhode.files.loaded import Loaded
+    from polhode.assembly.tables import Scope
+    from polhode.io.loaded import Loaded
 
 __all__ = ["SAVED", "Matter", "body_of_part", "kind_of"]
 
@@ -46,7 +46,7 @@ _ARGUMENT: Final = re.compile(r"\b(weld|closure|orient|union|repair|index_base)=
 
 
 def kind_of(table: Mapping[str, Any], where: str) -> str:
-    """Tell what a part is."""
+    """Return what a part is."""
     kinds = [name for name in KINDS if name in table]
     if len(kinds) == 1:
         return kinds[0]
@@ -240,12 +240,12 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
 
 
 def _has_materials(loaded: Loaded) -> bool:
-    """Tell whether a file says the density of every solid in it."""
+    """Return whether a file says the density of every solid in it."""
     return loaded.cad is not None and all(part.density is not None for part in loaded.cad.parts)
 
 
 def _unit_of(loaded: Loaded, table: Mapping[str, Any], scope: Scope) -> str:
-    """Give the unit of a file: its own, else the one that is stated for its part or for the assembly."""
+    """Return the unit of a file: its own, else the one that is stated for its part or for the assembly."""
     unit = loaded.length(table.get("length_unit")) or scope.length_unit
     if unit is None:
         name = loaded.path.name

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from polhode._scene.solids import solid_surface
 from polhode.assembly.result import Overlap
+from polhode.draw.triangles import solid_surface
 from polhode.errors import MeshError
-from polhode.files.components import Part, overlaps
-from polhode.files.union import has_union, is_closed, shared_volume
+from polhode.io.components import Part, overlaps
+from polhode.io.union import has_union, is_closed, shared_volume
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from polhode._core import RigidBody
-    from polhode.assembly.placing import Place
+    from polhode.assembly.tables import Place
 
     Floats = NDArray[np.float64]
     Integers = NDArray[np.int64]

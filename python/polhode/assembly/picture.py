@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from polhode._hints import with_hints
-from polhode._scene.shape import body_shape
-from polhode._scene.triangles import joined
 from polhode.assembly.matter import SAVED
-from polhode.files.content import is_molecule
-from polhode.files.loaded import CAD_SUFFIXES, load
-from polhode.files.unpacked import inner_suffix
+from polhode.draw.shape import body_shape
+from polhode.draw.triangles import joined
+from polhode.io.content import is_molecule
+from polhode.io.loaded import CAD_SUFFIXES, load
+from polhode.io.unpacked import inner_suffix
 from polhode.plot import body as draw_body
 from polhode.plot import principal_axes
 
@@ -66,7 +66,7 @@ def draw(assembly: Assembly, ax: Axes3D | None = None, *, length_label: str | No
 
 
 def _surface(part: Member, most: int) -> tuple[Floats, NDArray[np.int64]]:
-    """Give the triangles of a part where it stands."""
+    """Return the triangles of a part where it stands."""
     if part.file is not None and _is_mesh(part.file):
         mesh = load(part.file).mesh
         vertices, faces, _ = joined(mesh.vertices * part.metres, mesh.faces, most)
@@ -77,5 +77,5 @@ def _surface(part: Member, most: int) -> tuple[Floats, NDArray[np.int64]]:
 
 
 def _is_mesh(file: Path) -> bool:
-    """Tell whether a file holds triangles: no atoms, no solids of CAD, no numbers alone."""
+    """Return whether a file holds triangles: no atoms, no solids of CAD, no numbers alone."""
     return not is_molecule(file) and inner_suffix(file) not in (*SAVED, *CAD_SUFFIXES)

@@ -10,16 +10,13 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from polhode.assembly.keys import COMMON, TOP, check_keys, text_of
 from polhode.assembly.matter import body_of_part, kind_of
-from polhode.assembly.numbers import Scope
 from polhode.assembly.overlaps import Form, Placed, find_overlaps, overlap_notes
-from polhode.assembly.placing import HERE, Place, copies, place_of
 from polhode.assembly.result import Assembly, Member
+from polhode.assembly.tables import COMMON, HERE, TOP, Place, Scope, check_keys, copies, place_of, text_of
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.files.budget import Budget
-from polhode.files.reading import read_text, status_of, words_of
-from polhode.uncertainty.ledger import ledger_of_bodies
+from polhode.io.reading import Budget, read_text, status_of, words_of
+from polhode.uncertainty.ledgers import ledger_of_bodies
 
 if TYPE_CHECKING:
     from polhode._core import RigidBody
@@ -275,7 +272,7 @@ def _assembled(whole: _Unit) -> Assembly:
 
 
 def _walk(whole: _Unit) -> Iterator[tuple[str, str, Place, _Unit]]:
-    """Give every part and group with its full name and that of what it is in, the outer ones first."""
+    """Return every part and group with its full name and that of what it is in, the outer ones first."""
     root, names = whole.name, {inner.name for _, inner in whole.children}
     while root in names:  # a part may have the name of the whole, but not its place in the tree
         root = f"{root} (whole)"

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from polhode._core import RigidBody
-from polhode.assembly.keys import meant
+from polhode.assembly.tables import meant
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ class Assembly:
     parts : tuple of Member
         Parts without parts of their own, in the order of the file.
     ledger : Ledger
-        The tree of parts with the sums at every level, see :mod:`polhode.uncertainty.ledger`.
+        The tree of parts with the sums at every level, see :mod:`polhode.uncertainty.ledgers`.
     notes : tuple of str
         Remarks, for example about copies at the same place.
     overlaps : tuple of Overlap
@@ -105,7 +105,7 @@ class Assembly:
         return RigidBody.stack([part.body for part in self.parts]).combined()
 
     def __getitem__(self, name: str) -> Part:
-        """Give a node of the tree by its names with / between them, as ``"arm/motor"``."""
+        """Return a node of the tree by its names with / between them, as ``"arm/motor"``."""
         if name not in self.ledger:
             raise PolhodeError(f"there is no part {name!r} in {self.name!r}; {meant(name, self.ledger.ids)}")
         return self.ledger[name]

@@ -10,19 +10,20 @@ from typing import Annotated, Final
 
 from cyclopts import App, Parameter
 
-from polhode.cli.motion_options import EnsembleOptions, SpinOptions
+from polhode.cli.layout import held_and_shown, show, show_lines
 from polhode.cli.options import (
     AssembleOptions,
     BodyOptions,
     CheckOptions,
+    EnsembleOptions,
     FlybyOptions,
     LedgerOptions,
     MoleculeOptions,
     OutputOptions,
     ReportOptions,
+    SpinOptions,
 )
-from polhode.cli.showing import held_and_shown, show, show_lines
-from polhode.cli.text import note
+from polhode.cli.terminal import note
 
 __all__ = ["BAD_VERDICT", "GOOD", "app"]
 
@@ -68,9 +69,9 @@ def report(
         A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP), a molecule (XYZ, PDB ...), a saved
         body (JSON, NPZ), an assembly (TOML), or - for standard input; without one, the numbers of --inertia.
     """
-    from polhode.cli.outputs import check_outputs
+    from polhode.cli.files import check_outputs
     from polhode.cli.report import file_report, for_program
-    from polhode.files.reading import files_read
+    from polhode.io.reading import files_read
 
     check_outputs([("--output", output.output)], [file, extra.expect])
     with files_read() as read:
@@ -102,8 +103,8 @@ def check(
         A robot or model (URDF, SDF, MJCF), or - for standard input.
     """
     from polhode.cli.check import check_report
-    from polhode.cli.outputs import check_outputs
-    from polhode.files.reading import files_read
+    from polhode.cli.files import check_outputs
+    from polhode.io.reading import files_read
 
     check_outputs([("--fix", check.fix), ("--output", output.output)], [file])
     with files_read() as read:
@@ -128,8 +129,8 @@ def molecule(
     file
         A molecule (XYZ, PDB, MOL, SDF), or - for standard input.
     """
+    from polhode.cli.files import check_outputs
     from polhode.cli.molecule import molecule_report
-    from polhode.cli.outputs import check_outputs
 
     check_outputs([("--output", output.output)], [file])
     show(molecule_report(file, molecule), output)
@@ -145,7 +146,7 @@ def spin(
     body: Body = AS_STORED,
     output: Output = SHOWN,
 ) -> int:
-    """Tell how a body moves, free, with wheels or as a top: mode, periods, stability; exact at any time.
+    """Compute the motion of a free body, a body with wheels, or a top: mode, periods, stability.
 
     Parameters
     ----------
@@ -153,7 +154,7 @@ def spin(
         A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP), a molecule (XYZ, PDB ...), a saved
         body (JSON, NPZ), an assembly (TOML), or - for standard input; without one, --moments or --inertia.
     """
-    from polhode.cli.outputs import check_outputs
+    from polhode.cli.files import check_outputs
     from polhode.cli.spin import spin_report
 
     check_outputs([*(("--save", path) for path in spin.save), ("--output", output.output)], [file])
@@ -170,15 +171,15 @@ def flyby(
     body: Body = AS_STORED,
     output: Output = SHOWN,
 ) -> int:
-    """Tell what a planet's pull makes of the spin of a tumbling asteroid, from many clones with all phases.
+    """Simulate many copies of a tumbling asteroid, each with another rotation phase, past a planet.
 
     Parameters
     ----------
     file
         A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP), or - for standard input.
     """
+    from polhode.cli.files import check_outputs
     from polhode.cli.flyby import draw_flyby, flyby_report
-    from polhode.cli.outputs import check_outputs
 
     check_outputs([*(("--save", path) for path in flyby.save), ("--output", output.output)], [file])
     told, found = flyby_report(file, flyby, body)
@@ -207,7 +208,7 @@ def ensemble(
         body (JSON, NPZ), an assembly (TOML), or - for standard input; without one, --moments or --inertia.
     """
     from polhode.cli.ensemble import ensemble_report
-    from polhode.cli.outputs import check_outputs
+    from polhode.cli.files import check_outputs
 
     places = [("--save", ensemble.save), ("--checkpoint", ensemble.checkpoint), ("--output", output.output)]
     check_outputs(places, [file])
@@ -232,8 +233,8 @@ def assemble(
         An assembly (TOML).
     """
     from polhode.cli.assemble import assembly_for_program, assembly_report, save_assembly
-    from polhode.cli.outputs import check_outputs
-    from polhode.files.reading import files_read
+    from polhode.cli.files import check_outputs
+    from polhode.io.reading import files_read
 
     places = [*(("--save", path) for path in assemble.save), ("--output", output.output)]
     check_outputs(places, [file, extra.expect])
@@ -267,9 +268,9 @@ def ledger(
         A table of parts (CSV, TSV), or - for standard input. --output writes every row where its name ends in
         .csv.
     """
+    from polhode.cli.files import check_outputs
     from polhode.cli.ledger import ledger_report
-    from polhode.cli.outputs import check_outputs
-    from polhode.files.reading import files_read
+    from polhode.io.reading import files_read
 
     places = [("--picture", ledger.picture), ("--output", output.output)]
     check_outputs(places, [file, ledger.tree])
@@ -323,7 +324,7 @@ def demo(*, output_dir: Path = Path("polhode-demo")) -> int:
 @app.command
 def validate(*, output: Output = SHOWN) -> int:
     """Hold this build against NASA's check case, an asteroid, molecules, a CAD printout and closed forms."""
-    from polhode.cli.outputs import check_outputs
+    from polhode.cli.files import check_outputs
     from polhode.cli.validate import validation
 
     check_outputs([("--output", output.output)], [])

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from polhode._extras import require
-from polhode._quantities import quantity, vector
-from polhode._snippets import to_text
+from polhode._optional import require
 from polhode.assembly import read
+from polhode.cli.files import STDIN
 from polhode.cli.layout import Cell, Column, Field, Report, Table
 from polhode.cli.ledger import node_row, tensor_row
 from polhode.cli.loading import LoadedBody
 from polhode.cli.report import check_alone
-from polhode.cli.source import STDIN
 from polhode.cli.tables import FileUnits
 from polhode.cli.whole import body_sections
 from polhode.errors import PolhodeError
-from polhode.files.picture import save_picture
-from polhode.uncertainty._rollup import NUMBERS
+from polhode.interop.programs import to_text
+from polhode.io.writing import save_picture
+from polhode.uncertainty.ledgers.rollup import NUMBERS
+from polhode.units import quantity, vector
 
 if TYPE_CHECKING:
     from pathlib import Path

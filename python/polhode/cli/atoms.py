@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from polhode.cli.source import shown
+from polhode.cli.files import shown
 from polhode.errors import PolhodeError
 from polhode.molecules import Isotope, body_of_atoms, bonds, uncertain_masses, uncertain_positions
 
@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from polhode import RigidBody
-    from polhode._nuclides import Masses
-    from polhode.files.xyz import Molecule
+    from polhode.io.molecules import Molecule
+    from polhode.molecules.nuclides import Masses
 
 __all__ = ["Atoms", "atoms_of"]
 

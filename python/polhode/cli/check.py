@@ -8,16 +8,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from polhode import robots
-from polhode._quantities import quantity
+from polhode.cli.files import STDIN, check_outputs, shown
 from polhode.cli.layout import Column, Field, Report, Table
-from polhode.cli.outputs import check_outputs
-from polhode.cli.source import STDIN, shown
-from polhode.cli.text import in_options
+from polhode.cli.terminal import in_options
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.files.reading import files_read
-from polhode.files.writing import write_bytes
+from polhode.io.reading import files_read
+from polhode.io.writing import write_bytes
 from polhode.robots.sources import read_stream
 from polhode.robots.verdict import has_own_tensor, is_without_mass, replacement
+from polhode.units import quantity
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -92,7 +91,7 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
 
 
 def _gathered(notes: Iterable[str]) -> list[str]:
-    """Tell in one line each of all meshes that were not found, and of all whose hulls were taken."""
+    """Describe in one line each of all meshes that were not found, and of all whose hulls were taken."""
     told: list[str] = []
     lost: list[str] = []
     hulls: list[str] = []
@@ -144,7 +143,7 @@ def _warnings(robot: robots.Robot, verdicts: list[robots.Verdict], failing: froz
 
 
 def _filling(options: CheckOptions) -> dict[str, float]:
-    """Give the density or the mass of links for which the file says none."""
+    """Return the density or the mass of links for which the file says none."""
     if options.density is not None and options.mass is not None:
         raise PolhodeError("--density and --mass: give one of them, not both")
     found: dict[str, float] = {}

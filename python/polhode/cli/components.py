@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from polhode import Uncertain
-from polhode._quantities import amount, has_unit
-from polhode._rounding import with_sigma
+from polhode._format import with_sigma
 from polhode.cli.layout import Cell, Column, Table
 from polhode.errors import PolhodeError
-from polhode.files.components import (
+from polhode.io.components import (
     MOST_FACES,
     MOST_PARTS,
     Part,
@@ -20,16 +19,17 @@ from polhode.files.components import (
     parts_of,
     told,
 )
-from polhode.files.named_densities import OVERLAPPING, body_of_parts, named_parts
-from polhode.files.repair import repaired
+from polhode.io.named_densities import OVERLAPPING, body_of_parts, named_parts
+from polhode.io.repair import repaired
+from polhode.units import amount, has_unit
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from polhode.cli.layout import Report
     from polhode.cli.options import BodyOptions
-    from polhode.files.loaded import Loaded
-    from polhode.files.mesh_solid import MeshSolid
+    from polhode.io.loaded import Loaded
+    from polhode.io.mesh_solid import MeshSolid
 
 __all__ = ["Components", "add_components", "components_of", "has_names", "overlaps_beside", "weighed"]
 
@@ -56,7 +56,7 @@ class Components:
 
 
 def has_names(density: str | None) -> bool:
-    """Tell whether a density is given by component."""
+    """Return whether a density is given by component."""
     return density is not None and "=" in density
 
 
@@ -95,7 +95,7 @@ def overlaps_beside(loaded: Loaded, solid: MeshSolid, options: BodyOptions, scal
 
 
 def weighed(loaded: Loaded, solid: MeshSolid, options: BodyOptions, scale: float, weld: float) -> MeshSolid:
-    """Give each component its own density."""
+    """Assign each component its own density."""
     if loaded.cad is not None:
         raise PolhodeError(
             "--density: components of CAD have the densities of their materials; give one number for "

@@ -2,33 +2,59 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+import json
+import re
+import shutil
+import zipfile
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 
-from polhode import RigidBody, distributions, ensemble, loads
-from polhode._quantities import quantity
-from polhode.cli.cluster import client_at
-from polhode.cli.drawn import drawn, drawn_number, middle_of
-from polhode.cli.ensemble_files import check_place, saved
-from polhode.cli.ensemble_numbers import kept, modes_table, numbers_table
-from polhode.cli.layout import Column, Field, Report, Table
+from polhode import RigidBody, Uncertain, distributions, ensemble, loads, reductions
+from polhode._optional import require
+from polhode.cli.files import shown
+from polhode.cli.layout import Cell, Column, Field, Report, Table
 from polhode.cli.loading import LoadedBody
-from polhode.cli.source import shown
-from polhode.cli.spin_gyrostat import momentum_inside
+from polhode.cli.spin import momentum_inside
 from polhode.cli.whole import any_body, check_moments_alone
-from polhode.ensembles.tree import BLOCK
-from polhode.errors import PolhodeError
+from polhode.ensembles.plan import coordinates, layout
+from polhode.ensembles.reduce import BLOCK
+from polhode.ensembles.stores import check_same, header
+from polhode.errors import FileFormatError, PolhodeError
 from polhode.euler_angles import to_quaternion
+from polhode.io.writing import writing
+from polhode.units import amounts, has_unit, quantities, quantity
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
-    from polhode.cli.motion_options import EnsembleOptions
-    from polhode.cli.options import BodyOptions
-    from polhode.ensembles.result import Ensemble
+    from numpy.typing import NDArray
 
-__all__ = ["ensemble_report"]
+    from polhode.cli.options import BodyOptions, EnsembleOptions
+    from polhode.distributions import Distribution
+    from polhode.ensembles.result import Ensemble
+    from polhode.reductions import Reduction
+
+    Drawn: TypeAlias = NDArray[np.float64] | Distribution
+    from collections.abc import Iterator
+
+__all__ = [
+    "NUMBERS",
+    "SHARES",
+    "check_place",
+    "client_at",
+    "drawn",
+    "drawn_number",
+    "ensemble_report",
+    "kept",
+    "middle_of",
+    "modes_table",
+    "numbers",
+    "numbers_table",
+    "saved",
+]
 
 MOST: Final = 2**62
 """More members have no number."""
@@ -125,7 +151,7 @@ def _check_spread(options: EnsembleOptions) -> None:
 def _arguments(
     file: Path | None, options: EnsembleOptions, body: BodyOptions
 ) -> tuple[dict[str, Any], list[str]]:
-    """Give what `polhode.ensemble` takes of the body, the start and the load; and notes."""
+    """Return what `polhode.ensemble` takes of the body, the start and the load; and notes."""
     notes: list[str] = []
     if options.moments:
         given, one = _of_moments(options, body)
@@ -187,7 +213,7 @@ def _attitude(words: tuple[str, ...]) -> Any:
 
 
 def _option(place: str) -> str:
-    """Give the option of what is drawn."""
+    """Return the option of what is drawn."""
     names = {"body.0": "mass", "body.1": "moments", "body.center_of_mass": "center"}
     return names.get(place, place.partition(".")[0])
 
@@ -226,3 +252,309 @@ def _source(file: Path | None, options: EnsembleOptions) -> str:
     if file is not None:
         return shown(file)
     return "(moments)" if options.moments else "(inertia)"
+
+
+_NPZ, _ZARR = ".npz", ".zarr"
+_HEADER: Final = "ensemble.json"
+"""In the file: what ensemble it is, so that no other one is taken for it."""
+
+
+def check_place(path: Path, *, resume: bool) -> None:
+    """Refuse what cannot be begun or gone on with there, before anything is computed.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+    resume : bool
+        Whether to go on.
+    """
+    if path.suffix.lower() not in (_NPZ, _ZARR):
+        raise PolhodeError(
+            f"--save: {path.name!r} has a suffix that is not written; use one of {_NPZ}, {_ZARR}"
+        )
+    begun = next((place for place in (path, _parts(path)) if _is_there(place)), None)
+    if begun is not None and not resume:
+        raise PolhodeError(
+            f"--save: {begun} is there already; add --resume to go on with it, or give another name"
+        )
+    if begun is None and resume:
+        raise PolhodeError(
+            f"--resume: there is nothing at {path} to go on with; leave --resume out to begin it"
+        )
+
+
+def saved(many: Ensemble, path: Path) -> dict[str, int]:
+    """Run members that are missing there, and count how all of them ended.
+
+    Parameters
+    ----------
+    many : Ensemble
+    path : pathlib.Path
+
+    Returns
+    -------
+    dict of str to int
+        By the status.
+    """
+    if path.suffix.lower() == _ZARR:
+        many.resume(path) if _is_there(path) else many.to_zarr(path)
+        zarr = require("zarr", extra="cluster", purpose="--save")
+        group: Any = zarr.open_group(path, mode="r")
+        status = group["status"][:]
+    else:
+        parts = _parts(path)
+        if path.exists():  # it was put together, and ended before its parts were removed
+            _check_whole(path, many)
+        else:
+            many.resume(parts) if _is_there(parts) else many.to_npz(parts)
+            _put_together(parts, path, many)
+        if parts.exists():
+            shutil.rmtree(parts)
+        with np.load(path) as found:
+            status = found["status"]
+    names, counts = np.unique(np.asarray(status), return_counts=True)
+    return dict(zip(map(str, names), counts.tolist(), strict=True))
+
+
+def _parts(path: Path) -> Path:
+    """Return the folder of the chunks of a file, until all are there."""
+    return path.with_name(f"{path.name}.parts")
+
+
+def _is_there(path: Path) -> bool:
+    return path.exists() and not (path.is_dir() and not any(path.iterdir()))
+
+
+def _put_together(parts: Path, path: Path, many: Ensemble) -> None:
+    """Write one file, a chunk in memory at a time."""
+    plan = many.plan
+    chunks = [parts / f"chunk-{index:08}.npz" for index in range(plan.chunks)]
+    with writing(path) as stream, zipfile.ZipFile(stream, "w") as archive:
+        archive.writestr(_HEADER, json.dumps(header(plan)))
+        for name, variable in layout(plan).items():
+            with _member(archive, name) as member:
+                words: Any = {
+                    "descr": variable.dtype, "fortran_order": False, "shape": (plan.n, *variable.tail)
+                }  # fmt: skip
+                np.lib.format.write_array_header_1_0(member, words)
+                for chunk in chunks:
+                    with np.load(chunk) as found:
+                        member.write(np.ascontiguousarray(found[name], variable.dtype).tobytes())
+        for name, (_, values) in coordinates(plan).items():
+            with _member(archive, name) as member:
+                np.lib.format.write_array(member, np.asarray(values), allow_pickle=False)
+
+
+def _member(archive: zipfile.ZipFile, name: str) -> Any:
+    return archive.open(f"{name}.npy", "w", force_zip64=True)
+
+
+def _check_whole(path: Path, many: Ensemble) -> None:
+    """Refuse a file that is not this ensemble's."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            found = json.loads(archive.read(_HEADER))
+    except (zipfile.BadZipFile, KeyError, ValueError) as error:
+        raise FileFormatError(
+            f"{path}: holds no ensemble that --save has written ({error}); give another name, or delete it"
+        ) from None
+    check_same(path, found, header(many.plan))
+
+
+NUMBERS: Final = (
+    ("omega_x", "rad/s"),
+    ("omega_y", "rad/s"),
+    ("omega_z", "rad/s"),
+    ("|omega|", "rad/s"),
+    ("|omega|, ratio to start", ""),
+    ("z of body from z", "deg"),
+)
+"""Names and units."""
+SHARES: Final = (0.05, 0.5, 0.95)
+
+
+def numbers(motion: Any) -> Any:
+    """Return the numbers of members at the end, shape (members, 6).
+
+    Parameters
+    ----------
+    motion : Trajectory
+
+    Returns
+    -------
+    numpy.ndarray
+    """
+    size = np.sqrt(np.square(motion.omega[:, [0, -1]]).sum(axis=-1))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = size[:, 1] / size[:, 0]
+    x, y, z, w = np.moveaxis(motion.quaternion[:, -1], -1, 0)
+    tilt = np.degrees(2.0 * np.arctan2(np.hypot(x, y), np.hypot(z, w)))
+    return np.column_stack([motion.omega[:, -1], size[:, 1], ratio, tilt])
+
+
+def kept(*, has_modes: bool) -> dict[str, Reduction]:
+    """Return the reductions; modes only of members that are free."""
+    both = {"spread": reductions.covariance(numbers), "shares": reductions.quantiles(SHARES, numbers)}
+    return both | ({"modes": reductions.mode_changes()} if has_modes else {})
+
+
+def numbers_table(found: dict[str, Any]) -> Table:
+    """Return the spread of each number."""
+    columns = (
+        Column("name", "number"),
+        Column("mean", "mean"),
+        Column("sigma", "sigma"),
+        Column("low", "5 %"),
+        Column("median", "median"),
+        Column("high", "95 %"),
+        Column("unit", "unit"),
+    )
+    means, sigmas = found["spread"].mean, np.sqrt(np.diagonal(found["spread"].covariance))
+    rows = [
+        {
+            "name": name,
+            "mean": float(means[k]),
+            "sigma": float(sigmas[k]),
+            **dict(zip(("low", "median", "high"), found["shares"].values[:, k].tolist(), strict=True)),
+            "unit": unit,
+        }
+        for k, (name, unit) in enumerate(NUMBERS)
+    ]
+    return Table("end", columns, rows)
+
+
+def modes_table(found: dict[str, Any]) -> Table:
+    """Return how many members rotate in which mode, which free ones keep."""
+    modes = found["modes"]
+    shares = modes.table.sum(axis=0) / modes.table.sum()
+    rows = [
+        {"mode": name, "share": Cell(f"{100.0 * share:.3g} %", share)}
+        for name, share in zip(modes.modes, shares.tolist(), strict=True)
+        if share > 0.0
+    ]
+    return Table("modes", (Column("mode", "mode"), Column("share", "members")), rows)
+
+
+_TO: Final = re.compile(r"\s+to\s+")
+
+
+def drawn(texts: Sequence[str], count: int, unit: str, option: str) -> Drawn:
+    """Read numbers that are the same for all members, or their distribution.
+
+    Parameters
+    ----------
+    texts : sequence of str
+        As `amounts` takes them; or with commas between them, some as ``"0.9 to 1.1"``.
+    count, unit, option : int, str, str
+        As of `amounts`.
+
+    Returns
+    -------
+    numpy.ndarray or Distribution
+        Normal where a number has a sigma, uniform where one has bounds.
+
+    Raises
+    ------
+    PolhodeError
+        For what is neither, or both.
+    """
+    text = " ".join(texts)
+    if _TO.search(text):
+        return _uniform(text, count, unit, option)
+    given = amounts(texts, count, unit, option)
+    means = np.array([one.value if isinstance(one, Uncertain) else one for one in given], dtype=float)
+    if not any(isinstance(one, Uncertain) for one in given):
+        return means
+    sigmas = [one.sigma if isinstance(one, Uncertain) else 0.0 for one in given]
+    return distributions.normal(means, sigma=np.array(sigmas, dtype=float))
+
+
+def drawn_number(text: str, unit: str, option: str) -> Any:
+    """Read one number, or its distribution; see `drawn`."""
+    found: Any = drawn([text], 1, unit, option)
+    if isinstance(found, distributions.Normal):
+        return distributions.normal(found.mean.item(), sigma=np.asarray(found.sigma).item())
+    if isinstance(found, distributions.Uniform):
+        return distributions.uniform(found.low.item(), found.high.item())
+    return float(found[0])
+
+
+def middle_of(numbers: Any) -> Any:
+    """Return the numbers themselves, or what their distribution is about."""
+    if isinstance(numbers, distributions.Normal):
+        return numbers.mean
+    if isinstance(numbers, distributions.Uniform):
+        return 0.5 * numbers.low + 0.5 * numbers.high
+    return numbers
+
+
+def _uniform(text: str, count: int, unit: str, option: str) -> Distribution:
+    if re.search(r"±|\+/-|\+-|\d\(", text):
+        raise PolhodeError(
+            f"{option}: {text!r} has a sigma and bounds, but all numbers of an option are normal or all are "
+            "uniform; write sigmas for all that are drawn, or bounds for all"
+        )
+    bounds = [_bounds(part) for part in text.strip().strip(",").split(",")]
+    if any(len(pair) != 2 for pair in bounds) or len(bounds) != count:
+        raise PolhodeError(
+            f"{option}: expected {count} number{'s'[: count - 1]} with commas between, each alone or with "
+            f"bounds as in '0.9 to 1.1', got {text!r}"
+        )
+    low, high = (quantities([", ".join(side)], count, unit, option) for side in zip(*bounds, strict=True))
+    wrong = next(((a, b) for a, b in zip(low, high, strict=True) if a > b), None)
+    if wrong is not None:
+        raise PolhodeError(
+            f"{option}: the lower bound must not exceed the upper one, got {wrong[0]:g} to {wrong[1]:g} "
+            f"{unit}; write the smaller one first"
+        )
+    try:
+        return distributions.uniform(low, high)
+    except ValueError as error:
+        raise PolhodeError(f"{option}: {error}; write bounds that are closer") from None
+
+
+def _bounds(part: str) -> list[str]:
+    """Split a number's bounds, the lower one with the unit of the upper one where it has none itself."""
+    words = [word.strip() for word in _TO.split(part.strip())]
+    if len(words) == 1:
+        return words * 2
+    if len(words) == 2 and has_unit(words[1]) and not has_unit(words[0]):
+        number = re.match(r"\S+", words[1])
+        behind = words[1][number.end() if number else 0 :]
+        words[0] += behind
+    return words
+
+
+@contextmanager
+def client_at(address: str | None) -> Iterator[Any]:
+    """Return a client of the scheduler at an address; None without one.
+
+    Parameters
+    ----------
+    address : str or None
+
+    Yields
+    ------
+    distributed.Client or None
+
+    Raises
+    ------
+    PolhodeError
+        Where no scheduler answers.
+    """
+    if address is None:
+        yield None
+        return
+    distributed = require("distributed", extra="cluster", purpose="--client")
+    try:
+        # Not as dask's default, which one that finds no scheduler would stay: dask would wait for it.
+        client = distributed.Client(address, set_as_default=False)
+    except (OSError, ValueError, TypeError) as error:
+        raise PolhodeError(
+            f"--client: no scheduler of dask answers at {address!r} ({type(error).__name__}); give the "
+            "address that `dask scheduler` prints, as in tcp://127.0.0.1:8786, or leave --client out"
+        ) from error
+    try:
+        yield client
+    finally:
+        client.close()

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from polhode import RigidBody, orbits, plot
-from polhode._extras import require
-from polhode._quantities import amounts, quantity, vector
-from polhode.cli.cluster import client_at
+from polhode._optional import require
+from polhode.cli.ensemble import client_at
+from polhode.cli.files import shown
 from polhode.cli.layout import Cell, Column, Field, Report, Table
-from polhode.cli.motion_options import MODES
-from polhode.cli.source import shown
+from polhode.cli.options import MODES
 from polhode.cli.whole import any_body, check_moments_alone
 from polhode.errors import PolhodeError
-from polhode.files.picture import save_picture
 from polhode.flybys import Flyby, flyby
+from polhode.io.writing import save_picture
+from polhode.units import amounts, quantity, vector
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -8,20 +8,20 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from polhode._extras import require
-from polhode._rounding import with_sigma
-from polhode.assembly.keys import meant
+from polhode._format import with_sigma
+from polhode._optional import require
+from polhode.assembly.tables import meant
+from polhode.cli.files import STDIN, shown
 from polhode.cli.layout import ROUNDING, Cell, Column, Field, Report, Table
-from polhode.cli.source import STDIN, shown
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.files.picture import save_picture
-from polhode.uncertainty._rollup import NUMBERS
-from polhode.uncertainty._table import table_of_text
-from polhode.uncertainty.ledger import ledger
+from polhode.io.writing import save_picture
+from polhode.uncertainty.ledgers import ledger
+from polhode.uncertainty.ledgers.rollup import NUMBERS
+from polhode.uncertainty.ledgers.table import table_of_text
 
 if TYPE_CHECKING:
     from polhode.cli.options import LedgerOptions
-    from polhode.uncertainty.ledger import Ledger, Part, Shares
+    from polhode.uncertainty.ledgers import Ledger, Part, Shares
 
 __all__ = ["draw_ledger", "ledger_report", "node_row", "tensor_row"]
 
@@ -87,7 +87,7 @@ def draw_ledger(made: Ledger, options: LedgerOptions) -> None:
 
 
 def _table(file: Path) -> Any:
-    """Give the file, or the table that comes on standard input."""
+    """Return the file, or the table that comes on standard input."""
     if file != STDIN:
         return file
     data = sys.stdin.buffer.read()
@@ -107,7 +107,7 @@ def _top(made: Ledger, options: LedgerOptions) -> Part:
 
 
 def node_row(node: Part, top: Part) -> dict[str, Any]:
-    """Tell mass and centre of a node."""
+    """Describe mass and centre of a node."""
     row = {
         "id": _named(node, top),
         "parent": node.parent.id if node.parent is not None else None,
@@ -123,7 +123,7 @@ def node_row(node: Part, top: Part) -> dict[str, Any]:
 
 
 def tensor_row(node: Part, top: Part) -> dict[str, Any]:
-    """Tell the tensor of a node."""
+    """Return the tensor of a node."""
     return {"id": _named(node, top)} | {name: _cell(node, name) for name in NUMBERS[4:]}
 
 
@@ -139,7 +139,7 @@ def _cell(node: Part, name: str) -> Cell:
 
 
 def _found_shares(made: Ledger, top: Part, options: LedgerOptions) -> Shares | None:
-    """Give who contributes; None where nothing that the number depends on is uncertain."""
+    """Return who contributes; None where nothing that the number depends on is uncertain."""
     try:
         return made.variance_shares(options.of, top.id)
     except PolhodeError:

@@ -7,29 +7,28 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from polhode._bonds import crossings_of
-from polhode._quantities import amount, has_unit, quantity
 from polhode.cli.components import components_of, has_names, overlaps_beside, weighed
-from polhode.cli.progress import reading_progress
-from polhode.cli.source import as_file
+from polhode.cli.files import as_file
+from polhode.cli.terminal import reading_progress
 from polhode.errors import PolhodeError
-from polhode.files.content import is_molecule
-from polhode.files.loaded import load
-from polhode.files.mesh import weld_within
-from polhode.files.mesh_solid import MeshSolid, solid_of
-from polhode.units import METRES, metres_per
+from polhode.io.content import is_molecule
+from polhode.io.loaded import load
+from polhode.io.mesh import weld_within
+from polhode.io.mesh_solid import MeshSolid, solid_of
+from polhode.molecules.bonding import crossings_of
+from polhode.units import METRES, amount, has_unit, metres_per, quantity
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from polhode import RigidBody, Uncertain
-    from polhode._nuclides import Masses
     from polhode.cli.atoms import Atoms
     from polhode.cli.options import BodyOptions, LengthUnit
-    from polhode.files.loaded import Loaded
-    from polhode.files.mesh import Mesh
-    from polhode.files.xyz import Molecule
+    from polhode.io.loaded import Loaded
+    from polhode.io.mesh import Mesh
+    from polhode.io.molecules import Molecule
     from polhode.molecules import CellCrossings, Isotope
+    from polhode.molecules.nuclides import Masses
 
 __all__ = ["LoadedBody", "bond_sigma", "in_file_unit", "load_body", "loaded_molecule"]
 
@@ -198,7 +197,7 @@ def _of_unit(loaded: Loaded, asked: str | None) -> list[str]:
 
 
 def _shape(loaded: Loaded, weld: float, scale: float) -> Mesh | None:
-    """Give the mesh as it is drawn, in the unit of the body; solids of CAD have none."""
+    """Return the mesh as it is drawn, in the unit of the body; solids of CAD have none."""
     if loaded.cad is not None:
         return None
     mesh = weld_within(loaded.mesh, weld) if weld != 0.0 else loaded.mesh
@@ -283,7 +282,7 @@ def _amount(text: str | None, si: str, option: str, unit: str | None) -> float |
 
 def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
     from polhode.cli.atoms import atoms_of
-    from polhode.files.body import check_molecule_options, molecule_isotopes
+    from polhode.io.body import check_molecule_options, molecule_isotopes
 
     check_molecule_options(
         file,

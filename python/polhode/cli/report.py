@@ -4,19 +4,26 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polhode._quantities import quantity, split_vector
-from polhode._snippets import to_text
 from polhode.cli.components import add_components
+from polhode.cli.files import STDIN, shown
 from polhode.cli.layout import Column, Field, Report, Table
 from polhode.cli.loading import in_file_unit
 from polhode.cli.options import ReportOptions
-from polhode.cli.sigmas import Told, note_linear, told
-from polhode.cli.source import STDIN, shown
-from polhode.cli.tables import FileUnits, body_fields, ellipsoid_fields, tensor_fields, trust_fields
+from polhode.cli.tables import (
+    FileUnits,
+    Told,
+    body_fields,
+    ellipsoid_fields,
+    note_linear,
+    tensor_fields,
+    told,
+    trust_fields,
+)
 from polhode.cli.whole import any_body, whole_report
 from polhode.errors import PolhodeError
-from polhode.files.mesh_solid import MeshSolid
-from polhode.units import metres_per
+from polhode.interop.programs import to_text
+from polhode.io.mesh_solid import MeshSolid
+from polhode.units import metres_per, quantity, split_vector
 
 if TYPE_CHECKING:
     from pathlib import Path

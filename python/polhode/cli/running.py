@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING, Final
 from cyclopts import CycloptsError, UnusedCliTokensError
 
 from polhode.cli.app import GOOD, app
-from polhode.cli.standard_output import ReaderLeft, standard_output
-from polhode.cli.text import in_options, printable
-from polhode.files.reading import words_of
+from polhode.cli.terminal import ReaderLeft, in_options, printable, standard_output
+from polhode.io.reading import words_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -78,7 +77,7 @@ OTHER_OPTIONS: Final = (
 
 def _version_in_full() -> None:
     """Print what a report of a fault has to tell."""
-    from polhode.cli.machine import as_text
+    from polhode.cli.validate import as_text
 
     print(as_text())
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from polhode import samples
-from polhode.cli.text import write
+from polhode.cli.terminal import write
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -1,41 +1,65 @@
-"""``polhode spin``: the motion of a body, in numbers, tables and pictures."""
+"""``polhode spin``: the motion of a free body, a body with wheels or a heavy top."""
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 import numpy as np
 
-from polhode import RigidBody, Uncertain
-from polhode._quantities import amount, amounts, quantity, vector
-from polhode._rounding import at_most
-from polhode._scene.sampling import fastest
-from polhode.cli.layout import Field, Report
+from polhode import RigidBody, Uncertain, _core
+from polhode._format import at_most
+from polhode._optional import require
+from polhode.animation import ANIMATION_SUFFIXES, animate_motion
+from polhode.cli.files import STDIN, shown
+from polhode.cli.layout import Cell, Column, Field, Report, Table
 from polhode.cli.loading import LoadedBody
-from polhode.cli.motion_options import MODES
-from polhode.cli.sigmas import note_linear, told
-from polhode.cli.source import STDIN, shown
-from polhode.cli.spin_gyrostat import GyrostatKind, momentum_inside
-from polhode.cli.spin_kinds import FreeKind, TopKind
-from polhode.cli.spin_output import DRAWN, check_paths, drawable, save
-from polhode.cli.spin_sigmas import attitude_field, of_end, of_start
-from polhode.cli.tables import top_fields
-from polhode.cli.text import printable
+from polhode.cli.options import MODES
+from polhode.cli.tables import note_linear, told, top_fields
+from polhode.cli.terminal import printable, progress
 from polhode.cli.whole import any_body, check_moments_alone
+from polhode.draw.pivot import path_of
+from polhode.draw.sampling import TURN, fastest, motion_times, turns
+from polhode.draw.triangles import joined
 from polhode.errors import PolhodeError
 from polhode.euler_angles import to_quaternion
+from polhode.io.saved import TRAJECTORY_SUFFIXES
+from polhode.io.writing import save_picture
+from polhode.motion.invariants import drift, lengths
+from polhode.uncertainty.motion import each_motion
+from polhode.units import amount, amounts, has_unit, quantity, vector
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from polhode import FreeMotion, GyrostatMotion, HeavyTop
-    from polhode.cli.motion_options import SpinOptions
-    from polhode.cli.options import BodyOptions
+    from polhode.cli.options import BodyOptions, SpinOptions
 
     Floats = NDArray[np.float64]
+    from collections.abc import Callable, Sequence
 
-__all__ = ["spin_report"]
+    from polhode import Trajectory
+    from polhode.cli.tables import Told
+
+    Part: TypeAlias = tuple[NDArray[np.float64], NDArray[np.int64]]
+
+__all__ = [
+    "DRAWN",
+    "FreeKind",
+    "GyrostatKind",
+    "TopKind",
+    "attitude_field",
+    "check_paths",
+    "drawable",
+    "momentum_inside",
+    "of_end",
+    "of_shape",
+    "of_start",
+    "period_fields",
+    "save",
+    "spin_report",
+]
 
 
 def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> Report:
@@ -269,3 +293,671 @@ def _notes(loaded: LoadedBody) -> list[str]:
             "neither density nor mass was given: density 1 was used; the motion does not depend on it"
         )
     return notes
+
+
+ROUNDING: Final = 1e-12
+"""Of the largest component of omega: less is what rounding of the axes leaves."""
+
+
+class FreeKind:
+    """A body on which nothing acts."""
+
+    def __init__(self, motion: FreeMotion) -> None:
+        self._motion = motion
+
+    def fields(self, rate: float, rate_unit: str) -> list[Field]:
+        """Return the mode, the periods and the angles from L."""
+        motion = self._motion
+        angles, periods = np.rad2deg(motion.nutation), motion.periods
+        of_angles = of_shape(motion)
+        return [
+            Field("mode", "mode", str(motion.mode)),
+            *self._periods(),
+            Field(
+                "mean_precession",
+                "mean precession",
+                periods.rates * rate,
+                rate_unit,
+                "of e1 e2 e3 about L",
+                **self._told("rates", rate),
+            ),
+            *(
+                Field(
+                    f"angle_from_L.e{k + 1}",
+                    f"e{k + 1} from L",
+                    angles[k],
+                    "deg",
+                    "least, greatest",
+                    **of_angles(f"nutation {k}"),
+                )
+                for k in range(3)
+            ),
+            Field(
+                "energy_ratio",
+                "E / E_min",
+                motion.energy_ratio,
+                hint="1 for a spin about e3",
+                **of_angles("energy_ratio"),
+            ),
+            Field("modulus", "elliptic modulus", motion.modulus, **of_angles("modulus")),
+        ]
+
+    def _told(self, name: str, factor: float = 1.0) -> Told:
+        found = self._motion.periods.sigma
+        if found is None:
+            return {}
+        return {"sigma": factor * getattr(found, name), "linear": getattr(found.linear, name)}
+
+    def _periods(self) -> list[Field]:
+        """Return the periods that this mode has, by the words of the glossary."""
+        motion, periods, told = self._motion, self._motion.periods, self._told
+        mode = str(motion.mode)
+        if not np.isnan(periods.turn):
+            along = np.abs(motion.omega @ motion.body.principal.axes)
+            is_along = mode != "spherical" and np.count_nonzero(along > ROUNDING * along.max()) == 1
+            axis = f"e{int(np.argmax(along)) + 1}" if is_along else "an axis at rest in the body"
+            if not np.isfinite(periods.turn):
+                return [Field("turn_period", "one turn", periods.turn, "s", "the body is at rest")]
+            return [
+                *period_fields("turn_period", "one turn", periods.turn, f"about {axis}", told("turn")),
+                *self._wobble(),
+            ]
+        if mode == "symmetric":
+            axis = f"e{int(motion.cones.axis) + 1}"
+            return [
+                *period_fields(
+                    "spin_period",
+                    "spin period",
+                    periods.spin,
+                    f"about {axis}, relative to the plane of {axis} and L",
+                    told("spin"),
+                ),
+                *period_fields(
+                    "precession_period",
+                    "precession period",
+                    periods.precession,
+                    f"of {axis} about L",
+                    told("precession"),
+                ),
+            ]
+        hints = {
+            "long-axis": "P_psi, of the rotation about e1",
+            "short-axis": "P_psi, of the swing of e1 to and fro",
+            "separatrix": "P_psi: omega never returns",
+        }
+        flips = "the intermediate axis turns over" + (", once" if mode == "separatrix" else "")
+        return [
+            *period_fields(
+                "rotation_period", "rotation period", periods.rotation, hints[mode], told("rotation")
+            ),
+            *period_fields(
+                "precession_period",
+                "precession period",
+                periods.precession,
+                "P_phi, mean, of e1 about L",
+                told("precession"),
+            ),
+            *(
+                []
+                if np.isnan(periods.flip)
+                else period_fields("flip_period", "flips every", periods.flip, flips, told("flip"))
+            ),
+        ]
+
+    def _wobble(self) -> list[Field]:
+        motion, wobble = self._motion, self._motion.periods.wobble
+        hint = "of small oscillations of omega in the body"
+        if not np.isnan(wobble):
+            return period_fields("wobble_period", "wobble", wobble, hint, self._told("wobble"))
+        is_unstable = str(motion.mode) == "steady"
+        why = "the spin is unstable" if is_unstable else "omega rests wherever it is put in the body"
+        return [Field("wobble_period", "wobble", None, hint=why, cells=["none"])]
+
+    def light_curve(self) -> list[Field | Table]:
+        """Return the frequencies of the light curve, and periods of a tumbling body in the other convention.
+
+        Returns
+        -------
+        list of Field and Table
+            Empty for a motion that never repeats.
+        """
+        periods = self._motion.periods
+        found = periods.light_curve()
+        is_known = found.frequency > 0.0
+        if not is_known.any():
+            return []
+        # Spins of a laboratory in seconds, those of asteroids in hours; the JSON has hours.
+        is_slow = float(found.frequency[is_known].min()) < 1.0 / 3600.0
+        columns = [
+            Column("frequency", "frequency", "1/d", shown="" if is_slow else "1/s"),
+            Column("period", "period", "h", shown="" if is_slow else "s"),
+        ]
+        per = (86400.0, 3600.0) if is_slow else (1.0, 1.0)
+        order = np.argsort(found.frequency)
+        rows = []
+        for k, f in zip(order.tolist(), found.frequency[order].tolist(), strict=True):
+            if f > 0.0:
+                numbers = {
+                    "frequency": (86400.0 * f, per[0] * f),
+                    "period": (1.0 / (3600.0 * f), 1.0 / (per[1] * f)),
+                }
+                cells = {name: Cell(f"{shown:.4g}", value) for name, (value, shown) in numbers.items()}
+                rows.append({"j": int(found.j[k]), "m": int(found.m[k]), **cells})
+        if not np.isnan(periods.turn):
+            return [Table("light_curve", [Column("j", "j / turn"), *columns], rows)]
+        if not np.isnan(periods.spin):
+            of_spin = [Column("j", "j / precession"), Column("m", "+ m / spin"), *columns]
+            return [Table("light_curve", of_spin, rows)]
+        swings = "swinging" if self._motion.mode == "long-axis" else "rotation"
+        return [
+            *period_fields(
+                "short_axis.rotation_period", "P_psi, short axis", periods.rotation, f"{swings}, about e3", {}
+            ),
+            *period_fields(
+                "short_axis.precession_period",
+                "P_phi, short axis",
+                periods.precession_short_axis,
+                "mean, of e3 about L",
+                {},
+            ),
+            Table("light_curve", [Column("j", "j f_phi"), Column("m", "+ m f_psi"), *columns], rows),
+        ]
+
+    def constants(self, moment_unit: str) -> list[Field]:
+        """Return what is conserved: the energy and the angular momentum."""
+        motion, unit = self._motion, f"{moment_unit}/s"
+        momentum = motion.angular_momentum
+        size = float(lengths(momentum))
+        return [
+            Field("kinetic_energy", "kinetic energy", motion.kinetic_energy, f"{moment_unit}/s^2"),
+            Field("angular_momentum", "|L|", size, unit),
+            Field("angular_momentum_vector", "L, in space", momentum, unit, scale=size),
+        ]
+
+    def stability(self) -> list[Field]:
+        """Return whether steady spins with this angular momentum are stable."""
+        squares = self._motion.stability
+        words = ["stable" if x > 0 else "unstable" if x < 0 else "neutral" for x in squares]
+        words = ["undefined" if np.isnan(x) else word for x, word in zip(squares, words, strict=True)]
+        return [
+            Field("stability", "spin about e1 e2 e3", ", ".join(words)),
+            Field(
+                "stability_frequency_squared", "frequency^2", squares, "1/s^2", "of oscillations in the body"
+            ),
+        ]
+
+    def drifts(self, trajectory: Trajectory) -> list[Field]:
+        """Describe how well the trajectory keeps what is conserved."""
+        energy = trajectory.kinetic_energy().total
+        momentum = trajectory.angular_momentum().total
+        hint = "largest, relative; the vector in space"
+        return [
+            Field(
+                "kinetic_energy_drift",
+                "drift of energy",
+                drift(energy, np.abs(energy)),
+                hint="largest, relative",
+            ),
+            Field("angular_momentum_drift", "drift of L", drift(momentum, lengths(momentum)), hint=hint),
+        ]
+
+
+class TopKind:
+    """A symmetric top under gravity, its origin fixed."""
+
+    def __init__(self, motion: HeavyTop) -> None:
+        self._motion = motion
+
+    def fields(self, rate: float, rate_unit: str) -> list[Field]:
+        """Describe how the axis nods and goes round."""
+        motion = self._motion
+        limits = np.rad2deg(motion.nutation_limits)
+        return [
+            Field("path", "path of the axis", path_of(motion)),
+            Field("nutation_limits", "axis from vertical", limits, "deg", "least, greatest"),
+            *self._periods(),
+            Field(
+                "mean_precession", "mean precession", motion.mean_precession * rate, rate_unit, "mean of phi'"
+            ),
+            Field("mean_spin", "mean spin", motion.mean_spin * rate, rate_unit, "mean of psi'"),
+            Field("axial_spin", "omega along axis", motion.axial_spin * rate, rate_unit),
+            Field(
+                "sleeping_limit", "sleeping limit", motion.sleeping_limit * rate, rate_unit, "least, upright"
+            ),
+        ]
+
+    def _periods(self) -> list[Field]:
+        """Return the periods that this path has, by the words of the glossary."""
+        motion = self._motion
+        period, why = motion.nutation_period, "the inclination of the axis is constant"
+        if not np.isnan(period):
+            hint = "" if np.isfinite(period) else "the axis never returns"
+            return period_fields("nutation_period", "nutation period", period, hint, {})
+        fields = [Field("nutation_period", "nutation period", None, hint=why, cells=["none"])]
+        speed = float(lengths(motion.omega))
+        if str(motion.path) != "steady" or speed == 0.0:
+            return fields
+        return [*period_fields("turn_period", "one turn", 2.0 * np.pi / speed, "about the axis", {}), *fields]
+
+    def constants(self, moment_unit: str) -> list[Field]:
+        """Return what is conserved: the energy and the angular momentum about the vertical."""
+        start = self._motion.at([0.0])
+        kinetic, potential = self._energies(start)
+        upright = start.angular_momentum().total[0, 2]
+        hint = "kinetic and of its weight, from the pivot"
+        return [
+            Field("energy", "energy", (kinetic + potential)[0], f"{moment_unit}/s^2", hint),
+            Field("angular_momentum_vertical", "L, vertical", upright, f"{moment_unit}/s"),
+        ]
+
+    def stability(self) -> list[Field]:
+        """Return whether the top would sleep upright with this spin about its axis."""
+        is_stable = abs(self._motion.axial_spin) >= self._motion.sleeping_limit
+        return [Field("stability", "upright", "stable" if is_stable else "unstable")]
+
+    def drifts(self, trajectory: Trajectory) -> list[Field]:
+        """Describe how well the trajectory keeps what is conserved."""
+        kinetic, potential = self._energies(trajectory)
+        momentum = trajectory.angular_momentum().total
+        energy = drift(kinetic + potential, kinetic + np.abs(potential))
+        upright = drift(momentum[:, 2], lengths(momentum))
+        return [
+            Field("energy_drift", "drift of energy", energy, hint="largest, relative"),
+            Field("angular_momentum_drift", "drift of L vertical", upright, hint="largest, relative to L"),
+        ]
+
+    def _energies(self, trajectory: Trajectory) -> tuple[Floats, Floats]:
+        """Kinetic energy, and that of the weight, zero at the height of the pivot."""
+        height = -(trajectory.point("center_of_mass") @ self._motion.gravity)
+        return trajectory.kinetic_energy().total, float(trajectory.body.mass) * height
+
+
+def period_fields(key: str, label: str, seconds: float, hint: str, told: Told) -> list[Field]:
+    """Return a period in seconds, and a long one in days too."""
+    fields = [Field(key, label, seconds, "s", hint, **told)]
+    if np.isfinite(seconds) and seconds >= 3600.0:
+        if "sigma" in told:
+            told = {**told, "sigma": np.asarray(told["sigma"]) / 86400.0}
+        fields.append(Field(f"in_days.{key}", "", seconds / 86400.0, "d", **told))
+    return fields
+
+
+_WAY_OUT: Final = 'write "z, 2.5 kg m^2/s" or "0, 0, 1, 2.5 kg m^2/s"'
+_MODES: Final = {
+    "steady": "L rests in the body",
+    "circular": "L goes round in the body as sines and cosines do",
+    "separatrix": "L departs from an unstable steady rotation, and comes back to one, once",
+    "paired": "L goes round on one of the two curves in the body with this energy",
+    "single": "L goes round on the only curve in the body with this energy",
+}
+_KINDS: Final = {
+    "minimum": "stable, of least energy",
+    "maximum": "stable, of most energy",
+    "saddle": "unstable",
+    "degenerate": "neutral: some meet here",
+}
+
+
+def momentum_inside(texts: Sequence[str], axes: Floats, loaded: LoadedBody) -> Floats:
+    """Read the wheels and sum up their momenta.
+
+    Parameters
+    ----------
+    texts : sequence of str
+        ``"z, 2.5 kg m^2/s"``, ``"0, 0, 1, 2.5 kg m^2/s"``.
+    axes : numpy.ndarray, shape (3, 3)
+        Those of the components, as columns in the body frame.
+    loaded : LoadedBody
+        In whose units a bare number is.
+
+    Returns
+    -------
+    numpy.ndarray, shape (3,)
+        In the body frame.
+    """
+    if loaded.assumed:
+        raise PolhodeError("--wheel: what it does depends on the mass of the body; state --density or --mass")
+    if loaded.body.covariance is not None:
+        raise PolhodeError(
+            "--wheel: sigmas are not followed through the motion of a body with wheels; write the numbers of "
+            "the body alone"
+        )
+    total = np.zeros(3)
+    for text in texts:
+        *parts, momentum = (part.strip() for part in text.split(","))
+        axis = _axis(parts, text, axes, loaded)
+        total += _momentum(momentum, loaded) * axis
+    return total
+
+
+def _momentum(text: str, loaded: LoadedBody) -> float:
+    unit = f"{loaded.moment_unit}/s"
+    if loaded.length != "unit":
+        return quantity(text, unit, "--wheel")
+    if has_unit(text):
+        raise PolhodeError(
+            f"--wheel: {text!r} has a unit, but the file's coordinates have none; state --length-unit too"
+        )
+    return quantity(text, "kg m^2/s", "--wheel")
+
+
+def _axis(parts: list[str], text: str, axes: Floats, loaded: LoadedBody) -> Floats:
+    """Read the direction of an axis: a name, or three numbers."""
+    words = parts[0].split() if len(parts) == 1 else parts
+    if words in (["x"], ["y"], ["z"]):
+        return np.asarray(axes[:, "xyz".index(words[0])])
+    if words in (["e1"], ["e2"], ["e3"]):
+        return np.asarray(loaded.body.principal.axes[:, int(words[0][1]) - 1])
+    try:
+        along = np.array([float(word) for word in words])
+    except ValueError:
+        along = np.zeros(0)
+    if along.shape != (3,):
+        raise PolhodeError(
+            f"--wheel: {text!r} is not an axis (x, y, z, e1, e2, e3 or three numbers), a comma and a "
+            f"momentum; {_WAY_OUT}"
+        )
+    size = math.hypot(*along)
+    if not 0.0 < size < math.inf:
+        raise PolhodeError(f"--wheel: the axis of {text!r} has no direction; {_WAY_OUT}")
+    return np.asarray(axes @ (along / size))
+
+
+class GyrostatKind:
+    """A body in which wheels keep their momentum, and on which nothing acts."""
+
+    def __init__(self, motion: GyrostatMotion, axes: Floats) -> None:
+        self._motion = motion
+        self._axes = axes
+        self._rate, self._rate_unit = 1.0, "rad/s"
+
+    def fields(self, rate: float, rate_unit: str) -> list[Field]:
+        """Describe how L moves in the body, and the body about L."""
+        self._rate, self._rate_unit = rate, rate_unit
+        motion = self._motion
+        mode = str(motion.mode)
+        hint = "of the body about L, but for whole turns in a period"
+        return [
+            Field("mode", "mode", mode, hint=_MODES[mode]),
+            *self._periods(),
+            Field("mean_precession", "mean precession", motion.mean_precession * rate, rate_unit, hint),
+        ]
+
+    def _periods(self) -> list[Field]:
+        """Return the periods that this mode has, by the words of the glossary."""
+        motion = self._motion
+        if not np.isnan(motion.period):
+            hint = "" if np.isfinite(motion.period) else "omega never returns"
+            return period_fields("period", "period in the body", motion.period, hint, {})
+        speed = float(lengths(motion.omega))
+        if speed == 0.0:
+            return [Field("turn_period", "one turn", math.inf, "s", "the body is at rest")]
+        turn = period_fields(
+            "turn_period", "one turn", 2.0 * math.pi / speed, "about an axis at rest in the body", {}
+        )
+        along = motion.gyrostat.inertia @ motion.omega + motion.rotor
+        if float(lengths(along)) > 0.0:
+            found = motion.equilibria
+            square = float(found.squared_rate[int(np.argmax(found.direction @ along))])
+        else:  # a small L rests in space, and the body turns below it
+            square = speed**2
+        if square > 0.0:
+            hint = "of small oscillations of omega in the body"
+            return [
+                *turn,
+                *period_fields("wobble_period", "wobble", 2.0 * math.pi / math.sqrt(square), hint, {}),
+            ]
+        why = "the spin is unstable" if square < 0.0 else "the spin is neutral"
+        return [*turn, Field("wobble_period", "wobble", None, hint=why, cells=["none"])]
+
+    def constants(self, moment_unit: str) -> list[Field]:
+        """Return what is conserved: the energy, the angular momentum, and what of it is inside."""
+        motion, unit = self._motion, f"{moment_unit}/s"
+        momentum, inside = motion.angular_momentum, motion.rotor
+        size, held = float(lengths(momentum)), float(lengths(inside))
+        hint = "half of omega.I omega: without the wheels' own"
+        return [
+            Field("kinetic_energy", "kinetic energy", motion.kinetic_energy, f"{moment_unit}/s^2", hint),
+            Field("angular_momentum", "|L|", size, unit, "with the wheels"),
+            Field("angular_momentum_vector", "L, in space", momentum, unit, scale=max(size, held)),
+            Field(
+                "momentum_inside", "h, in the body", inside @ self._axes, unit, "of the wheels", scale=held
+            ),
+        ]
+
+    def stability(self) -> list[Field | Table]:
+        """Return the steady rotations with this length of L."""
+        motion = self._motion
+        if not float(lengths(motion.angular_momentum)) > 0.0:
+            return [Field("stability", "steady rotations", "none with an axis of its own: L is zero")]
+        found = motion.equilibria
+        rows: list[dict[str, Any]] = []
+        for k, kind in enumerate(found.kind.tolist()):
+            circle = _clean(found.circle[k] @ self._axes) if found.circle[k].any() else None
+            words = _KINDS[kind]
+            if circle is not None:
+                words += f", one of a circle about ({' '.join(f'{x:.4g}' for x in circle)})"
+            rows.append(
+                {
+                    "direction": _cell(found.direction[k] @ self._axes, "9.5f"),
+                    "omega": _cell(found.omega[k] @ self._axes * self._rate, "10.4g"),
+                    "kind": Cell(words, kind),
+                    "circle": circle,
+                    "kinetic_energy": float(found.kinetic_energy[k]),
+                    "squared_rate": float(found.squared_rate[k]),
+                }
+            )
+        return [
+            Table(
+                "equilibria",
+                [
+                    Column("direction", "L / |L|"),
+                    Column("omega", "omega", self._rate_unit),
+                    Column("kind", "steady rotation"),
+                ],
+                rows,
+            )
+        ]
+
+    def drifts(self, trajectory: Trajectory) -> list[Field]:
+        """Describe how well the trajectory keeps what is conserved."""
+        energy = trajectory.kinetic_energy().total
+        momentum = trajectory.angular_momentum().total
+        held = float(lengths(self._motion.rotor))
+        size = np.maximum(lengths(momentum), held)  # L may be zero where neither part of it is
+        return [
+            Field(
+                "kinetic_energy_drift",
+                "drift of energy",
+                drift(energy, np.abs(energy)),
+                hint="largest, relative",
+            ),
+            Field(
+                "angular_momentum_drift",
+                "drift of L",
+                drift(momentum, size),
+                hint="largest, relative to L or h; the vector in space",
+            ),
+        ]
+
+
+def _cell(vector: Floats, form: str) -> Cell:
+    """Return a vector, and how a table shows it."""
+    numbers = _clean(vector)
+    return Cell(" ".join(f"{x:{form}}" for x in numbers), numbers)
+
+
+def _clean(vector: Floats) -> list[float]:
+    """Put zero for what is rounding beside the largest component."""
+    size = float(np.abs(vector).max())
+    return [float(x) if abs(x) > 1e-15 * size else 0.0 for x in vector]
+
+
+def of_start(motion: FreeMotion | HeavyTop | GyrostatMotion, axes: Floats, rate: float) -> Told:
+    """Sigma of the angular velocity at the start, along these axes; `rate` units are one rad/s."""
+    omega = None if isinstance(motion, _core.GyrostatMotion) else motion.uncertain_start[0]
+    if omega is None:
+        return {}
+    if isinstance(motion, _core.FreeMotion) and motion._from_periods is not None:
+        found = each_motion(motion, lambda _body, omega: rate * omega @ axes, (3,))
+        return {"sigma": found.sigma, "linear": found.linear}
+    return {"sigma": rate * _along(axes, omega.covariance), "linear": np.ones(3, dtype=bool)}
+
+
+def of_shape(motion: FreeMotion) -> Callable[[str], Told]:
+    """Compute sigmas of energy ratio, modulus and angles from L; give what looks them up, nothing if none.
+
+    The angles of axis k, ``"nutation k"``, are in degrees.
+    """
+    if motion.body.covariance is None and motion.uncertain_start[0] is None:
+        return lambda _name: {}
+
+    def numbers(body: RigidBody, omega: Any) -> Floats:
+        near = body.free_motion(omega)
+        return np.array([near.energy_ratio, near.modulus, *np.rad2deg(near.nutation).ravel()])
+
+    found = each_motion(motion, numbers, (8,))
+    places: dict[str, int | slice] = {"energy_ratio": 0, "modulus": 1}
+    places |= {f"nutation {k}": slice(2 * k + 2, 2 * k + 4) for k in range(3)}
+    return lambda name: {"sigma": found.sigma[places[name]], "linear": found.linear[places[name]]}
+
+
+def of_end(motion: FreeMotion | HeavyTop | GyrostatMotion, until: float, axes: Floats, rate: float) -> Told:
+    """Return the uncertain numbers at the end."""
+    found = _end(motion, until)
+    if found is None:
+        return {}
+    covariance, linear = found
+    is_linear = bool(linear[3:].all())
+    return {"sigma": rate * _along(axes, covariance[3:, 3:]), "linear": np.full(3, is_linear)}
+
+
+def attitude_field(motion: FreeMotion | HeavyTop | GyrostatMotion, until: float) -> list[Field]:
+    """Sigmas of the small angles by which the body may be turned at the end."""
+    found = _end(motion, until)
+    if found is None:
+        return []
+    covariance, linear = found
+    sigma = np.degrees(np.sqrt(np.diagonal(covariance)[:3]))
+    hint = "sigma of its rotation about its x y z"
+    cells = [
+        f"{angle:.2g}{'' if is_linear else '*'}" for angle, is_linear in zip(sigma, linear[:3], strict=True)
+    ]
+    return [
+        Field(
+            "attitude_end", "turned by, end", None, "deg", hint, sigma=sigma, linear=linear[:3], cells=cells
+        )
+    ]
+
+
+def _end(motion: FreeMotion | HeavyTop | GyrostatMotion, until: float) -> tuple[Floats, Any] | None:
+    """Return the covariance of attitude and angular velocity at the end, and what of it is linear."""
+    run = motion.at([0.0, until])
+    if run.covariance is None or run.sigma is None:
+        return None
+    linear = run.sigma.linear
+    return run.covariance[-1], np.concatenate([linear.attitude[-1], linear.omega[-1]])
+
+
+def _along(axes: Floats, covariance: Floats) -> Floats:
+    """Return the standard deviations of components along axes, the columns."""
+    return np.sqrt(np.maximum(np.diagonal(axes.T @ covariance @ axes), 0.0))
+
+
+PICTURE_SUFFIXES: Final = (".png", ".pdf", ".svg")
+_SUFFIXES: Final = (*PICTURE_SUFFIXES, *ANIMATION_SUFFIXES, *TRAJECTORY_SUFFIXES)
+DRAWN: Final = (*PICTURE_SUFFIXES, *ANIMATION_SUFFIXES)
+"""Of files that show the body itself."""
+_MOST: Final = 10_000
+"""Triangles that are drawn of a mesh."""
+
+
+def check_paths(paths: Sequence[Path]) -> None:
+    """Refuse what cannot be written before anything is computed."""
+    for path in paths:
+        if path.suffix.lower() not in _SUFFIXES:
+            raise PolhodeError(
+                f"--save: {path} has a suffix that is not written; use one of {', '.join(_SUFFIXES)}"
+            )
+
+
+def drawable(loaded: LoadedBody, options: BodyOptions) -> tuple[Part | None, str]:
+    """Return the mesh as it is drawn, if there is one, and a note where it is coarser."""
+    if loaded.shape is None:
+        return None, ""
+    vertices, faces, side = joined(loaded.shape.vertices, loaded.shape.faces, _MOST)
+    note = ""
+    if side > 0.0:
+        note = (
+            f"drawn coarser: {len(faces)} triangles for {len(loaded.shape.faces)}, corners within cells of "
+            f"{side:.3g} {loaded.length} joined; the numbers are those of the whole mesh"
+        )
+    if options.orient or options.closure is not None:  # a triangle is seen from its outside alone
+        faces = np.concatenate([faces, faces[:, ::-1]])
+    return (vertices, faces), note
+
+
+def save(
+    motion: FreeMotion | HeavyTop | GyrostatMotion,
+    samples: Trajectory,
+    path: Path,
+    spin: SpinOptions,
+    *,
+    title: str,
+    part: Part | None,
+) -> tuple[str, ...]:
+    """Write a motion in the form that the name asks for, the body drawn as `part` or as a box.
+
+    Numbers are those of the samples; what is drawn follows the motion. Returned is what the file does not
+    show of it.
+    """
+    suffix, end = path.suffix.lower(), float(samples.t[-1])
+    if suffix in TRAJECTORY_SUFFIXES:
+        samples.save(path)
+        return _between(samples)
+    if suffix in ANIMATION_SUFFIXES:
+        with progress(f"drawing {path.name}", is_long=suffix != ".html") as tell:
+            return animate_motion(
+                motion, end, path, title=title or "Motion of a rigid body", shape=part, progress=tell
+            )
+    span = motion_times(motion, np.array([0.0, end]))
+    _draw(motion.at(span.t), path, spin, title, part)
+    if span.is_whole:
+        return ()
+    return (
+        f"shown is the beginning, to {span.t[-1]:.6g} of {end:.6g} s: {len(span.t)} points follow the motion "
+        "no farther; an earlier --until shows all of it",
+    )
+
+
+def _between(samples: Trajectory) -> tuple[str, ...]:
+    """Return a note where the body turns so far between two times that the numbers do not show how."""
+    widest = float(turns(samples.t, samples.omega).max())
+    if widest < np.pi:
+        return ()
+    needed = np.ceil(len(samples) * widest / TURN)
+    return (
+        f"from one of its times to the next the body turns by up to {np.rad2deg(widest):.4g} deg, which the "
+        f"numbers do not tell from less; --samples {needed:.7g} follows it",
+    )
+
+
+def _draw(trajectory: Trajectory, path: Path, spin: SpinOptions, title: str, part: Part | None) -> None:
+    figure_module = require("matplotlib.figure", extra="plot", purpose=f"--save {path}:")
+    from polhode.draw.plot.axes import show_around
+    from polhode.plot import angular_velocity, body, principal_axes
+
+    # A figure of its own, outside pyplot: no window system is asked for.
+    figure = figure_module.Figure(figsize=(8.0 if part is None else 12.0, 4.5), layout="constrained")
+    place = figure.add_subplot() if part is None else figure.add_subplot(1, 3, (2, 3))
+    if part is not None:
+        vertices = part[0] - trajectory.body.center_of_mass
+        picture = figure.add_subplot(1, 3, 1, projection="3d", computed_zorder=False)
+        body(vertices, part[1], picture)
+        length = 1.06 * float(np.linalg.norm(vertices[part[1]], axis=-1).max())
+        principal_axes(trajectory.body, picture, length=length, center=np.zeros(3))
+        show_around(picture, np.zeros(3), 0.9 * length)
+    frame: Literal["body", "principal"] = "principal" if spin.axes == "principal" else "body"
+    ax = angular_velocity(trajectory, place, frame=frame, degrees=spin.degrees)
+    ax.set_title(title, loc="left", parse_math=False)
+    save_picture(figure, path)

@@ -1,26 +1,44 @@
-"""What several reports tell: tensors, principal axes, class of the top, and where numbers come from."""
+"""Tables of several reports: tensors, principal axes, class of the top, sigmas, provenance."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final, TypedDict
 
 import numpy as np
 
-from polhode._quantities import quantity
-from polhode.cli.layout import Field
-from polhode.cli.sigmas import about_point, angle_field, squared, told
+from polhode.cli.layout import NOT_LINEAR, ROUNDING, Field
 from polhode.equimomental import ellipsoid
-from polhode.files.mesh_solid import MeshSolid
+from polhode.io.mesh_solid import MeshSolid
 from polhode.results import TOP_RTOL
-from polhode.units import metres_per
+from polhode.uncertainty.variables import changes_in_principal_axes
+from polhode.units import metres_per, quantity
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
+    from polhode import RigidBody
+    from polhode.cli.layout import Report
     from polhode.cli.loading import LoadedBody
 
-__all__ = ["FileUnits", "body_fields", "ellipsoid_fields", "tensor_fields", "top_fields", "trust_fields"]
+    Floats = NDArray[np.float64]
+
+__all__ = [
+    "FileUnits",
+    "Told",
+    "about_point",
+    "angle_field",
+    "body_fields",
+    "ellipsoid_fields",
+    "moments_slopes",
+    "note_linear",
+    "squared",
+    "tensor_fields",
+    "told",
+    "top_fields",
+    "trust_fields",
+]
 
 
 @dataclass(frozen=True)
@@ -43,7 +61,7 @@ class FileUnits:
         sigma: ArrayLike | None = None,
         linear: ArrayLike | None = None,
     ) -> list[Field]:
-        """Give powers of length and mass, and where the file has other units also in those.
+        """Return powers of length and mass, and where the file has other units also in those.
 
         Parameters
         ----------
@@ -185,3 +203,81 @@ def trust_fields(loaded: LoadedBody) -> list[Field]:
         Field("error_bound.center_of_mass", "  on centre", bound.center_of_mass, loaded.length),
         Field("error_bound.inertia", "  on inertia", bound.inertia, loaded.moment_unit),
     ]
+
+
+_LARGE: Final = 0.17
+"""Relative sigma of a number above which its square has another one than twice that, by a percent."""
+
+
+class Told(TypedDict, total=False):
+    """What a field is told besides its value; nothing where the body has no covariance."""
+
+    sigma: ArrayLike | None
+    linear: ArrayLike | None
+
+
+def told(body: RigidBody, name: str) -> Told:
+    """Return a number of :class:`polhode.results.Sigma` with its flag."""
+    if body.sigma is None:
+        return {}
+    return {"sigma": getattr(body.sigma, name), "linear": getattr(body.sigma.linear, name)}
+
+
+def squared(value: Floats, of_value: Told) -> Told:
+    """Return the sigma of the square of a number."""
+    if not of_value:
+        return {}
+    sigma = np.asarray(of_value["sigma"])
+    return {
+        "sigma": 2.0 * value * sigma,
+        "linear": np.asarray(of_value["linear"]) & (sigma <= _LARGE * value),
+    }
+
+
+def about_point(body: RigidBody, point: Floats) -> Told:
+    """Sigma of the tensor about a point that is known exactly."""
+    sigma = body.sigma_about(point)
+    return {} if sigma is None else {"sigma": sigma.inertia, "linear": sigma.linear.inertia}
+
+
+def moments_slopes(body: RigidBody) -> Floats | None:
+    """Return what one sigma of each variable does to the principal moments, shape (k, 3).
+
+    Each moment is e·I e, and turning the axes e adds nothing to it at first. Sums of these cancel to
+    rounding, those of a covariance to its root.
+    """
+    changes = changes_in_principal_axes(body)
+    return None if changes is None else np.diagonal(changes[0], axis1=-2, axis2=-1)
+
+
+def angle_field(body: RigidBody) -> list[Field]:
+    """Sigmas of the small angles by which the principal axes may be turned."""
+    if body.sigma is None:
+        return []
+    angles, linear = np.degrees(body.sigma.axes), np.asarray(body.sigma.linear.axes)
+    cells = [
+        "not determined" if np.isnan(angle) else _angle(angle) + ("" if is_linear else NOT_LINEAR)
+        for angle, is_linear in zip(angles.tolist(), linear.tolist(), strict=True)
+    ]
+    hint = "sigma of their rotation about e1 e2 e3"
+    return [Field("axes", "  turned by", None, "deg", hint, sigma=angles, linear=linear, cells=cells)]
+
+
+def _angle(degrees: float) -> str:
+    return f"{degrees:.2g}" if degrees > math.degrees(ROUNDING) else "0"
+
+
+def note_linear(report: Report) -> None:
+    """Say what ± is, and what to do about marked numbers."""
+    fields = [item for _, items in report.sections for item in items if isinstance(item, Field)]
+    told = [item for item in fields if item.sigma is not None]
+    if not told:
+        return
+    report.notes.append("± is one standard deviation, to first order")
+    if any(
+        np.any(~np.asarray(item.linear, bool) & ~np.isnan(np.asarray(item.sigma, float))) for item in told
+    ):
+        report.notes.append(
+            f"{NOT_LINEAR}: the first order is not enough; in Python "
+            'polhode.uncertainty.propagate(f, body, method="monte-carlo", seed=1) tells what is right'
+        )

@@ -1,22 +1,31 @@
-"""``polhode validate``: published cases and closed forms, computed on this machine."""
+"""``polhode validate``: published cases and closed interop, computed on this machine."""
 
 from __future__ import annotations
 
 import hashlib
 import math
+import platform
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, requires, version
 from typing import Final, Literal
 
 import numpy as np
 
-from polhode import RigidBody, forms, solids
+from polhode import RigidBody, __version__, _core, interop, solids
 from polhode.cli import brick
-from polhode.cli.layout import Column, Report, Table
-from polhode.cli.machine import machine_fields
+from polhode.cli.layout import Column, Field, Report, Table
 from polhode.molecules import rotational_constants
 
-__all__ = ["CASES", "Case", "Numbers", "validation"]
+__all__ = [
+    "CASES",
+    "Case",
+    "Numbers",
+    "as_text",
+    "machine_fields",
+    "validation",
+]
 
 Numbers = tuple[float, ...]
 
@@ -65,7 +74,7 @@ def _apophis() -> Numbers:
 
 
 def _diatomic(masses: tuple[float, float], length: float) -> Callable[[], Numbers]:
-    """Give the rotational constant of two atoms at a distance in angstroms, in 1/cm."""
+    """Return the rotational constant of two atoms at a distance in angstroms, in 1/cm."""
 
     def compute() -> Numbers:
         body = RigidBody.from_particles(masses, [(0.0, 0.0, 0.0), (0.0, 0.0, length)])
@@ -77,7 +86,7 @@ def _diatomic(masses: tuple[float, float], length: float) -> Callable[[], Number
 def _printout() -> Numbers:
     center = (-0.45582142, 0.92780847, 0.0)
     products = (0.50358715, 0.17140362, 0.66303218, -0.05932693, 0.0, 0.0)
-    return _told(forms.from_printout(1.51653435, center, products, products="positive").principal_moments)
+    return _told(interop.from_printout(1.51653435, center, products, products="positive").principal_moments)
 
 
 def _corner() -> Numbers:
@@ -124,7 +133,6 @@ _NASA: Final = "NASA/TM-2015-218675, check case 2"
 _HERZBERG: Final = "Huber and Herzberg, Molecular Structure IV (1979)"
 _T, _S3 = 4.0, math.sqrt(3.0)
 _SECH, _TANH = 1.0 / math.cosh(_T), math.tanh(_T)
-
 CASES: Final = (
     Case("NASA", "tumbling brick, deg/s at 30 s", _NASA, brick.NASA_RATES, 3e-10, _brick("exact", 1e-10)),
     Case("NASA", "the same, DOP853", f"{_NASA}, 25 digits", brick.EXACT_RATES, 1e-8, _brick("dop853", 1e-10)),
@@ -229,3 +237,53 @@ def validation(cases: tuple[Case, ...] = CASES) -> tuple[Report, bool]:
     )
     report.notes.append(f"the bits of all numbers: {bits.hexdigest()[:16]}; --format json shows them")
     return report, not bad
+
+
+#: Distributions of the extras, where their names are others than the modules'.
+_NEEDED: Final = ("numpy",)
+
+
+def machine_fields() -> list[Field]:
+    """Versions of what is installed, and what long runs use."""
+    level, threads = _core.machine()
+    lock = "" if getattr(sys, "_is_gil_enabled", lambda: True)() else ", without the lock of the interpreter"
+    libraries = ", ".join(f"{name} {found}" for name, found in _libraries().items())
+    return [
+        Field("polhode", "polhode", __version__),
+        Field("python", "Python", f"{platform.python_implementation()} {platform.python_version()}{lock}"),
+        Field("system", "system", platform.platform()),
+        Field("processor", "processor", platform.machine()),
+        Field("instruction_set", "instruction set", level),
+        Field("threads", "threads", threads),
+        Field("libraries", "libraries", libraries),
+    ]
+
+
+def as_text() -> str:
+    """Return what ``polhode --version --verbose`` prints."""
+    fields = machine_fields()
+    return "\n".join(f"{field.label:<16} {field.value!s}" for field in fields)
+
+
+def _libraries() -> dict[str, str]:
+    """Return the versions of those libraries that polhode names and that are there."""
+    try:
+        needs = requires("polhode") or []
+    except PackageNotFoundError:  # a source tree on the path
+        needs = list(_NEEDED)
+    names = sorted({_name(need) for need in needs} - {"polhode"})
+    found = {}
+    for name in names:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            continue
+    return found
+
+
+def _name(need: str) -> str:
+    """Return the distribution that a requirement names."""
+    for stop in range(len(need)):
+        if not (need[stop].isalnum() or need[stop] in "-_."):
+            return need[:stop]
+    return need

@@ -9,16 +9,22 @@ from dataclasses import fields
 from typing import TYPE_CHECKING, Final
 
 from polhode import RigidBody
-from polhode._quantities import amount, has_unit, quantities, split, vector
+from polhode.cli.files import shown
 from polhode.cli.layout import Field, Report
 from polhode.cli.loading import LoadedBody, load_body
 from polhode.cli.options import BodyOptions
-from polhode.cli.sigmas import note_linear, told
-from polhode.cli.source import shown
-from polhode.cli.tables import FileUnits, body_fields, ellipsoid_fields, tensor_fields, trust_fields
+from polhode.cli.tables import (
+    FileUnits,
+    body_fields,
+    ellipsoid_fields,
+    note_linear,
+    tensor_fields,
+    told,
+    trust_fields,
+)
 from polhode.errors import PolhodeError
-from polhode.files.saved_body import read_report
-from polhode.units import metres_per
+from polhode.io.saved import read_report
+from polhode.units import amount, has_unit, metres_per, quantities, split, vector
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -80,7 +86,7 @@ def _whole_body(file: Path, options: BodyOptions) -> LoadedBody:
 
 def _printed(file: Path | None, options: BodyOptions) -> LoadedBody:
     """Make the body of --mass, --com and --inertia."""
-    from polhode._printed import from_printout
+    from polhode.interop.printouts import from_printout
 
     if file is not None:
         name = next(name for name in _OF_PRINTOUTS if _is_given(options, name)).replace("_", "-")

@@ -9,13 +9,11 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from polhode import _core
-from polhode._draws import Distribution, Made
-from polhode.distributions import per_member
+from polhode.distributions import Distribution, Made, per_member
 from polhode.ensembles.cluster import check_client
-from polhode.ensembles.plan import VECTORS, Plan, is_each_alone
-from polhode.ensembles.recipe import draws, resolved
+from polhode.ensembles.plan import VECTORS, Plan, draws, is_each_alone, resolved
+from polhode.ensembles.reduce import BLOCK
 from polhode.ensembles.result import Ensemble
-from polhode.ensembles.tree import BLOCK
 from polhode.ensembles.trial import outputs_of, settled, trial_of
 from polhode.reductions import Reduction
 
@@ -165,7 +163,7 @@ def _count(number: Any, name: str) -> int:
 
 
 def _argument(place: str, value: Any) -> Any:
-    """Give a distribution, or what is the same for all members in a form that stays as it is."""
+    """Return a distribution, or what is the same for all members in a form that stays as it is."""
     if isinstance(value, Distribution | Made) or value is None:
         return value
     if place == "body" and isinstance(value, _core.RigidBody):

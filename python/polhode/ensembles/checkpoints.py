@@ -11,21 +11,19 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from polhode._reducing import Moments, Order
 from polhode.ensembles.fingerprint import fingerprint
-from polhode.ensembles.reducing import State
+from polhode.ensembles.reduce import BLOCK, State
 from polhode.ensembles.stores import check_same, header
-from polhode.ensembles.tree import BLOCK
 from polhode.errors import FileFormatError
-from polhode.files.writing import writing
-from polhode.reductions import Kept
+from polhode.io.writing import writing
+from polhode.reductions import Kept, Moments, Order
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from pathlib import Path
 
     from polhode.ensembles.plan import Plan
-    from polhode.ensembles.tree import Tree
+    from polhode.ensembles.reduce import Tree
     from polhode.reductions import Reduction
 
 __all__ = ["Checkpoint"]
@@ -70,11 +68,11 @@ class Checkpoint:
             self._read()
 
     def pending(self) -> list[int]:
-        """Give the chunks that are not in it."""
+        """Return the chunks that are not in it."""
         return [index for index in range(self.plan.chunks) if index not in self.done]
 
     def add(self, index: int) -> None:
-        """Tell that a chunk is in the tree."""
+        """Record that a chunk is in the tree."""
         self.done.add(index)
         self.is_new = True
         if time.monotonic() - self.written >= _BETWEEN:
@@ -135,7 +133,7 @@ def _joined(spans: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
 
 
 def _plain(value: Any, arrays: list[Any]) -> Any:
-    """Give a state as JSON has it, its arrays in a list."""
+    """Return a state as JSON has it, its arrays in a list."""
     match value:
         case None | bool() | int() | float():
             return value

@@ -22,13 +22,13 @@ __all__ = ["build", "fingerprint"]
 
 @cache
 def build() -> tuple[str, str]:
-    """Give the version of polhode and a digest of its compiled core."""
+    """Return the version of polhode and a digest of its compiled core."""
     data = Path(str(_core.__file__)).read_bytes()
     return _core.__version__, hashlib.blake2b(data, digest_size=16).hexdigest()
 
 
 def fingerprint(plan: Plan, *more: Any) -> str:
-    """Give a digest of all that decides the numbers of an ensemble, but its seed, its size and its chunks.
+    """Return a digest of all that decides the numbers of an ensemble, but its seed, its size and its chunks.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def _is_own(value: Any) -> bool:
 
 
 def _names(code: CodeType) -> list[str]:
-    """Give the names that a function and those within it read from outside."""
+    """Return the names that a function and those within it read from outside."""
     within = [name for inner in code.co_consts if isinstance(inner, CodeType) for name in _names(inner)]
     return sorted({*code.co_names, *within})
 

@@ -1,16 +1,15 @@
-"""What an ensemble is, as plain values that go to other processes: all that a chunk of it needs."""
+"""What an ensemble computes: its arguments as recipes, its chunks, and the layout of its results."""
 
 from __future__ import annotations
 
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
 from polhode import _core
-from polhode._draws import PerMember, Refusal
-from polhode.ensembles.recipe import draws, value
+from polhode.distributions import Distribution, Made, PerMember, Refusal, Source, given_name, source
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
@@ -18,13 +17,27 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from polhode.ensembles.recipe import Draw, Node
-    from polhode.trajectory import Trajectory
+    from polhode.motion.trajectory import Trajectory
 
     Floats = NDArray[np.float64]
     Rows = NDArray[np.intp]
+    from collections.abc import Callable, Mapping
 
-__all__ = ["VECTORS", "Inputs", "Plan"]
+__all__ = [
+    "VECTORS",
+    "Draw",
+    "Inputs",
+    "Make",
+    "Node",
+    "Plan",
+    "Variable",
+    "bytes_of_member",
+    "coordinates",
+    "draws",
+    "layout",
+    "resolved",
+    "value",
+]
 
 VECTORS: Final = {"omega": 3, "attitude": 4, "position": 3, "velocity": 3}
 """Arguments that are one vector for each member, and their components."""
@@ -53,12 +66,12 @@ class Plan:
         return -(-self.n // self.chunk)
 
     def bounds(self, index: int) -> tuple[int, int]:
-        """Give the first member of a chunk and how many it has."""
+        """Return the first member of a chunk and how many it has."""
         first = index * self.chunk
         return first, min(self.chunk, self.n - first)
 
     def draws(self) -> dict[str, Draw]:
-        """Give the distributions by their places; one that stands at two places is at the first."""
+        """Return the distributions by their places; one that stands at two places is at the first."""
         return {draw.place: draw for node in self.recipe.values() for draw in draws(node)}
 
     def inputs(self, first: int, count: int) -> Inputs:
@@ -80,7 +93,7 @@ class Inputs:
     drawn: dict[str, Any]
 
     def arrays(self) -> dict[str, Floats]:
-        """Give the numbers by their places, without those that are kept as the states at the start."""
+        """Return the numbers by their places, without those that are kept as the states at the start."""
         kept = self.plan.outputs
         return {
             place: array
@@ -100,7 +113,7 @@ class Inputs:
                 yield row, np.asarray(one, dtype=float)
 
     def made(self, rows: Rows) -> dict[str, Any]:
-        """Give the arguments of `simulate` for members, the body among them.
+        """Return the arguments of `simulate` for members, the body among them.
 
         Parameters
         ----------
@@ -139,7 +152,7 @@ class Inputs:
 
 
 def is_each_alone(plan: Plan) -> bool:
-    """Tell whether members have loads that cannot stand in one stack."""
+    """Return whether members have loads that cannot stand in one stack."""
     return any(
         isinstance(draw.distribution, PerMember) and draw.place == "load" for draw in plan.draws().values()
     )
@@ -217,3 +230,169 @@ def _check_shape(shape: tuple[int, ...], count: int, place: str) -> None:
         raise ValueError(
             f"{place}: expected one for each of {count} members or one for all, got a stack of shape {shape}"
         )
+
+
+@dataclass(frozen=True)
+class Draw:
+    """A distribution, where it stands first in the call, and whose numbers it draws."""
+
+    distribution: Distribution
+    place: str
+    source: Source
+
+
+@dataclass(frozen=True)
+class Make:
+    """A function of arguments, some of which are drawn."""
+
+    function: Callable[..., Any]
+    args: tuple[Node, ...]
+    kwargs: tuple[tuple[str, Node], ...]
+
+
+Node: TypeAlias = Draw | Make | Any
+"""What is neither drawn nor made is the same for all members."""
+
+
+def resolved(arguments: Mapping[str, Any], seed: int) -> dict[str, Node]:
+    """Assign every distribution among the arguments its source of random numbers.
+
+    Parameters
+    ----------
+    arguments : mapping of str to object
+        By the names of the places, in the order of the signature.
+    seed : int
+
+    Returns
+    -------
+    dict
+    """
+    seen: dict[int, Node] = {}
+    return {place: _resolved(argument, place, seed, seen) for place, argument in arguments.items()}
+
+
+def _resolved(argument: Any, place: str, seed: int, seen: dict[int, Node]) -> Node:
+    """Resolve one; what was met before keeps the sources of its first place."""
+    if not isinstance(argument, Distribution | Made):
+        return argument
+    if id(argument) in seen:
+        return seen[id(argument)]
+    node: Node
+    if isinstance(argument, Distribution):
+        name = place if argument.name is None else given_name(argument.name)
+        node = Draw(argument, place, source(seed, name))
+    else:
+        for name in argument.kwargs:
+            if not name.isidentifier():
+                raise ValueError(f"{place}: {name!r} is no name of an argument")
+        parts = {key: _resolved(part, f"{place}.{key}", seed, seen) for key, part in argument.parts().items()}
+        args = tuple(parts[str(index)] for index in range(len(argument.args)))
+        node = Make(argument.function, args, tuple((name, parts[name]) for name in sorted(argument.kwargs)))
+    seen[id(argument)] = node
+    return node
+
+
+def draws(node: Node) -> Iterator[Draw]:
+    """Go through the distributions of an argument."""
+    if isinstance(node, Draw):
+        yield node
+    elif isinstance(node, Make):
+        for part in (*node.args, *(part for _, part in node.kwargs)):
+            yield from draws(part)
+
+
+def value(node: Node, drawn: Mapping[str, Any], rows: Rows) -> Any:
+    """Return an argument of members.
+
+    Parameters
+    ----------
+    node : Draw, Make or object
+    drawn : mapping of str to array or list
+        What a chunk of members has drawn, by the places.
+    rows : numpy.ndarray of int
+        Which members of the chunk.
+
+    Returns
+    -------
+    object
+        With a first axis for the members, or a list of one for each, where anything is drawn.
+    """
+    if isinstance(node, Draw):
+        found = drawn[node.place]
+        if not isinstance(node.distribution, PerMember):
+            return found[rows]
+        values = [found[row] for row in rows]
+        for one in values:
+            if isinstance(one, Refusal):
+                raise type(one.error)(*one.error.args)
+        return values
+    if isinstance(node, Make):
+        args = [value(part, drawn, rows) for part in node.args]
+        kwargs = {name: value(part, drawn, rows) for name, part in node.kwargs}
+        return node.function(*args, **kwargs)
+    return node
+
+
+_VECTOR: Final = ("axis", "xyz")
+_AXES: Final = {
+    "omega": (_VECTOR, {"frame": "body"}),
+    "quaternion": (("quaternion_component", "xyzw"), {"long_name": "R_NB, scalar last"}),
+    "position": (_VECTOR, {"frame": "space"}),
+    "velocity": (_VECTOR, {"frame": "space"}),
+}
+
+
+class Variable(NamedTuple):
+    """An array with an axis for the members in front."""
+
+    dims: tuple[str, ...]
+    tail: tuple[int, ...]
+    dtype: str
+    attributes: dict[str, str]
+
+
+def layout(plan: Plan) -> dict[str, Variable]:
+    """Return the arrays that a chunk has, by name; the status comes last.
+
+    Parameters
+    ----------
+    plan : Plan
+
+    Returns
+    -------
+    dict of str to Variable
+    """
+    found = {}
+    for name, size in plan.outputs.items():
+        (axis, _), told = _AXES.get(
+            name, ((f"{short_name(name)}_component", ""), {"long_name": "of the load"})
+        )
+        found[short_name(name)] = Variable(("member", "time", axis), (len(plan.t), size), "<f8", told)
+    for place, array in plan.inputs(0, 1).arrays().items():
+        tail = array.shape[1:]
+        dims = ("member", *(f"{short_name(place)}_{axis}" for axis in range(len(tail))))
+        found[short_name(place)] = Variable(dims, tail, "<f8", {"long_name": f"drawn for {place}"})
+    told = {"long_name": "how the member ended; empty: not yet run"}
+    return found | {"status": Variable(("member",), (), "<U8", told)}
+
+
+def coordinates(plan: Plan) -> dict[str, tuple[str, Any]]:
+    """Return the coordinates of the axes."""
+    found: dict[str, tuple[str, Any]] = {"time": ("time", plan.t)}
+    for name in plan.outputs:
+        if name in _AXES:
+            (axis, letters), _ = _AXES[name]
+            found[axis] = (axis, np.array(list(letters)))
+    return found
+
+
+def short_name(name: str) -> str:
+    """Return the name of a state of the load without its place."""
+    return name.removeprefix("states.")
+
+
+def bytes_of_member(plan: Plan) -> int:
+    """Return the size of all that is kept of a member."""
+    return sum(
+        np.dtype(variable.dtype).itemsize * int(np.prod(variable.tail)) for variable in layout(plan).values()
+    )

@@ -11,18 +11,15 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
 import numpy as np
 
 from polhode import _core
-from polhode._extras import require
+from polhode._format import short
+from polhode._optional import require
 from polhode._progress import watched
-from polhode._repr import short
 from polhode.ensembles.checkpoints import Checkpoint
-from polhode.ensembles.cluster import chunks_of_client
-from polhode.ensembles.engine import chunks_here
-from polhode.ensembles.layout import bytes_of_member, coordinates, layout
-from polhode.ensembles.recipe import draws
-from polhode.ensembles.reducing import nodes_of_chunk, tree_of
+from polhode.ensembles.cluster import chunks_here, chunks_of_client
+from polhode.ensembles.plan import bytes_of_member, coordinates, draws, layout
+from polhode.ensembles.reduce import BLOCK, nodes_of_chunk, tree_of
 from polhode.ensembles.running import arrays_of_chunk
 from polhode.ensembles.stores import NpzStore, ZarrStore, opened
-from polhode.ensembles.tree import BLOCK
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -30,11 +27,11 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
     from polhode._progress import Progress
-    from polhode.ensembles.engine import Task
+    from polhode.ensembles.cluster import Task
     from polhode.ensembles.plan import Plan
     from polhode.ensembles.stores import Store
+    from polhode.motion.trajectory import Trajectory
     from polhode.reductions import Reduction
-    from polhode.trajectory import Trajectory
 
 __all__ = ["Ensemble", "Memory"]
 
@@ -340,7 +337,7 @@ def _check_room(needed: int, n: int) -> None:
 
 
 def _room() -> int | None:
-    """Give the memory of this machine; not every system tells."""
+    """Return the memory of this machine; not every system tells."""
     try:
         return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, ValueError, OSError):

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 import numpy as np
 
 from polhode import _core
-from polhode.ensembles.layout import short_name
-from polhode.ensembles.plan import is_each_alone
+from polhode.ensembles.plan import is_each_alone, short_name
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from polhode.ensembles.plan import Inputs, Plan
-    from polhode.trajectory import Trajectory
+    from polhode.motion.trajectory import Trajectory
 
     Floats = NDArray[np.float64]
     Rows = NDArray[np.intp]
@@ -56,7 +55,7 @@ class Run:
         return found
 
     def array(self, name: str) -> Floats:
-        """Give an array of the trajectories with a row for every member.
+        """Return an array of the trajectories with a row for every member.
 
         Of those that were not run it has what they drew, at the start, and NaN.
         """
@@ -73,7 +72,7 @@ class Run:
 
 
 def output(trajectory: Trajectory, name: str) -> Floats:
-    """Give an array of a trajectory, that of a state of the load as ``states.NAME``."""
+    """Return an array of a trajectory, that of a state of the load as ``states.NAME``."""
     if name.startswith("states."):
         return trajectory.states[name.removeprefix("states.")]
     found: Floats = getattr(trajectory, name)
@@ -125,7 +124,7 @@ def run_members(plan: Plan, first: int, count: int, progress: Callable[[float], 
 
 
 def picked(trajectory: Trajectory, rows: Rows) -> Trajectory:
-    """Give the motions of some rows of a stack, whose arrays nobody can change.
+    """Return the motions of some rows of a stack, whose arrays nobody can change.
 
     Parameters
     ----------
@@ -157,7 +156,7 @@ def picked(trajectory: Trajectory, rows: Rows) -> Trajectory:
 
 
 def admitted(inputs: Inputs) -> tuple[Rows, dict[int, PolhodeError]]:
-    """Tell which members have a body, a load and a state to begin with, and why others have not."""
+    """Return which members have a body, a load and a state to begin with, and why others have not."""
     size = 1 if is_each_alone(inputs.plan) else max(inputs.count, 1)
     every = np.arange(inputs.count)
     able: list[Rows] = [every[:0]]
@@ -215,7 +214,7 @@ def _raise_first(run: Run, faults: dict[int, PolhodeError]) -> None:
 
 
 def _failure(run: Run, row: int) -> PolhodeError:
-    """Give the failure of a member that was run."""
+    """Return the failure of a member that was run."""
     place = int(np.flatnonzero(run.rows == row)[0])
     if len(run.trajectories) > 1:  # each of one member
         return run.trajectories[place].failures[0]

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import numpy as np
 
-from polhode._extras import require
+from polhode._optional import require
 from polhode.ensembles.fingerprint import build, fingerprint
-from polhode.ensembles.layout import coordinates, layout
+from polhode.ensembles.plan import coordinates, layout
 from polhode.errors import FileFormatError
-from polhode.files.writing import write_bytes, writing
+from polhode.io.writing import write_bytes, writing
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -35,14 +35,14 @@ class Store(Protocol):
     """Where the chunks of an ensemble are kept."""
 
     def pending(self) -> list[int]:
-        """Give the chunks that are not there."""
+        """Return the chunks that are not there."""
 
     def write(self, index: int, arrays: Arrays) -> None:
         """Write a chunk."""
 
 
 def header(plan: Plan) -> dict[str, Any]:
-    """Give what tells one ensemble from another."""
+    """Return what tells one ensemble from another."""
     return {
         "kind": _KIND,
         "version": build()[0],
@@ -76,7 +76,7 @@ class NpzStore:
             _remove(path.glob(".polhode-*"), r"\.polhode-[0-9a-f]{16}\.npz")
 
     def pending(self) -> list[int]:
-        """Give the chunks that are not there."""
+        """Return the chunks that are not there."""
         return [index for index in range(self.plan.chunks) if not self._is_whole(index)]
 
     def _is_whole(self, index: int) -> bool:
@@ -101,7 +101,7 @@ class NpzStore:
                     np.lib.format.write_array(member, np.asarray(array), allow_pickle=False)
 
     def file(self, index: int) -> Path:
-        """Give the file of a chunk."""
+        """Return the file of a chunk."""
         return self.path / f"chunk-{index:08}.npz"
 
 
@@ -148,7 +148,7 @@ class ZarrStore:
         zarr.consolidate_metadata(self.group.store)
 
     def pending(self) -> list[int]:
-        """Give the chunks that are not there."""
+        """Return the chunks that are not there."""
         plan, status = self.plan, self.group["status"]
         return [
             index

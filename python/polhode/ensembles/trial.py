@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from polhode.ensembles.plan import is_each_alone
-from polhode.ensembles.recipe import draws
+from polhode.ensembles.plan import draws, is_each_alone
 from polhode.ensembles.running import ROW, admitted, output
 from polhode.errors import IntegrationError, PolhodeError
 
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from polhode.ensembles.plan import Plan
-    from polhode.trajectory import Trajectory
+    from polhode.motion.trajectory import Trajectory
 
     Floats = NDArray[np.float64]
     Rows = NDArray[np.intp]
@@ -72,12 +71,12 @@ def trial_of(plan: Plan) -> tuple[Rows, Trajectory]:
 
 
 def _beginning(t: Floats) -> Floats:
-    """Give the start and a time soon after: what a run is refused for shows there too."""
+    """Return the start and a time soon after: what a run is refused for shows there too."""
     return t if len(t) == 1 else np.array([t[0], t[0] + 1e-6 * (t[1] - t[0])])
 
 
 def settled(plan: Plan, begun: Rows) -> str:
-    """Give the method of all members, where "auto" would choose by the loads of a chunk.
+    """Return the method of all members, where "auto" would choose by the loads of a chunk.
 
     Parameters
     ----------
@@ -115,7 +114,7 @@ def _check_names(plan: Plan, own: Mapping[str, str]) -> None:
 
 
 def outputs_of(plan: Plan, trial: Trajectory, outputs: Sequence[str] | None) -> dict[str, int]:
-    """Give the names of the states that are kept, with their components.
+    """Return the names of the states that are kept, with their components.
 
     Parameters
     ----------

@@ -16,17 +16,15 @@ import numpy as np
 
 from polhode._hints import check_kind
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.files.content import EXPECTED_CONTENT, content_format, rename
-from polhode.files.xml_source import Edit, Element, edited, parse_xml
+from polhode.io.content import EXPECTED_CONTENT, content_format, rename
+from polhode.io.xml_source import Edit, Element, edited, parse_xml
 from polhode.robots import mjcf, sdf, urdf
-from polhode.robots.addresses import Addresses, own_root
 from polhode.robots.geometry import GeometryReader
-from polhode.robots.model import Inertial, Joint, Link, Place, Robot, Shape
+from polhode.robots.model import Inertial, Joint, Link, Place, Robot, Shape, shortened
 from polhode.robots.room import MARKER
-from polhode.robots.sdf_include import check_version
-from polhode.robots.sources import Sources, read_source
+from polhode.robots.sdf import check_version
+from polhode.robots.sources import Addresses, Sources, own_root, read_source
 from polhode.robots.verdict import FAILURES, Verdict, judge, replacement
-from polhode.robots.words import shortened
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -283,7 +281,7 @@ def fixed(robot: Robot, verdicts: Sequence[Verdict], words: Collection[str] = FA
 
 
 def _walk(element: Element) -> list[str]:
-    """Give every tag of a document."""
+    """Return every tag of a document."""
     waiting, tags = [element], []
     while waiting:
         item = waiting.pop()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polhode.files.xml_source import Edit, Element, set_attribute, set_text
+from polhode.io.xml_source import Edit, Element, set_attribute, set_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -47,7 +47,7 @@ def indented(source: bytes, parent: Element, opening: str, inner: Iterable[str],
 
 
 def _blanks_before(source: bytes, start: int, end: int) -> str:
-    """Give the blanks before an element, behind a comment or the start of its parent."""
+    """Return the blanks before an element, behind a comment or the start of its parent."""
     between = source[start:end]
     return between[len(between.rstrip()) :].decode()
 

@@ -9,13 +9,12 @@ import numpy as np
 
 from polhode import RigidBody, solids
 from polhode.errors import PolhodeError
-from polhode.files.components import overlapping
-from polhode.files.loaded import load
-from polhode.files.mesh import Mesh, used_vertices
-from polhode.robots.facets import sagitta
-from polhode.robots.mjcf_meshes import legacy_solid
+from polhode.io.components import overlapping
+from polhode.io.loaded import load
+from polhode.io.mesh import Mesh, equal_rows, used_vertices
+from polhode.robots.mjcf import legacy_solid
+from polhode.robots.model import quoted, shortened
 from polhode.robots.room import MARKER
-from polhode.robots.words import quoted, shortened
 from polhode.units import metres_per
 
 if TYPE_CHECKING:
@@ -24,13 +23,17 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from polhode.files.cad_file import CadFile
-    from polhode.robots.addresses import Addresses
+    from polhode.io.cad_files import CadFile
     from polhode.robots.model import Link, Shape
+    from polhode.robots.sources import Addresses
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Geometry", "GeometryReader"]
+__all__ = [
+    "Geometry",
+    "GeometryReader",
+    "sagitta",
+]
 
 _SOLIDS: Final[dict[str, Callable[[tuple[float, ...]], RigidBody]]] = {
     "box": lambda size: solids.box(size, density=1.0),
@@ -128,12 +131,12 @@ class GeometryReader:
         return Geometry(body, volume, role, low, high, len(boxes) - len(known), told)
 
     def filled(self, link: Link) -> RigidBody | None:
-        """Give the shapes filled with density 1, whatever the file says of their masses."""
+        """Return the shapes filled with density 1, whatever the file says of their masses."""
         plain = replace(link, shapes=tuple(replace(s, density=1.0, mass=None) for s in link.shapes))
         return self._whole(plain, link.folder or self._folder, {})[0]
 
     def coarseness(self, link: Link) -> float:
-        """Give how far the shapes may miss the surface they stand for, in metres.
+        """Return how far the shapes may miss the surface they stand for, in metres.
 
         A mesh misses a round surface by the sagitta of its facets; a box, a cylinder and the like only stand
         for the true part, which is taken to be within 2 % of their diagonal.
@@ -178,7 +181,7 @@ class GeometryReader:
         return None, 0.0, role, marker if np.isfinite(marker) else None
 
     def _body(self, shape: Shape, folder: Path, notes: dict[str, str]) -> tuple[RigidBody, float] | None:
-        """Give the body of a shape where it stands, and its volume."""
+        """Return the body of a shape where it stands, and its volume."""
         if shape.problem:
             return None
         key = (folder, shape.kind, shape.mesh, shape.size, shape.counting)
@@ -197,7 +200,7 @@ class GeometryReader:
         return placed.scaled(mass=weight), float(solid.mass)
 
     def _mesh_solid(self, shape: Shape, folder: Path) -> tuple[RigidBody | None, str]:
-        """Give the solid that a mesh bounds, or its convex hull, and what has to be said of it."""
+        """Return the solid that a mesh bounds, or its convex hull, and what has to be said of it."""
         read, name = self._mesh(shape.mesh, folder), shortened(shape.mesh)
         if isinstance(read, str):
             return None, read
@@ -293,8 +296,8 @@ class GeometryReader:
 
 
 def _of_cad(cad: CadFile) -> _Read:
-    """Give the solids of a CAD file with density 1, in metres, and the corners of wide boxes around them."""
-    from polhode.files.cad_solid import solids_of
+    """Return solids of a CAD file with density 1, in metres, and the corners of wide boxes around them."""
+    from polhode.io.cad_files import solids_of
 
     signs = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
     corners = np.concatenate(
@@ -309,7 +312,7 @@ def _of_cad(cad: CadFile) -> _Read:
 
 
 def _counted(name: str, legacy: RigidBody, solid: RigidBody | None) -> tuple[RigidBody, str]:
-    """Give what MuJoCo takes a mesh for, and say where that is not what it fills."""
+    """Return what MuJoCo takes a mesh for, and say where that is not what it fills."""
     by = 'MuJoCo\'s inertia="legacy", its default'
     if solid is None:
         return legacy, f"mesh {name} does not bound a solid: {by}, adds the tetrahedra of its triangles"
@@ -339,7 +342,7 @@ def _overlapping(name: str, vertices: Floats, faces: NDArray[np.int64]) -> str:
 
 
 def _solid(shape: Shape) -> tuple[RigidBody | None, str]:
-    """Give the solid of a shape that is no mesh, or why there is none."""
+    """Return the solid of a shape that is no mesh, or why there is none."""
     if shape.kind not in _SOLIDS:
         return None, f"a shape of kind {quoted(shape.kind)} has no volume that could be told"
     try:
@@ -352,3 +355,52 @@ def _quaternion(rotation: Floats) -> Floats:
     from polhode._core import quaternion_from_matrix
 
     return quaternion_from_matrix(rotation)
+
+
+# Edges that turn by more are those of the part itself, not of a surface drawn in facets.
+_SMOOTH: Final = np.deg2rad(40.0)
+
+
+def sagitta(vertices: NDArray[np.float64], faces: NDArray[np.integer]) -> float:
+    r"""Return the largest height of an arc over the facets that stand for it.
+
+    Two facets of width w that meet at an angle θ (between their normals) are chords of one arc,
+    :math:`w = 2 r \sin(\theta/2)`, whose height over a chord is
+    :math:`r (1 - \cos(\theta/2)) = (w/2) \tan(\theta/4)`. Of unequal facets the wider one is taken. Edges
+    that turn by more than 40 degrees are taken for edges of the part.
+
+    Parameters
+    ----------
+    vertices : numpy.ndarray, shape (n, 3)
+    faces : numpy.ndarray, shape (m, 3)
+
+    Returns
+    -------
+    float
+        In the unit of the vertices; 0 where nothing is round.
+    """
+    # STL repeats its vertices: those in one place are one.
+    first, of = equal_rows(vertices)
+    places, triangles = vertices[first], of[faces]
+    corners = places[triangles]
+    areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    sizes = np.linalg.norm(areas, axis=1)
+    solid = sizes > 0.0
+    triangles, normals, sizes = triangles[solid], areas[solid] / sizes[solid, None], sizes[solid]
+    edges = np.sort(
+        np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1
+    )
+    owner = np.tile(np.arange(len(triangles)), 3)
+    order = np.lexsort((edges[:, 1], edges[:, 0]))
+    edges, owner = edges[order], owner[order]
+    pairs = np.flatnonzero((edges[1:] == edges[:-1]).all(axis=1))
+    if not pairs.size:
+        return 0.0
+    one, other = owner[pairs], owner[pairs + 1]
+    cosine = np.clip((normals[one] * normals[other]).sum(axis=1), -1.0, 1.0)
+    angle = np.arccos(cosine)
+    lengths = np.linalg.norm(places[edges[pairs, 1]] - places[edges[pairs, 0]], axis=1)
+    widths = np.maximum(sizes[one], sizes[other]) / np.maximum(lengths, np.finfo(float).tiny)
+    # Across the diagonal of a flat quadrilateral there is no angle.
+    heights = np.where(angle <= _SMOOTH, widths / 2.0 * np.tan(angle / 4.0), 0.0)
+    return float(heights.max(initial=0.0))

@@ -1,11 +1,8 @@
-"""MJCF, MuJoCo's format: ``<mujoco>`` with nested ``<body>`` elements and default classes.
-
-Sizes are half lengths. Angles are degrees unless the compiler says radians; the letters of ``eulerseq`` are
-axes of the turning frame in lower case, fixed ones in upper case, the other way round than here.
-"""
+"""MJCF, MuJoCo's format: nested ``<body>`` elements and default classes, as its compiler reads them."""
 
 from __future__ import annotations
 
+import os
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
@@ -13,25 +10,48 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from polhode import euler_angles
-from polhode._snippets import mjcf_tensor
+from polhode import RigidBody, euler_angles
+from polhode._core import rotate
 from polhode.errors import FileFormatError
-from polhode.files.xml_source import Edit, Element, remove_attribute, set_attribute
+from polhode.interop.programs import mjcf_tensor
+from polhode.io.xml_source import Edit, Element, remove_attribute, set_attribute
 from polhode.robots.edits import attribute, first_child, number_text
-from polhode.robots.mjcf_compiler import compiler_of, total_mass_of
-from polhode.robots.mjcf_meshes import matrix, mesh_shape
-from polhode.robots.mjcf_parts import copies, expand_includes
-from polhode.robots.model import WORLD, Inertial, Joint, Link, Place, Shape, numbers, unit
+from polhode.robots.model import (
+    WORLD,
+    Compiler,
+    Inertial,
+    Joint,
+    Link,
+    Place,
+    Shape,
+    numbers,
+    quoted,
+    scale,
+    unit,
+)
 from polhode.robots.sources import LimitError
-from polhode.robots.words import quoted
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from polhode.robots.sources import Sources
+    from numpy.typing import NDArray
 
-__all__ = ["links"]
+    from polhode.robots.model import Robot
+    from polhode.robots.sources import Sources
+    from polhode.robots.verdict import Verdict
+
+__all__ = [
+    "as_compiled",
+    "compiler_of",
+    "copies",
+    "expand_includes",
+    "legacy_solid",
+    "links",
+    "matrix",
+    "mesh_shape",
+    "total_mass_of",
+]
 
 _ORIENTATIONS = ("quat", "axisangle", "euler", "xyaxes", "zaxis")
 _HALF_LENGTHS = {"sphere": 1, "ellipsoid": 3, "box": 3, "cylinder": 2, "capsule": 2}
@@ -152,7 +172,7 @@ class _Reader:
         yield from self.below(body, inherited, key)
 
     def _joint(self, body: Element, name: str, above: str, key: str) -> Joint:
-        """Tell what moves a body: its joints, else nothing."""
+        """Return what moves a body: its joints, else nothing."""
         free = [*self.members(body, "freejoint", Place.here(), None)]
         joints = [*free, *self.members(body, "joint", Place.here(), None)]
         if not joints:
@@ -163,7 +183,7 @@ class _Reader:
     def members(
         self, parent: Element, tag: str, place: Place, inherited: str | None, problem: str = ""
     ) -> Iterator[Member]:
-        """Give the elements of a body or the world, those in frames too."""
+        """Return the elements of a body or the world, those in frames too."""
         for child in parent.children:
             if child.tag == tag:
                 yield Member(child, place, inherited, problem)
@@ -175,14 +195,14 @@ class _Reader:
                 yield from self._copied(child, tag, Member(child, place, inherited, problem))
 
     def _step(self, element: Element, attributes: dict[str, str]) -> tuple[Place, str]:
-        """Give a frame, and what is wrong with it: that ends the verdict of what stands in it alone."""
+        """Return a frame, and what is wrong with it: that ends the verdict of what stands in it alone."""
         try:
             return self._place(element, attributes), ""
         except FileFormatError as error:
             return Place.here(), str(error)
 
     def _copied(self, replicate: Element, tag: str, first: Member) -> Iterator[Member]:
-        """Give the elements of every copy; bodies once, as they are the same in all."""
+        """Return the elements of every copy; bodies once, as they are the same in all."""
         attributes = replicate.attributes
         turn = {"pos": attributes.get("offset", "0 0 0"), "euler": attributes.get("euler", "0 0 0")}
         step, fault = self._step(replicate, turn)
@@ -250,7 +270,7 @@ class _Reader:
         yield from self.below(frame.element, inherited, above)
 
     def everything(self, parent: Element, tag: str, inherited: str | None) -> Iterator[Member]:
-        """Give every body, or every frame, below a body or the world."""
+        """Return every body, or every frame, below a body or the world."""
         for child in parent.children:
             if child.tag not in ("body", "frame", "replicate"):
                 continue
@@ -394,3 +414,211 @@ def _rewrite(body: Element, declared: Element | None, source: bytes, new: Inerti
     edits += attribute(source, declared, "pos", position)
     edits += attribute(source, declared, "mass", repr(new.mass))
     return edits
+
+
+# Below it MuJoCo refuses the mass and the moments of what moves.
+_LEAST = 1e-15
+
+
+def compiler_of(compilers: Sequence[Element]) -> Compiler:
+    """Read what the ``<compiler>`` elements of a model say; the last word counts."""
+    least = [_number(compilers, name) for name in ("boundmass", "boundinertia")]
+    texts = [each.attributes.get("balanceinertia") for each in compilers]
+    return Compiler(least[0], least[1], next((t for t in reversed(texts) if t), "false") == "true")
+
+
+def total_mass_of(compilers: Sequence[Element]) -> float:
+    """Return the mass that ``settotalmass`` sets for all bodies together; 0 where it does not."""
+    return max(_number(compilers, "settotalmass"), 0.0)
+
+
+def as_compiled(robot: Robot, verdicts: Sequence[Verdict]) -> list[Verdict]:
+    """Put into the verdicts of inferred bodies what the compiler makes of them."""
+    pairs = list(zip(robot.links, verdicts, strict=True))
+    if not (robot.total_mass or any(link.compiler for link in robot.links)):
+        return list(verdicts)
+    found = [_bounded(link.compiler, verdict) if link.compiler else verdict for link, verdict in pairs]
+    masses = [_mass(link, verdict) for link, verdict in zip(robot.links, found, strict=True)]
+    total = sum(mass for mass in masses if mass is not None)
+    if not (robot.total_mass and total > 0.0):
+        return found
+    if None in masses:
+        unknown = robot.links[masses.index(None)].name
+        return [_told(v, f"settotalmass would scale it: the mass of {unknown} is not known") for v in found]
+    factor = robot.total_mass / total
+    return [
+        _told(v, f"times {factor:.4g} by settotalmass", v.mass * factor, np.asarray(v.moments) * factor)
+        if v.mass is not None and v.moments is not None
+        else v
+        for v in found
+    ]
+
+
+def _number(compilers: Sequence[Element], name: str) -> float:
+    value = 0.0
+    for each in compilers:
+        if name in each.attributes:
+            value = float(numbers(each, each.attributes[name], 1, name)[0])
+    return value
+
+
+def _bounded(compiler: Compiler, verdict: Verdict) -> Verdict:
+    """Raise what is less than the bounds, and balance moments that break the triangle inequality."""
+    is_empty = verdict.verdict == "missing" and min(compiler.mass, compiler.moment) > _LEAST
+    if not is_empty and (verdict.verdict != "inferred" or verdict.mass is None):
+        return verdict
+    before = np.zeros(3) if is_empty or verdict.moments is None else np.asarray(verdict.moments)
+    mass = max(0.0 if is_empty else float(verdict.mass or 0.0), compiler.mass)
+    moments = np.maximum(before, compiler.moment)
+    is_balanced = compiler.is_balanced and 2.0 * moments.max() > moments.sum()
+    moments = np.full(3, moments.mean()) if is_balanced else np.sort(moments)
+    if not is_empty and mass == verdict.mass and np.array_equal(moments, before):
+        return verdict
+    if is_empty:
+        verdict = verdict._replace(verdict="inferred", reason="", better=None)
+    return _told(verdict, "by boundmass and boundinertia of the compiler", mass, moments)
+
+
+def _mass(link: Link, verdict: Verdict) -> float | None:
+    """Return the mass of a body as it is before ``settotalmass``; None where it is not known."""
+    if verdict.mass is None and verdict.verdict in ("none", "missing"):
+        return link.compiler.mass if link.compiler else 0.0
+    if verdict.mass is None:
+        return None
+    return max(verdict.mass, link.compiler.mass) if link.compiler else verdict.mass
+
+
+def _told(verdict: Verdict, words: str, mass: float | None = None, moments: Any = None) -> Verdict:
+    """Add words, and numbers where they are given, to the verdict of an inferred body."""
+    if verdict.verdict != "inferred":
+        return verdict
+    reason = ", ".join(part for part in (verdict.reason, words) if part)
+    if mass is None:
+        return verdict._replace(reason=reason)
+    return verdict._replace(reason=reason, mass=mass, moments=moments)
+
+
+def matrix(quaternion: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the rotation of a unit quaternion, scalar last."""
+    return np.stack([rotate(quaternion, axis) for axis in np.eye(3)], axis=-1)
+
+
+def mesh_shape(
+    geom: Element,
+    place: Place,
+    mesh: Element,
+    attributes: dict[str, str],
+    address: str,
+    density: float,
+    mass: float | None,
+    *,
+    weighs: bool,
+) -> Shape:
+    """Return the shape of a geom that is a mesh.
+
+    MuJoCo moves the vertices by minus `refpos`, turns them by the inverse of `refquat`, and then scales them.
+
+    Parameters
+    ----------
+    geom, mesh : Element
+    place : Place
+        Of the geom, in its body.
+    attributes : dict
+        Of the mesh, with those of its class.
+    address : str
+        Of its file; "" where the model lists the vertices.
+    density : float
+    mass : float, optional
+    weighs : bool
+        Whether the inertia of the body is taken from it, so that `inertia` of the mesh counts.
+    """
+    factors = scale(mesh, attributes.get("scale", "1"))
+    counting = attributes.get("inertia", "legacy") if weighs else ""
+    kind = "mesh" if address else "mesh without a file"
+    kind = "mesh, hollow" if counting == "shell" else kind
+    shift = numbers(mesh, attributes.get("refpos", "0 0 0"), 3, "refpos")
+    w, x, y, z = numbers(mesh, attributes.get("refquat", "1 0 0 0"), 4, "refquat")
+    back = matrix(unit(mesh, np.array([x, y, z, w]))).T
+    if len(set(factors)) > 1 and not np.array_equal(back, np.eye(3)):
+        kind = "mesh, turned by refquat and scaled unevenly"
+    inner = Place(back, -np.array(factors) * (back @ shift))
+    return Shape(
+        kind, factors, place.then(inner), "collision", address, density, mass, geom.where, counting=counting
+    )
+
+
+def legacy_solid(vertices: NDArray[np.float64], faces: NDArray[np.integer]) -> RigidBody:
+    """Return the matter of density 1 that MuJoCo takes a mesh for with ``inertia="legacy"``, its default.
+
+    The tetrahedra from the centroid of the surface to its triangles all count as full, whichever way they are
+    wound: twice where they overlap, as where a mesh is not convex. From their centre of mass new tetrahedra
+    are made, whose volumes and moments about that point count.
+    """
+    corners = vertices[faces]
+    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    middle = areas @ corners.mean(axis=1) / areas.sum()
+    volumes = _volumes(corners - middle)
+    center = middle + volumes @ (corners - middle).sum(axis=1) / 4.0 / volumes.sum()
+    about = corners - center
+    volumes = _volumes(about)
+    # With one corner at the point, ∫ x xᵀ dV = V/20 (Σ a aᵀ + (Σ a)(Σ a)ᵀ) over the other three.
+    sums = about.sum(axis=1)
+    second = np.einsum("t,tki,tkj->ij", volumes, about, about) + np.einsum("t,ti,tj->ij", volumes, sums, sums)
+    second /= 20.0
+    tensor = np.trace(second) * np.eye(3) - second
+    return RigidBody(float(volumes.sum()), (tensor + tensor.T) / 2.0, center)
+
+
+def _volumes(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the volumes of the tetrahedra from the origin to triangles, all positive."""
+    heights = np.cross(corners[:, 0], corners[:, 1])
+    found: NDArray[np.float64] = np.abs((heights * corners[:, 2]).sum(axis=1)) / 6.0
+    return found
+
+
+def expand_includes(root: Element, folder: Path, sources: Sources) -> None:
+    """Put the elements of included files where the ``<include>`` stands, as MuJoCo does before it reads.
+
+    Parameters
+    ----------
+    root : Element
+        Of the model; it is changed.
+    folder : pathlib.Path
+        Of the model's file, where the names of all its included files start.
+    sources : Sources
+    """
+    included: set[str] = set()
+    waiting = [root]
+    while waiting:
+        element = waiting.pop()
+        children: list[Element] = []
+        unread = list(reversed(element.children))
+        while unread:
+            child = unread.pop()
+            if child.tag != "include":
+                children.append(child)
+                continue
+            name = child.attributes.get("file", "")
+            if not name:
+                raise FileFormatError(f"{child.where}: <include> without file; name one")
+            path = sources.locate(name, folder, child)
+            # MuJoCo knows a file by its name: links to one file are files of their own.
+            if (called := os.path.normpath(path)) in included:
+                raise FileFormatError(
+                    f"{child.where}: {name} is included twice; MuJoCo allows it once: leave one of them out"
+                )
+            included.add(called)
+            unread += reversed(sources.read(path, name, child).children)
+        element.children = children
+        waiting += children
+
+
+def copies(replicate: Element) -> int:
+    """Return how many copies a ``<replicate>`` asks for."""
+    text = replicate.attributes.get("count")
+    (count,) = numbers(replicate, text, 1, "count")
+    if count != int(count) or count < 1:
+        raise FileFormatError(
+            f"{replicate.where}: count is {quoted(text)} where a whole number from 1 has to stand"
+        )
+    return int(count)

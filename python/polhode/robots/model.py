@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 import numpy as np
 
 from polhode.errors import FileFormatError
-from polhode.robots.words import quoted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -16,7 +15,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from polhode.files.xml_source import Edit, Element
+    from polhode.io.xml_source import Edit, Element
 
     Floats = NDArray[np.float64]
 
@@ -30,7 +29,9 @@ __all__ = [
     "Robot",
     "Shape",
     "numbers",
+    "quoted",
     "scale",
+    "shortened",
     "unit",
 ]
 
@@ -46,7 +47,7 @@ class Place(NamedTuple):
 
     @classmethod
     def here(cls) -> Place:
-        """Give the frame itself."""
+        """Return the frame itself."""
         return cls(np.eye(3), np.zeros(3))
 
     def then(self, inner: Place) -> Place:
@@ -281,7 +282,7 @@ def scale(element: Element, text: str) -> tuple[float, ...]:
 
 
 def unit(element: Element, vector: Floats) -> Floats:
-    """Give the direction of a vector, or the quaternion of a rotation, of length 1.
+    """Return the direction of a vector, or the quaternion of a rotation, of length 1.
 
     Raises
     ------
@@ -295,3 +296,15 @@ def unit(element: Element, vector: Floats) -> Floats:
     scaled = np.ldexp(vector, -int(np.frexp(largest)[1])) if not 1e-100 < largest < 1e100 else vector
     direction: Floats = scaled / np.linalg.norm(scaled)
     return direction
+
+
+def shortened(text: str, most: int = 200) -> str:
+    """Return a text, or its beginning and how long it is."""
+    return text if len(text) <= most else f"{text[:most]}... ({len(text)} characters)"
+
+
+def quoted(text: str | None, most: int = 80) -> str:
+    """Return a text between quotes alike; None where there is none."""
+    if text is None or len(text) <= most:
+        return repr(text)
+    return f"{text[:most]!r}... ({len(text)} characters)"

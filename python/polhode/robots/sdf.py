@@ -6,27 +6,45 @@ import re
 from collections import Counter
 from contextlib import suppress
 from dataclasses import replace
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 
 import numpy as np
 
 from polhode._core import rotate
 from polhode.errors import FileFormatError
-from polhode.files.xml_source import Edit, Element
+from polhode.io.xml_source import Edit, Element
+from polhode.robots import urdf
 from polhode.robots.edits import first_child, indented, number_text, text_of
-from polhode.robots.model import WORLD, Inertial, Joint, Link, Place, Shape, numbers, scale, unit
-from polhode.robots.sdf_include import included, is_true
-from polhode.robots.sdf_include import text_of as _text
+from polhode.robots.model import (
+    WORLD,
+    Inertial,
+    Joint,
+    Link,
+    Place,
+    Shape,
+    numbers,
+    quoted,
+    scale,
+    shortened,
+    unit,
+)
 from polhode.robots.urdf import LinkReader, forms, roll_pitch_yaw, tensor_text
-from polhode.robots.words import quoted
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
     from polhode.robots.sources import Sources
 
-__all__ = ["links"]
+    Reader = Callable[[Element, Sources, "Scope"], Iterator[Link]]
+
+__all__ = [
+    "check_version",
+    "child_text",
+    "included",
+    "is_true",
+    "links",
+]
 
 _WATER = "1000"
 _SETS = {
@@ -142,7 +160,7 @@ def _link(element: Element, sources: Sources, scope: Scope) -> Link:
 
 
 def _joint(element: Element, scope: Scope) -> Joint:
-    parent, child = (_text(element, tag) for tag in ("parent", "child"))
+    parent, child = (child_text(element, tag) for tag in ("parent", "child"))
     ends = (name if name == WORLD else scope.path + name for name in (parent, child))
     return Joint(element.attributes.get("name", ""), element.attributes.get("type", ""), *ends)
 
@@ -234,8 +252,8 @@ def _shape(element: Element, form: Element, role: Literal["collision", "visual"]
         size = tuple(x for name, count in _SIZES[form.tag] for x in _value(form, name, count))
         return Shape(form.tag, size, place, role, where=form.where)
     if form.tag == "mesh" and form.find("submesh") is None:
-        factors = scale(form.find("scale") or form, _text(form, "scale") or "1")
-        address = _text(form, "uri") or _text(form, "filename")  # as it is called in SDF 1.2
+        factors = scale(form.find("scale") or form, child_text(form, "scale") or "1")
+        address = child_text(form, "uri") or child_text(form, "filename")  # as it is called in SDF 1.2
         return Shape("mesh", factors, place, role, mesh=address, where=form.where)
     kind = form.tag if form.tag != "mesh" else "part of a mesh"
     return Shape(kind, (), place, role, where=form.where)
@@ -278,3 +296,111 @@ def _rewrite(link: Element, declared: Element | None, source: bytes, new: Inerti
 
 def _inertia(texts: dict[str, str]) -> str:
     return "<inertia>" + "".join(f"<{n}>{t}</{n}>" for n, t in texts.items()) + "</inertia>"
+
+
+# What nearly every world of Gazebo includes, from its own folders: lights, and a static plane.
+_WITHOUT_LINKS: Final = frozenset({"sun", "ground_plane"})
+_ROOTS: Final = frozenset({"sdf", "robot", "gazebo", "world", "model"})
+
+
+def included(include: Element, sources: Sources, scope: Scope, read_links: Reader) -> Iterator[Link]:
+    """Read the links of an included model; one that is not found is a link that cannot be read.
+
+    Parameters
+    ----------
+    include : Element
+    sources : Sources
+    scope : Scope
+        Where it stands.
+    read_links : callable
+        Reads those below an element.
+    """
+    uri = child_text(include, "uri")
+    if uri.startswith(("http://", "https://")):
+        sources.notes[f"{shortened(uri)} is not judged: nothing is fetched from a network"] = None
+        return
+    try:
+        path = _located(include, uri, sources, scope.folder)
+        root = sources.read(path, uri, include)
+        if root.tag == "mujoco":
+            sources.notes[f"{shortened(uri)} is not judged: it is MJCF, to be checked for itself"] = None
+            return
+        if root.tag not in _ROOTS:
+            found = f"the root of {shortened(uri)} is <{shortened(root.tag)}>"
+            raise FileFormatError(f"{include.where}: {found}, not <sdf> or <robot>; check the file")
+        check_version(root, f"{include.where}: {shortened(uri)}")
+    except FileFormatError as error:
+        if uri.removeprefix("model://").strip("/") in _WITHOUT_LINKS:
+            sources.notes[f"{shortened(uri)} is not judged: Gazebo's own, of which nothing moves"] = None
+            return
+        name = sources.name(scope.prefix, f"(include of {include.where})", include)
+        is_static = scope.is_static or is_true(include, "static")
+        yield Link(name, include.line, None, str(error), file=include.file, is_static=is_static)
+        return
+    with sources.inside(path, uri, include):
+        model = next(root.descendants("model"), root)
+        name = child_text(include, "name") or model.attributes.get("name", "")
+        own = "" if is_true(include, "merge", include.attributes) or not name else f"{name}::"
+        inner = scope._replace(
+            folder=path.parent,
+            prefix=sources.prefix(scope.prefix + own),
+            path=scope.path + own,
+            is_static=scope.is_static or is_true(include, "static"),
+            is_named=True,
+        )
+        if root.tag == "robot":
+            for link in urdf.links(root, sources, path.parent, inner.prefix, inner.path):
+                yield replace(link, is_static=inner.is_static)
+        else:
+            yield from read_links(root, sources, inner)
+
+
+def check_version(root: Element, name: str) -> None:
+    """Refuse SDF before 1.2, whose root is ``<gazebo>`` as in 1.2: its values are attributes."""
+    if root.tag == "gazebo" and root.attributes.get("version", "1.0") in ("1.0", "1.1"):
+        raise FileFormatError(
+            f"{name}: is SDF before 1.2, whose values are attributes; export it as SDF 1.2 or later"
+        )
+
+
+def _located(include: Element, uri: str, sources: Sources, folder: Path) -> Path:
+    """Find the file that an address means: itself, or the newest that a model's folder offers."""
+    path, fault = sources.addresses.find(uri, folder)
+    if path is None and not fault and "://" not in uri:  # the bare name of a model in a folder of models
+        path, fault = sources.addresses.find(f"model://{uri}", folder)
+    if path is not None and path.is_dir():
+        home = path
+        path, fault = sources.addresses.find("model.config", home)
+        if path is not None:
+            path, fault = sources.addresses.find(_newest(sources.read(path, str(path), include), path), home)
+        elif not fault:
+            path, fault = sources.addresses.find("model.sdf", home)
+    if path is None or not path.is_file():
+        reason = fault or "was not found; name the folder that holds it with --packages"
+        raise FileFormatError(f"{include.where}: {shortened(uri)} {reason}")
+    return path
+
+
+def child_text(parent: Element, tag: str) -> str:
+    """Return the text of a child; "" where there is none."""
+    element = parent.find(tag)
+    return element.text.strip() if element is not None else ""
+
+
+def is_true(parent: Element, tag: str, attributes: dict[str, str] | None = None) -> bool:
+    """Return whether a child, or an attribute, says yes."""
+    text = child_text(parent, tag) if attributes is None else attributes.get(tag, "")
+    return text.lower() in ("true", "1")
+
+
+def _newest(root: Element, config: Path) -> str:
+    """Return the name of the newest file that a ``model.config`` offers."""
+    offered = sorted(root.all("sdf"), key=_version)
+    if not offered:
+        raise FileFormatError(f"{config}: names no <sdf>; add the name of its file")
+    return offered[-1].text.strip()
+
+
+def _version(sdf: Element) -> tuple[int, ...]:
+    numbers = sdf.attributes.get("version", "0").split(".")
+    return tuple(int(number) if number.isdecimal() and len(number) < 10 else 0 for number in numbers)

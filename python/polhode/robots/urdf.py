@@ -12,7 +12,7 @@ import numpy as np
 from polhode import euler_angles
 from polhode._core import rotate
 from polhode.errors import FileFormatError
-from polhode.files.xml_source import Edit, Element, blanks_of
+from polhode.io.xml_source import Edit, Element, blanks_of
 from polhode.robots.edits import attribute, first_child, indented, number_text
 from polhode.robots.model import WORLD, Inertial, Joint, Link, Place, Shape, numbers, scale
 
@@ -95,7 +95,7 @@ def links(
 
 
 def _oddities(link: Element, met: set[str]) -> Iterator[str]:
-    """Tell what is written for a link and not read; `met` are the names of the links before it."""
+    """Return what is written for a link and not read; `met` are the names of the links before it."""
     name = link.attributes.get("name", "")
     if name in met:
         yield f"{link.where}: link {name!r} again; parsers refuse two links of one name: rename one"
@@ -118,7 +118,7 @@ def _end(joint: Element, tag: str) -> str:
 
 
 def forms(link: Element) -> Iterator[tuple[Literal["collision", "visual"], Element, Element]]:
-    """Give the shapes of a link: what each serves for, its element and that of its form, as ``<box>``."""
+    """Return the shapes of a link: what each serves for, its element and that of its form, as ``<box>``."""
     roles: tuple[Literal["collision", "visual"], ...] = ("collision", "visual")
     for role in roles:
         for element in link.all(role):

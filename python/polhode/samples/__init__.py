@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from polhode.errors import PolhodeError
-from polhode.files.reading import status_of
+from polhode.io.reading import status_of
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -37,7 +37,7 @@ _ABOUT: Final = {
 
 
 def names() -> tuple[str, ...]:
-    """Give the names of the files.
+    """Return the names of the files.
 
     Examples
     --------
@@ -64,7 +64,7 @@ def about(name: str) -> str:
 
 
 def path(name: str) -> Path:
-    """Give the path of a file, for functions that read one.
+    """Return the path of a file, for functions that read one.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def copy(folder: str | PathLike[str]) -> tuple[Path, ...]:
     PolhodeError
         If a file of one of these names exists there with another content. Nothing is written then.
     """
-    from polhode.files.writing import write_bytes
+    from polhode.io.writing import write_bytes
 
     target = Path(folder)
     with suppress(FileNotFoundError):  # the folder is made

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polhode.symbolic.functions import function
 from polhode.symbolic.laws import (
     angular_acceleration,
     angular_momentum,
@@ -22,7 +21,7 @@ from polhode.symbolic.laws import (
     torque,
 )
 from polhode.symbolic.shapes import Shape, names, shape
-from polhode.symbolic.symbols import Symbols, symbols
+from polhode.symbolic.symbols import Symbols, function, symbols
 
 __all__ = [
     "Shape",

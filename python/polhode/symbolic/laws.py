@@ -281,7 +281,7 @@ def euler_rates(sequence: str = "ZXZ", frame: str = "body", angles: Any = None, 
 
 
 def _columns(sequence: str, frame: str, angles: Any) -> Any:
-    """Give the matrix of ω = J (rates): the axes about which the angles turn."""
+    """Return the matrix of ω = J (rates): the axes about which the angles turn."""
     _check_frame(frame)
     turns = _intrinsic(sequence, _given(angles))
     columns = [_axis(axis) for axis, _ in turns]
@@ -309,7 +309,7 @@ def _is_extrinsic(sequence: str) -> bool:
 
 
 def _intrinsic(sequence: str, angles: Any) -> list[tuple[int, Any]]:
-    """Give axes and angles in the order of the turning body's own axes."""
+    """Return axes and angles in the order of the turning body's own axes."""
     letters = _NAMES.get(sequence, sequence)
     upper = letters.upper()
     mixed = letters not in (upper, letters.lower())
@@ -322,7 +322,7 @@ def _intrinsic(sequence: str, angles: Any) -> list[tuple[int, Any]]:
 
 
 def _axis(axis: int) -> Any:
-    """Give a coordinate axis."""
+    """Return a coordinate axis."""
     return sympy.eye(3)[:, axis]
 
 

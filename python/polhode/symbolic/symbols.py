@@ -1,23 +1,37 @@
-"""The letters of the formulas."""
+"""The letters of the formulas, and functions of arrays made from expressions."""
 
 from __future__ import annotations
 
-from typing import Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from polhode._extras import require
+import numpy as np
 
-__all__ = ["Symbols", "positive", "real", "symbols", "sympy"]
+from polhode._optional import require
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = [
+    "Symbols",
+    "function",
+    "positive",
+    "real",
+    "symbols",
+    "sympy",
+]
 
 sympy: Final[Any] = require("sympy", extra="symbolic", purpose="polhode.symbolic")
 
 
 def positive(names: str) -> Any:
-    """Give symbols of positive numbers."""
+    """Return symbols of positive numbers."""
     return sympy.symbols(names, positive=True)
 
 
 def real(names: str) -> Any:
-    """Give symbols of real numbers."""
+    """Return symbols of real numbers."""
     return sympy.symbols(names, real=True)
 
 
@@ -74,7 +88,6 @@ def _vector(names: str) -> Any:
 
 
 _XX, _YY, _ZZ, _XY, _XZ, _YZ = real("I_xx I_yy I_zz I_xy I_xz I_yz")
-
 symbols: Final = Symbols(
     mass=positive("M"),
     moments=positive("I_1:4"),
@@ -96,3 +109,57 @@ symbols: Final = Symbols(
     axial_momentum=real("L_s"),
 )
 """The symbols of the theorems."""
+
+
+def function(expression: Any, arguments: Iterable[Any]) -> Callable[..., NDArray[np.float64]]:
+    """Turn an expression, a vector or a matrix into a numeric function of arrays.
+
+    Parameters
+    ----------
+    expression : sympy.Expr or sympy.Matrix
+    arguments : iterable of sympy.Symbol
+        Symbols in the order in which the function takes their values. They must include every symbol of the
+        expression.
+
+    Returns
+    -------
+    callable
+        Function of array_like values that broadcast to a shape (...). It returns an array of shape (...) for
+        an expression, (..., 3) for a vector and (..., 3, 3) for a matrix.
+
+    Examples
+    --------
+    >>> from polhode import symbolic
+    >>> cone = symbolic.shape("cone")
+    >>> tensor = symbolic.function(cone.inertia, cone.arguments)
+    >>> tensor(2.0, 1.0, [2.0, 4.0]).diagonal(axis1=1, axis2=2)
+    array([[0.6, 0.6, 0.6],
+           [1.5, 1.5, 0.6]])
+    """
+    if not hasattr(expression, "free_symbols"):
+        raise TypeError(
+            f"expression: expected an expression or a matrix of SymPy, got {type(expression).__name__}; "
+            "sympy.sympify makes one"
+        )
+    given = list(arguments)
+    is_matrix = hasattr(expression, "shape")
+    unknown = expression.free_symbols - set(given)
+    if unknown:
+        names = ", ".join(sorted(map(str, unknown)))
+        raise ValueError(
+            f"arguments: the expression also holds {names}; name them, or put numbers in their place"
+        )
+    elements = list(expression) if is_matrix else [expression]
+    made = sympy.lambdify(given, elements, modules="numpy", cse=True)
+    shape = [side for side in expression.shape if side > 1] if is_matrix else []
+
+    def evaluate(*values: ArrayLike) -> NDArray[np.float64]:
+        if len(values) != len(given):
+            raise TypeError(f"it takes {len(given)} values ({', '.join(map(str, given))}), got {len(values)}")
+        numbers = np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in values))
+        outer = numbers[0].shape if numbers else ()
+        found = [np.broadcast_to(element, outer) for element in made(*numbers)]
+        stacked: NDArray[np.float64] = np.stack(found, axis=-1).astype(float)
+        return stacked.reshape(*outer, *shape)
+
+    return evaluate

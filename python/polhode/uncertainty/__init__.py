@@ -3,17 +3,46 @@
 `RigidBody.sigma` gives the standard deviations of a body itself.
 """
 
-from polhode.uncertainty.joined import joined
-from polhode.uncertainty.ledger import Ledger, Part, Shares, Sigmas, ledger
-from polhode.uncertainty.motions import PeriodsLinear, PeriodsSigma
-from polhode.uncertainty.probabilities import (
-    AxisProbabilities,
-    ModeProbabilities,
-    axis_probabilities,
-    mode_probabilities,
-)
-from polhode.uncertainty.propagation import Propagated, propagate
-from polhode.uncertainty.ufloats import TenNumbers, to_ufloats
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from polhode.uncertainty.ledgers import Ledger, Part, Shares, Sigmas, ledger
+    from polhode.uncertainty.motion import PeriodsLinear, PeriodsSigma
+    from polhode.uncertainty.probabilities import (
+        AxisProbabilities,
+        ModeProbabilities,
+        axis_probabilities,
+        mode_probabilities,
+    )
+    from polhode.uncertainty.propagation import Propagated, propagate
+    from polhode.uncertainty.uncertain import TenNumbers, joined, to_ufloats
+else:
+
+    def __getattr__(name):
+        """Import a name when it is first used: the rooms below import single files of this one."""
+        from importlib import import_module
+
+        home = _HOMES.get(name)
+        if home is None:
+            raise import_module("polhode._hints").no_name(__name__, name, __all__)
+        value = globals()[name] = getattr(import_module(f"{__name__}.{home}"), name)
+        return value
+
+    def __dir__():
+        return __all__
+
+
+_HOMES = {
+    **dict.fromkeys(("Ledger", "Part", "Shares", "Sigmas", "ledger"), "ledgers"),
+    **dict.fromkeys(("PeriodsLinear", "PeriodsSigma"), "motion"),
+    **dict.fromkeys(
+        ("AxisProbabilities", "ModeProbabilities", "axis_probabilities", "mode_probabilities"),
+        "probabilities",
+    ),
+    **dict.fromkeys(("Propagated", "propagate"), "propagation"),
+    **dict.fromkeys(("TenNumbers", "joined", "to_ufloats"), "uncertain"),
+}
+"""The file of this room in which each public name stands."""
 
 __all__ = [
     "AxisProbabilities",

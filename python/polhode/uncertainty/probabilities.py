@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
+from polhode._format import short
 from polhode._hints import check_kind
-from polhode._repr import short
-from polhode._tangents import changes_in_principal_axes
-from polhode.uncertainty.motions import each_motion
+from polhode.uncertainty.motion import each_motion
+from polhode.uncertainty.variables import changes_in_principal_axes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -167,7 +167,7 @@ def mode_probabilities(motion: FreeMotion) -> ModeProbabilities:
 
 
 def both_positive(means: tuple[float, float], slopes: tuple[Floats, Floats]) -> float:
-    """Give the probability that two numbers are positive, jointly normal with these means.
+    """Return the probability that two numbers are positive, jointly normal with these means.
 
     Parameters
     ----------
@@ -201,5 +201,5 @@ def both_positive(means: tuple[float, float], slopes: tuple[Floats, Floats]) -> 
 
 
 def _below(x: float) -> float:
-    """Give the probability that a standard normal variable is below x."""
+    """Return the probability that a standard normal variable is below x."""
     return 0.5 * math.erfc(-x / math.sqrt(2.0))

@@ -92,8 +92,8 @@ pub(crate) fn trajectory<'py, M: ClosedForm>(
     class(py)?.call((), Some(&fields))
 }
 
-/// The class `polhode.trajectory.Trajectory`.
+/// The class `polhode.motion.trajectory.Trajectory`.
 fn class(py: Python<'_>) -> PyResult<&Bound<'_, PyType>> {
     static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
-    CLASS.import(py, "polhode.trajectory", "Trajectory")
+    CLASS.import(py, "polhode.motion.trajectory", "Trajectory")
 }

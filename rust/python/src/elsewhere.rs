@@ -35,13 +35,13 @@ pub(crate) fn is_any(given: &[Option<&Bound<'_, PyAny>>]) -> bool {
     given.iter().flatten().any(|object| may_be(object))
 }
 
-/// What a function of `polhode._elsewhere` makes of a call; nothing where the arrays are read as others are.
+/// What a function of `polhode.ensembles.lazy_arrays` makes of a call; nothing where the arrays are read as others are.
 pub(crate) fn handed_over<'py>(
     py: Python<'py>,
     function: &str,
     arguments: impl PyCallArgs<'py>,
     options: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Option<Bound<'py, PyAny>>> {
-    let found = (py.import("polhode._elsewhere")?.getattr(function)?).call(arguments, options)?;
+    let found = (py.import("polhode.ensembles.lazy_arrays")?.getattr(function)?).call(arguments, options)?;
     Ok((!found.is_none()).then_some(found))
 }

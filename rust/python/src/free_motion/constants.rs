@@ -30,13 +30,13 @@ impl PyFreeMotion {
     }
 }
 
-/// A named tuple of `polhode.free_motion`.
+/// A named tuple of `polhode.motion.free`.
 pub(super) fn tuple<'py>(
     py: Python<'py>,
     name: &str,
     parts: impl pyo3::call::PyCallArgs<'py>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    py.import("polhode.free_motion")?
+    py.import("polhode.motion.free")?
         .getattr(name)?
         .call1(parts)
 }
@@ -154,7 +154,7 @@ impl PyFreeMotion {
 
     /// The standard deviations of `periods`.
     fn _periods_sigma<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        (slf.py().import("polhode.uncertainty.motions")?).call_method1("periods_sigma", (slf,))
+        (slf.py().import("polhode.uncertainty.motion")?).call_method1("periods_sigma", (slf,))
     }
 
     /// Least and greatest angle between each principal axis and L, in radians, shape (..., 3, 2).

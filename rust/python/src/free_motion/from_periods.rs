@@ -161,7 +161,7 @@ impl PyRigidBody {
             "angular_momentum_direction",
             write_of(py, &direction, |&direction| direction)?,
         )?;
-        let room = py.import("polhode.uncertainty.motions")?;
+        let room = py.import("polhode.uncertainty.motion")?;
         let (given, uncertain) = (room
             .call_method1("start_from_periods", (motion.into_pyobject(py)?, given))?)
         .extract::<(Py<PyAny>, _)>()?;

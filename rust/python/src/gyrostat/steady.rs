@@ -100,7 +100,7 @@ impl PyGyrostatMotion {
     }
 }
 
-/// As `polhode.gyrostat.Equilibria`.
+/// As `polhode.motion.gyrostat.Equilibria`.
 fn table(py: Python<'_>, found: Equilibria) -> PyResult<Bound<'_, PyAny>> {
     let stack = |count: usize| vec![count];
     let all = Stack {
@@ -119,7 +119,7 @@ fn table(py: Python<'_>, found: Equilibria) -> PyResult<Bound<'_, PyAny>> {
         Meeting::Fold => "fold",
         Meeting::Pitchfork => "pitchfork",
     };
-    let module = py.import("polhode.gyrostat")?;
+    let module = py.import("polhode.motion.gyrostat")?;
     let bifurcations = module.getattr("Bifurcations")?.call1((
         write_words_of(py, &changes, word, "<U9")?,
         write_of(py, &changes, |one| one.direction)?,

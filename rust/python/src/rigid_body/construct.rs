@@ -191,7 +191,7 @@ impl PyRigidBody {
     /// repair : bool, optional
     ///     Whether to mend a mesh where there is need: weld corners, drop duplicate faces, turn faces so that
     ///     all are wound alike, fill holes. `provenance` then says "repaired";
-    ///     :func:`polhode.files.solid_from_file` tells what was done.
+    ///     :func:`polhode.io.solid_from_file` tells what was done.
     /// index_base : {1, 0}, optional
     ///     Number of the first vertex in an OBJ or plate file, to which its faces refer.
     /// masses : {"most_common", "average"}, optional
@@ -221,7 +221,7 @@ impl PyRigidBody {
     ///
     /// See Also
     /// --------
-    /// polhode.files : the readers, which also return vertices and faces.
+    /// polhode.io : the readers, which also return vertices and faces.
     #[staticmethod]
     #[pyo3(signature = (path, *, density=None, mass=None, length_unit=None, weld=0.0, closure=None, orient=false, union=false, repair=false, index_base=1, masses="most_common", progress=None))]
     #[expect(clippy::too_many_arguments, reason = "one for each of Python's")]
@@ -252,7 +252,7 @@ impl PyRigidBody {
         options.set_item("index_base", index_base)?;
         options.set_item("masses", masses)?;
         options.set_item("progress", progress)?;
-        py.import("polhode.files")?
+        py.import("polhode.io")?
             .call_method("body_from_file", (path,), Some(&options))
     }
 

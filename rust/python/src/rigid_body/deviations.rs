@@ -93,7 +93,7 @@ fn with_twin<'py>(
         return Ok(principal);
     };
     let py = principal.py();
-    let module = py.import("polhode._principal")?;
+    let module = py.import("polhode.principal")?;
     let linear = module.getattr("PrincipalLinear")?.call1((
         flags(py, found, &[3], |d, out| out.extend(d.moments_are_linear))?,
         flags(py, found, &[3], |d, out| out.extend(d.axes_are_linear))?,

@@ -143,7 +143,7 @@ impl PyRigidBody {
             }
             Some("hull") => {
                 let hull = py
-                    .import("polhode.files.hull")?
+                    .import("polhode.io.hull")?
                     .call_method1("hull", (vertices, faces))?
                     .cast_into::<PyArrayDyn<i64>>()?;
                 let hull = hull.readonly();

@@ -141,7 +141,7 @@ impl Outcome {
             write_of(py, &found, |found| found.1.phase.position)?,
             write_of(py, &found, |found| found.1.phase.velocity)?,
         );
-        py.import("polhode.events")?
+        py.import("polhode.motion.events")?
             .getattr("Events")?
             .call_method1("with_states", columns)
     }
@@ -318,11 +318,11 @@ fn array<'a, 'py, T: Item>(
     Ok(numbers.finish::<T>(shape)?.into_any())
 }
 
-/// `polhode.trajectory.Trajectory._of_run`.
+/// `polhode.motion.trajectory.Trajectory._of_run`.
 fn of_run(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
     static FUNCTION: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     let function = FUNCTION.get_or_try_init(py, || {
-        let class = py.import("polhode.trajectory")?.getattr("Trajectory")?;
+        let class = py.import("polhode.motion.trajectory")?.getattr("Trajectory")?;
         class.getattr("_of_run").map(Bound::unbind)
     })?;
     Ok(function.bind(py))

@@ -54,7 +54,7 @@ impl PyRigidBody {
         }
         all.set_item("density", density)?;
         all.set_item("mass", mass)?;
-        py.import("polhode._objects")?
+        py.import("polhode.interop.foreign_objects")?
             .call_method("body_from_mesh", (mesh,), Some(&all))
     }
 
@@ -101,7 +101,7 @@ impl PyRigidBody {
     ) -> PyResult<Bound<'py, PyAny>> {
         atoms
             .py()
-            .import("polhode._objects")?
+            .import("polhode.interop.foreign_objects")?
             .call_method1("body_from_atoms", (atoms, conformer, masses))
     }
 
@@ -110,7 +110,7 @@ impl PyRigidBody {
     /// Parameters
     /// ----------
     /// path : str or os.PathLike
-    ///     ``.json``: readable, after the schema in :mod:`polhode.files`; ``.npz``: arrays for NumPy.
+    ///     ``.json``: readable, after the schema in :mod:`polhode.io`; ``.npz``: arrays for NumPy.
     ///
     /// See Also
     /// --------
@@ -118,7 +118,7 @@ impl PyRigidBody {
     #[pyo3(signature = (path))]
     fn save<'py>(slf: &Bound<'py, Self>, path: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         slf.py()
-            .import("polhode.files")?
+            .import("polhode.io")?
             .call_method1("save_body", (slf, path))
     }
 
@@ -142,7 +142,7 @@ impl PyRigidBody {
     #[pyo3(signature = (path))]
     fn load<'py>(path: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         path.py()
-            .import("polhode.files")?
+            .import("polhode.io")?
             .call_method1("load_body", (path,))
     }
 
@@ -196,7 +196,7 @@ impl PyRigidBody {
     /// What a notebook shows: a table, and the ellipsoid of inertia as a drawing.
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         slf.py()
-            .import("polhode._notebook")?
+            .import("polhode.draw.html")?
             .call_method1("body_html", (slf,))
     }
 }

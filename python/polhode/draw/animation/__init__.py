@@ -1,0 +1,1 @@
+"""Moving pictures: pages and films; :mod:`polhode.animation` makes them."""

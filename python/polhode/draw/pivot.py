@@ -1,0 +1,93 @@
+"""What is drawn of a body with a fixed point: the pivot, and the way of its axis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from polhode import _core
+from polhode.errors import PolhodeError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from polhode import FreeMotion, GyrostatMotion, HeavyTop, Trajectory
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["Pivot", "path_of", "pivot_of", "top_of"]
+
+_GRAVITY: Final = "<Load: uniform_gravity>"
+_ROUNDING: Final = 64.0 * float(np.finfo(np.float64).eps)
+"""Radians that an attitude in degrees, or of rounded numbers, is off."""
+
+
+@dataclass(frozen=True)
+class Pivot:
+    """A fixed point, and what is seen of the motion about it.
+
+    Attributes
+    ----------
+    axis : numpy.ndarray, shape (3,)
+        Unit vector from the pivot toward the centre of mass, in the body frame.
+    down : numpy.ndarray, shape (3,)
+        Unit vector of gravity in space; -z where there is none.
+    limits : tuple of float
+        Of a heavy top the least and the greatest angle between the axis and the upward vertical.
+    path : str
+        Of a heavy top what its axis draws, see `path_of`.
+    """
+
+    axis: Floats
+    down: Floats
+    limits: tuple[float, ...]
+    path: str
+
+
+def top_of(trajectory: Trajectory) -> HeavyTop | None:
+    """Return top in closed form from the first state of a trajectory on; None where it is no heavy top."""
+    if not trajectory.pivoted or repr(trajectory.load) != _GRAVITY:
+        return None
+    gravity = trajectory.force()[0] / trajectory.body.mass
+    try:
+        return trajectory.body.heavy_top(trajectory.omega[0], trajectory.quaternion[0], gravity)
+    except (PolhodeError, ValueError):  # not symmetric about the line from the pivot to the centre of mass
+        return None
+
+
+def path_of(motion: HeavyTop) -> str:
+    """Return kind of path of a top's axis: ``HeavyTop.path``, but ``steady`` where it nods by rounding alone.
+
+    180 degrees are not a float in radians: a top that hangs straight down with them is off by 1e-16, and what
+    it draws has cusps of that size.
+    """
+    least, greatest = motion.nutation_limits
+    is_vertical = greatest <= _ROUNDING or np.pi - least <= _ROUNDING
+    return "steady" if is_vertical else str(motion.path)
+
+
+def pivot_of(trajectory: Trajectory, motion: FreeMotion | HeavyTop | GyrostatMotion | None) -> Pivot | None:
+    """Find what is drawn of the fixed point of a body; None for a body without one.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        Of one body.
+    motion : HeavyTop or other
+        The closed form of the same motion, where there is one.
+    """
+    if not trajectory.pivoted:
+        return None
+    center = trajectory.body.center_of_mass
+    arm = float(np.linalg.norm(center))
+    axis = center / arm if arm > 0.0 else trajectory.body.principal_about("origin").axes[:, 2]
+    limits: tuple[float, ...] = ()
+    path, gravity = "", np.zeros(3)
+    if isinstance(motion, _core.HeavyTop):
+        gravity, path = motion.gravity, path_of(motion)
+        limits = tuple(float(angle) for angle in motion.nutation_limits)
+    size = float(np.linalg.norm(gravity))
+    down = gravity / size if size > 0.0 else np.array([0.0, 0.0, -1.0])
+    return Pivot(axis, down, limits, path)

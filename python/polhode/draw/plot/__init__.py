@@ -1,0 +1,1 @@
+"""Pictures with matplotlib, by subject; :mod:`polhode.plot` names them."""

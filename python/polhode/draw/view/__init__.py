@@ -1,0 +1,1 @@
+"""Windows with pyvista, by subject; :mod:`polhode.view` names them."""

@@ -1,0 +1,170 @@
+"""CAD files read in a process of their own: OCCT ends the whole process on some damaged files.
+
+That process imports OCCT instead of this one, so that little time is lost. It writes what the file holds and
+then, one after the other, what solids near each other share: what came before it ended, or was ended, stays.
+What OCCT does with a damaged file cannot be counted: its process has limits in seconds of computing, and ends
+with the process that asked.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from threading import Event, Timer
+from typing import IO, TYPE_CHECKING, Final
+
+from polhode import errors
+from polhode.errors import FileFormatError, PolhodeError
+from polhode.io.cad_files import Pair, near_pairs, overlaps_told, volume_shared
+
+if TYPE_CHECKING:
+    from polhode.io.cad_files import CadFile
+
+__all__ = ["read_cad_apart"]
+
+_COMMAND: Final = ["-m", "polhode.io.cad_process"]
+_READING: Final = (4.0, 4.0)
+"""Seconds of computing in which a file is read, and those more for each megabyte of it."""
+_SHARING: Final = (5.0, 5.0)
+"""Seconds in which is looked for what solids share, and those more for each megabyte beyond the first."""
+_SET_DEATH_SIGNAL: Final = 1
+"""Linux's PR_SET_PDEATHSIG."""
+_STOPPED: Final = -signal.SIGPROF if hasattr(signal, "SIGPROF") else None
+"""Exit code of a process that has computed for too long."""
+
+
+def read_cad_apart(path: Path) -> CadFile:
+    """Read the solids of a STEP or IGES file, and see which of them share matter.
+
+    See :func:`polhode.io.cad_files.read_cad`.
+    """
+    if not sys.executable:  # within another program
+        from polhode.io.cad_files import read_cad
+
+        found = read_cad(path)
+        return replace(found, overlaps=overlaps_told(found, [], "OCCT was not started"))
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(place for place in sys.path if place)}
+    with subprocess.Popen(
+        [sys.executable, *_COMMAND, str(path), str(os.getpid())],
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+    ) as process:
+        try:
+            cad, pairs, is_ended = _answer(process, path)
+        except BaseException:
+            process.kill()
+            raise
+    code = process.returncode
+    fault = f"OCCT broke down when it looked for overlaps (exit code {code})" if code != 0 else ""
+    fault = f"OCCT took more than {_sharing(path):g} s to look for overlaps" if is_ended else fault
+    return replace(cad, overlaps=overlaps_told(cad, pairs, fault))
+
+
+def _answer(process: subprocess.Popen[bytes], path: Path) -> tuple[CadFile, list[Pair], bool]:
+    """Return what a file holds, the pairs that were looked at, and whether that came to its end."""
+    assert process.stdout is not None  # it is a pipe
+    try:
+        cad: CadFile | tuple[str, str] = pickle.load(process.stdout)
+    except (EOFError, pickle.UnpicklingError):
+        if process.wait() == _STOPPED:
+            raise FileFormatError(
+                f"{path}: OCCT has computed for more than {_reading(path):g} s on it, the most for "
+                f"{path.stat().st_size} bytes of file; export it again, or divide it"
+            ) from None
+        raise FileFormatError(
+            f"{path}: OCCT broke down on it (exit code {process.wait()}), as it does on damaged files; "
+            "export it again"
+        ) from None
+    if isinstance(cad, tuple):
+        kind, text = cad
+        raise getattr(errors, kind, PolhodeError)(text)
+    is_ended = Event()
+
+    def end() -> None:
+        is_ended.set()
+        process.kill()
+
+    limit = Timer(_sharing(path), end)
+    limit.start()
+    try:
+        pairs = _pairs_in(process.stdout)
+        process.wait()
+    finally:
+        limit.cancel()
+    return cad, pairs, is_ended.is_set()
+
+
+def _reading(path: Path) -> float:
+    first, more = _READING
+    return round(first + more * path.stat().st_size / 1e6, 1)
+
+
+def _sharing(path: Path) -> float:
+    first, more = _SHARING
+    return round(first + more * max(path.stat().st_size / 1e6 - 1.0, 0.0), 1)
+
+
+def _pairs_in(stream: IO[bytes]) -> list[Pair]:
+    """Read pairs until the stream ends, perhaps within one."""
+    pairs = []
+    while True:
+        try:
+            pairs.append(Pair(*pickle.load(stream)))
+        except (EOFError, pickle.UnpicklingError):
+            return pairs
+
+
+def _main(path: Path, parent: int) -> None:
+    """Write what a file holds, or what is wrong with it, on standard output, and then what solids share."""
+    _end_with_parent(parent)
+    out = os.dup(1)
+    os.dup2(2, 1)  # OCCT speaks on standard output
+    from polhode.io.cad_files import read_with_shapes
+
+    try:
+        cad, shapes = read_with_shapes(path, _limited)
+    except PolhodeError as error:
+        _send(out, (type(error).__name__, str(error)))
+        return
+    _send(out, cad)
+    for i, k in near_pairs(cad.parts):
+        _send(out, (i, k, volume_shared(shapes[i], shapes[k], cad.parts[k].moments.volume)))
+
+
+def _end_with_parent(parent: int) -> None:
+    """Let Linux end this process with the one that asked, even within OCCT, which lets no thread run.
+
+    Elsewhere the seconds of computing end it.
+    """
+    if sys.platform != "linux":
+        return
+    import ctypes
+
+    ctypes.CDLL(None).prctl(_SET_DEATH_SIGNAL, signal.SIGKILL, 0, 0, 0)
+    if os.getppid() != parent:  # it has ended already
+        os._exit(1)
+
+
+def _limited(path: Path | None) -> None:
+    """Let the system end this process after the seconds of computing that a file has; None: no limit."""
+    if hasattr(signal, "setitimer"):
+        signal.signal(signal.SIGPROF, signal.SIG_DFL)
+        signal.setitimer(signal.ITIMER_PROF, 0.0 if path is None else _reading(path))
+
+
+def _send(out: int, found: object) -> None:
+    """Write a pickle into a pipe, which takes it piece by piece."""
+    left = memoryview(pickle.dumps(found))
+    while left:
+        left = left[os.write(out, left) :]
+
+
+if __name__ == "__main__":
+    _main(Path(sys.argv[1]), int(sys.argv[2]))

@@ -1,0 +1,393 @@
+"""The solid that the mesh in a file bounds."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from contextlib import contextmanager, suppress
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
+
+import numpy as np
+
+from polhode import _core
+from polhode.errors import FileFormatError, MeshError, PolhodeError
+from polhode.io.loaded import Loaded, load
+from polhode.io.mesh import weld_within
+from polhode.io.repair import RepairStep, repaired, resolution_of, spanned_volume
+from polhode.units import metres_per
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from polhode._typing import SupportsSigma
+    from polhode.io.cad_files import CadFile, SolidPart
+    from polhode.io.mesh import Mesh
+
+    Number = float | _core.Uncertain | SupportsSigma
+
+__all__ = ["MeshSolid", "naming_file", "solid_from_file", "solid_of", "warn_of_overlaps"]
+
+_SMALL_FILE: Final = 1 << 28
+"""Bytes of a file that is read whole for a hint in an error."""
+_MOST_TRIED: Final = 300_000
+_CLOSURES: Final[tuple[Literal["caps", "hull"], ...]] = ("caps", "hull")
+"""Faces of a mesh that is repaired for a hint in an error."""
+_CHECKS, _WELDED, _CLOSURE, _CHANGE = 27, 28, 29, 30
+"""Places among the numbers of a body."""
+_REPAIRED: Final = 1 << 11
+_CAPS: Final = 1
+
+
+class MeshSolid(NamedTuple):
+    """A solid from a mesh file, and what the file holds.
+
+    Attributes
+    ----------
+    body : RigidBody
+        The solid.
+    format : str
+        As in :class:`Mesh`.
+    vertices : int or None
+        Number of vertices; None for a format that stores the three corners of every triangle (STL).
+    faces : int
+        How many triangles.
+    volume, area : float
+        In units of the result. The area is that of the triangles in the file, without triangles that were
+        added to close holes.
+    welded : int
+        Number of corners that were joined to others within the length `weld`.
+    components : object
+        The components of the mesh, as a report lists them; None for a mesh of one component.
+    parts : tuple of SolidPart
+        Of a CAD file: its solids, each at its place.
+    steps : tuple of RepairStep
+        What was done to a mesh that was repaired on request.
+    """
+
+    body: _core.RigidBody
+    format: str
+    vertices: int | None
+    faces: int
+    volume: float
+    area: float
+    welded: int
+    components: Any = None
+    parts: tuple[SolidPart, ...] = ()
+    steps: tuple[RepairStep, ...] = ()
+
+
+def solid_from_file(
+    path: str | os.PathLike[str],
+    *,
+    density: Number | None = None,
+    mass: Number | None = None,
+    scale: float | None = None,
+    weld: float = 0.0,
+    closure: Literal["caps", "hull"] | None = None,
+    orient: bool = False,
+    repair: bool = False,
+    index_base: int = 1,
+    progress: Callable[[float], object] | None = None,
+) -> MeshSolid:
+    """Make a solid from the mesh in a file; errors name the file.
+
+    Binary STL and binary PLY are read block by block, so that a file may be larger than the memory. Of a PLY
+    file only the vertices are kept in memory, since faces refer to them in any order. Other formats are read
+    into memory as a whole. The same holds if corners are welded within a length, or if holes are closed.
+
+    To find duplicate faces, a file that is read in blocks is read once more for every eight million
+    triangles. A component whose faces are wound inward is a cavity if it lies inside another component. This
+    is checked for meshes of up to a quarter of a million triangles. `RigidBody.provenance` lists the checks
+    that were made.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        See :func:`read_mesh`.
+    density, mass : float or Uncertain, optional
+        Exactly one of them.
+    scale : float, optional
+        Length of one unit of the coordinates, in the unit of the result. By default it is the unit of
+        the file in metres, if the file or its format states the unit, and 1 otherwise.
+    weld, index_base
+        See :func:`read_mesh`.
+    closure : {"caps", "hull"}, optional
+        How to close an open mesh, see :meth:`polhode.RigidBody.from_mesh`. By default an open mesh is an
+        error.
+    orient : bool
+        Whether to turn triangles that face inward. By default they are an error.
+    repair : bool
+        Whether to mend the mesh where there is need: weld corners, drop duplicate faces, turn faces so that
+        all are wound alike, and fill holes. ``MeshSolid.steps`` tells what was done. It takes the place of
+        `closure` and `orient`.
+    progress : callable, optional
+        A function that is called now and then with the fraction of the file that has been read.
+
+    Returns
+    -------
+    MeshSolid
+
+    Raises
+    ------
+    FileFormatError
+        If the file is not what its name says, damaged or empty.
+    MeshError
+        If the mesh does not bound a solid.
+    OSError
+        If the file cannot be read.
+    """
+    loaded = load(path, index_base=index_base)
+    warn_of_overlaps(loaded)
+    own = 1.0 if loaded.unit is None else metres_per(loaded.unit)
+    if scale is not None and scale != own and loaded.states_unit:
+        raise PolhodeError(
+            f"scale: {os.fspath(path)} says itself that its unit is {loaded.unit!r}; leave it out"
+        )
+    return solid_of(
+        loaded,
+        density=density,
+        mass=mass,
+        scale=own if scale is None else scale,
+        weld=weld,
+        closure=closure,
+        orient=orient,
+        repair=repair,
+        progress=progress,
+    )
+
+
+def solid_of(
+    loaded: Loaded,
+    *,
+    density: Number | None = None,
+    mass: Number | None = None,
+    scale: float = 1.0,
+    weld: float = 0.0,
+    closure: Literal["caps", "hull"] | None = None,
+    orient: bool = False,
+    union: bool = False,
+    repair: bool = False,
+    progress: Callable[[float], object] | None = None,
+) -> MeshSolid:
+    """Make the solid that the mesh of a loaded file bounds; see :func:`solid_from_file`.
+
+    With `union` components that overlap are joined first, see :mod:`polhode.io.union`.
+    """
+    file = loaded.path
+    asked = {"weld": weld != 0.0, "closure": closure, "orient": orient, "repair": repair}
+    if loaded.cad is not None:
+        return _cad_solid(loaded, loaded.cad, density, mass, {**asked, "union": union})
+    if repair:
+        for name in ("closure", "orient"):
+            if asked[name]:
+                raise PolhodeError(f"{name}: repair closes and orients by itself; leave one of the two out")
+        with naming_file(file):
+            first = _repaired_solid(loaded.mesh, density, mass, scale, weld)
+            return _united(loaded, first, weld, density, mass, scale) if union else first
+    joined = 0
+    if union:
+        mesh = weld_within(loaded.mesh, weld) if weld != 0.0 else loaded.mesh
+        joined = len(loaded.mesh.vertices) - len(mesh.vertices)
+        loaded, weld = _joined(loaded, mesh, orient), 0.0
+    if loaded.is_stream and weld == 0.0 and closure is None:
+        try:
+            with naming_file(file):
+                body, faces, volume, area = _core.stream_solid(
+                    str(file), scale=scale, density=density, mass=mass, orient=orient, progress=progress
+                )
+        except MeshError as error:
+            if file.stat().st_size <= _SMALL_FILE:
+                # Of a file that another reader refuses there is no way out to tell.
+                with suppress(FileFormatError):
+                    if error.law == "closed" and loaded.format == "binary STL":
+                        _offer_weld(error, loaded.mesh)
+                    _offer_repair(error, loaded.mesh, scale)
+            raise
+        return MeshSolid(body, loaded.format, None, faces, volume, area, 0)
+    mesh = loaded.mesh
+    corners = len(mesh.vertices)
+    if weld != 0.0:
+        mesh = weld_within(mesh, weld)
+    with np.errstate(over="ignore"):  # what is beyond float64 is refused as infinite, with its number
+        vertices = mesh.vertices * scale
+
+    def solid(density: Number | None, mass: Number | None = None) -> _core.RigidBody:
+        return _core.RigidBody.from_mesh(
+            vertices, mesh.faces, density=density, mass=mass, closure=closure, orient=orient
+        )
+
+    try:
+        with naming_file(file):
+            body = solid(density, mass)
+            volume = float(body.mass) / _value(density) if density is not None else float(solid(1.0).mass)
+            area = _core.surface_area(vertices, mesh.faces)
+    except MeshError as error:
+        _offer_weld(error, mesh)
+        if closure is None:
+            _offer_repair(error, mesh, scale)
+        raise
+    welded = joined + corners - len(mesh.vertices)
+    count = len(mesh.vertices)
+    return MeshSolid(body._welded(welded), mesh.format, count, len(mesh.faces), volume, area, welded)
+
+
+def warn_of_overlaps(loaded: Loaded) -> None:
+    """Warn of solids of CAD that share matter, for a caller who sees no notes."""
+    for line in () if loaded.cad is None else loaded.cad.overlaps:
+        warnings.warn(f"{loaded.path}: {line}", stacklevel=3)
+
+
+def _joined(loaded: Loaded, mesh: Mesh, orient: bool) -> Loaded:
+    """Return the file with the components of its mesh joined to one solid."""
+    from polhode.io.components import parts_of
+    from polhode.io.union import united
+
+    parts = parts_of(mesh.vertices, mesh.faces, most=len(mesh.faces))
+    with naming_file(loaded.path):
+        inward = next((part.name for part in parts if part.was_inward), None)
+        if inward is not None and not orient:
+            raise MeshError(
+                f"component {inward} of the mesh is inside out, and lies in no other as a cavity; reverse "
+                "the order of its vertices, or pass orient=True to turn it"
+            )
+        joined = united([(part.vertices, part.faces) for part in parts], mesh.format)
+    return replace(loaded, is_stream=False, _mesh=joined)
+
+
+def _cad_solid(
+    loaded: Loaded, cad: CadFile, density: Number | None, mass: Number | None, asked: Mapping[str, object]
+) -> MeshSolid:
+    """Return the body of the solids in a CAD file, which need no mending that a mesh may need."""
+    from polhode.io.cad_files import solids_of
+
+    name = next((name for name, value in asked.items() if value), None)
+    if name is not None:
+        raise PolhodeError(f"{name}: {loaded.path} holds solids, not a mesh; leave it out")
+    with naming_file(loaded.path):
+        body, parts = solids_of(cad, density, mass)
+    area = sum(part.moments.area for part in cad.parts) * 1e-6
+    faces, volume = sum(part.faces for part in cad.parts), sum(part.volume for part in parts)
+    return MeshSolid(body, loaded.format, None, faces, volume, area, 0, parts=parts)
+
+
+def _value(number: Number) -> float:
+    """Return the value of a number that may have a sigma."""
+    if isinstance(number, _core.Uncertain):
+        return float(number.value)
+    return float(number) if isinstance(number, float | int) else float(number.nominal_value)
+
+
+@contextmanager
+def naming_file(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Put the name of the file before the text of an error."""
+    try:
+        yield
+    except PolhodeError as error:
+        error.args = (f"{os.fspath(path)}: {error}",)
+        raise
+
+
+def _repaired_solid(
+    mesh: Mesh, density: Number | None, mass: Number | None, scale: float, weld: float
+) -> MeshSolid:
+    """Make the solid of a mesh that is repaired first; what nests in what is for the core to see."""
+    corners, area = len(mesh.vertices), _core.surface_area(mesh.vertices * scale, mesh.faces)
+    before, faces = spanned_volume(mesh), len(mesh.faces)
+    mended, done, welded, filled = repaired(mesh, weld)
+    vertices = mended.vertices * scale
+    body = _core.RigidBody.from_mesh(vertices, mended.faces, density=density, mass=mass, orient=True)
+    volume = float(_core.RigidBody.from_mesh(vertices, mended.faces, density=1.0, orient=True).mass)
+    last, steps = before, []
+    for name, what, after in done:
+        steps.append(RepairStep(name, what, 100.0 * (after - last) * scale**3 / volume))
+        last = after
+    if abs(volume - last * scale**3) > 1e-9 * volume:
+        change = 100.0 * (volume - last * scale**3) / volume
+        steps.append(
+            RepairStep("orient", "components that faced inward, and are no cavities, turned", change)
+        )
+    if steps:
+        has_filled = any(step.name == "fill" for step in steps)
+        closed = abs(filled) * np.sign(filled * last) * scale**3 if has_filled else None
+        body = _marked(body, welded, closed)
+    return MeshSolid(body, mesh.format, corners - welded, faces, volume, area, welded, steps=tuple(steps))
+
+
+def _marked(body: _core.RigidBody, welded: int, closed: float | None) -> _core.RigidBody:
+    """Return the body of a mesh that was repaired; `closed` is the change of volume by what was filled."""
+    numbers = np.array(body.__reduce__()[1][0], dtype=np.float64)
+    numbers[_CHECKS] = int(numbers[_CHECKS]) | _REPAIRED
+    numbers[_WELDED] = welded
+    if closed is not None:
+        numbers[_CLOSURE], numbers[_CHANGE] = _CAPS, closed
+    return _core.RigidBody._from_numbers(numbers, body._doubts())
+
+
+def _united(
+    loaded: Loaded, first: MeshSolid, weld: float, density: Number | None, mass: Number | None, scale: float
+) -> MeshSolid:
+    """Join the components of a mesh that was repaired first."""
+    mended, _, _, _ = repaired(loaded.mesh, weld)
+    joined = _joined(loaded, mended, orient=True)
+    solid = solid_of(joined, density=density, mass=mass, scale=scale)
+    change = 100.0 * (solid.volume - first.volume) / solid.volume
+    step = RepairStep("union", "components joined, so that what they share counts once", change)
+    provenance = first.body.provenance
+    closed = float(provenance.volume_change) if provenance.closure else None
+    return solid._replace(
+        body=_marked(solid.body, first.welded, closed), steps=(*first.steps, step), welded=first.welded
+    )
+
+
+def _offer_repair(error: MeshError, mesh: Mesh, scale: float) -> None:
+    """Offer what mends a mesh, where it does: repair, else the convex hull."""
+    if len(mesh.faces) > _MOST_TRIED:
+        return
+    if error.law == "closed":
+        _offer_what_closes(error, mesh, scale)
+    try:
+        steps = _repaired_solid(mesh, 1.0, None, scale, 0.0).steps
+    except (MeshError, ValueError):
+        with suppress(MeshError, ValueError, ModuleNotFoundError):
+            _core.RigidBody.from_mesh(mesh.vertices * scale, mesh.faces, density=1.0, closure="hull")
+            if error.law != "closed":  # of an open mesh the message offers it
+                error.offer('closure="hull" takes the convex hull instead')
+        return
+    change = sum(step.change for step in steps)
+    if [step.name for step in steps] == ["weld"] and "weld=" in str(error):
+        return  # which is offered by itself
+    if steps:
+        names = ", ".join(dict.fromkeys(step.name for step in steps))
+        error.offer(f"repair=True mends it ({names}; volume changed by {change:.2g} %)")
+
+
+def _offer_what_closes(error: MeshError, mesh: Mesh, scale: float) -> None:
+    """Take the closures out of the message that leave no solid."""
+    serving = []
+    for closure in _CLOSURES:
+        with suppress(MeshError, ValueError):
+            with suppress(ModuleNotFoundError):  # whether it would serve is not known
+                _core.RigidBody.from_mesh(mesh.vertices * scale, mesh.faces, density=1.0, closure=closure)
+            serving.append(f'"{closure}"')
+    if len(serving) < len(_CLOSURES):
+        every = 'close the mesh (closure="caps" or "hull"), or '
+        left = f"close the mesh (closure={serving[0]}), or " if serving else ""
+        error.args = (str(error).replace(every, left),)
+        error.way_out = error.way_out.replace(every, left)
+
+
+def _offer_weld(error: MeshError, mesh: Mesh) -> None:
+    """Offer to weld, as the first way out, where corners are closer than 32-bit coordinates resolve."""
+    in_range = not mesh.faces.size or (mesh.faces.min() >= 0 and mesh.faces.max() < len(mesh.vertices))
+    resolution = resolution_of(mesh)
+    if not (resolution > 0.0 and in_range):
+        return
+    try:
+        near = len(mesh.vertices) - len(weld_within(mesh, resolution).vertices)
+    except ValueError:
+        return
+    if near == 0:
+        return
+    lie, them = ("corner lies", "it") if near == 1 else ("corners lie", "them")
+    error.offer(f"{near} {lie} within {resolution:g} of another, weld={resolution:g} joins {them}")

@@ -1,0 +1,109 @@
+"""A mesh whose components have densities of their own, by their names."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from typing import TYPE_CHECKING
+
+from polhode import _core
+from polhode.errors import PolhodeError
+from polhode.io.components import groups_of, overlaps, parts_of, told
+from polhode.io.mesh import weld_within
+from polhode.io.mesh_solid import naming_file, solid_of
+from polhode.io.unpacked import inner_suffix, unpacked
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from polhode._typing import SupportsSigma
+    from polhode.io.components import Part
+    from polhode.io.loaded import Loaded
+
+    Number = float | _core.Uncertain | SupportsSigma
+
+__all__ = ["OVERLAPPING", "body_by_names", "body_of_parts", "named_parts"]
+
+OVERLAPPING = "components of several densities overlap: take what they share out of one of them"
+
+
+def named_parts(loaded: Loaded, scale: float, weld: float) -> list[Part]:
+    """Take the mesh of a file apart, its components by the names that the file gives them, else by numbers.
+
+    Parameters
+    ----------
+    loaded : Loaded
+    scale : float
+        Of the coordinates.
+    weld : float
+        See :func:`polhode.io.read_mesh`.
+    """
+    mesh = weld_within(loaded.mesh, weld) if weld != 0.0 else loaded.mesh
+    vertices = mesh.vertices * scale
+    groups = [name for name, count in loaded.groups for _ in range(count)]
+    parts = parts_of(vertices, mesh.faces, groups)
+    if len(parts) > 1 and inner_suffix(loaded.path) == ".obj":
+        with unpacked(loaded.path) as inside:
+            groups = groups_of(inside)
+        if len(groups) == len(mesh.faces):  # none fell together when corners did
+            return parts_of(vertices, mesh.faces, groups)
+    return parts
+
+
+def body_of_parts(parts: Sequence[Part], densities: Sequence[Number]) -> _core.RigidBody:
+    """Add components, each with its density; those that are uncertain are independent of one another."""
+    bodies = [
+        _core.RigidBody.from_mesh(part.vertices, part.faces, density=density)
+        for part, density in zip(parts, densities, strict=True)
+    ]
+    return sum(bodies[1:], start=bodies[0])
+
+
+def body_by_names(
+    loaded: Loaded,
+    densities: Mapping[str, Number],
+    *,
+    scale: float = 1.0,
+    weld: float = 0.0,
+    orient: bool = False,
+    progress: Callable[[float], object] | None = None,
+    **left_out: object,
+) -> _core.RigidBody:
+    """Make the body of a mesh with a density for each of its components; warn where these overlap.
+
+    Parameters
+    ----------
+    loaded : Loaded
+    densities : mapping of str to float or Uncertain
+        One for each component.
+    scale, weld, orient, progress
+        See :func:`polhode.io.mesh_solid.solid_of`.
+    **left_out
+        Its other options, which may not be given.
+    """
+    where = os.fspath(loaded.path)
+    if loaded.cad is not None:
+        raise PolhodeError(
+            f"density: {where} holds solids, which have the densities of their materials; give one number "
+            "for those without, or leave it out"
+        )
+    if (name := next((name for name, value in left_out.items() if value), None)) is not None:
+        raise PolhodeError(f"{name}: components have densities of their own, by their names; leave it out")
+    # What is wrong with the mesh as a whole is said first.
+    solid_of(loaded, density=1.0, scale=scale, weld=weld, orient=orient, progress=progress)
+    parts = named_parts(loaded, scale, weld)
+    names = [part.name for part in parts]
+    known = ", ".join(names[:12]) + (" …" if len(names) > 12 else "")
+    for name in densities:
+        if name not in names:
+            raise PolhodeError(
+                f"density: {where} has no component {name!r}; give one density for each of {known}"
+            )
+    absent = next((name for name in names if name not in densities), None)
+    if absent is not None:
+        raise PolhodeError(f"density: nothing is said of component {absent!r} of {where}; add it")
+    lines = told(overlaps(parts), sum(part.volume for part in parts))
+    for line in [*lines, *([OVERLAPPING] if lines else [])]:
+        warnings.warn(f"{where}: {line}", stacklevel=3)
+    with naming_file(loaded.path):
+        return body_of_parts(parts, [densities[name] for name in names])

@@ -1,0 +1,1 @@
+"""Motions: trajectories, closed forms, events, gyrostats."""

@@ -1,0 +1,1028 @@
+"""The motion of a body, or of a stack of them: what `simulate` returns."""
+
+from __future__ import annotations
+
+import operator
+from dataclasses import dataclass, field, fields
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal, cast
+
+import numpy as np
+
+from polhode import _core
+from polhode._hints import Hinting, no_attribute
+from polhode.motion.events import Events
+from polhode.motion.gyrostat import Wheel, wheel
+from polhode.motion.invariants import drift, lengths
+from polhode.results import AngularMomentum, Invariants, KineticEnergy, State
+
+if TYPE_CHECKING:
+    from os import PathLike
+    from pathlib import Path
+
+    from matplotlib.axes import Axes
+    from numpy.typing import ArrayLike, NDArray
+    from pandas import DataFrame
+    from pyvista import Plotter
+    from scipy.spatial.transform import Rotation
+    from xarray import Dataset
+
+    from polhode.draw.html import Shown
+    from polhode.errors import IntegrationError, PolhodeError
+    from polhode.results import MotionSensitivity
+    from polhode.uncertainty.motion import StateSigma
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["Trajectory"]
+
+_OF_THE_MOTION = ("omega", "attitude", "position", "velocity", "about")
+"""Arguments of a start that a motion has already."""
+_ROUNDING = 1e-12
+"""An angular momentum that differs by less, relative to its parts, is the same."""
+ROUNDING = 1e-12
+"""A moment that small, relative to the largest, is that of no wheel."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Trajectory(metaclass=Hinting):
+    """The motion of one body or of a stack at the times asked for.
+
+    Attributes
+    ----------
+    body : RigidBody
+        The body, or the stack of them.
+    t : numpy.ndarray, shape (T,)
+        Times; the first is the start. For a motion in closed form these are any times, in an array of any
+        shape, which then stands in place of (T,).
+    omega : numpy.ndarray, shape (..., T, 3)
+        Angular velocity of the body relative to space, components in the body frame.
+    quaternion : numpy.ndarray, shape (..., T, 4)
+        Attitude R_NB as (x, y, z, w), continuous in time.
+    position, velocity : numpy.ndarray, shape (..., T, 3)
+        Position and velocity of the point `about`, in space.
+    about : numpy.ndarray, shape (..., 3)
+        The point the motion refers to, in the body frame.
+    steps, evaluations : numpy.ndarray, shape (...)
+        Accepted steps and evaluations of the equations of motion.
+    load : Load or None
+        What acted on the body.
+    status : str or numpy.ndarray of str, shape (...)
+        How the run of each body ended: ``"complete"``; ``"event"``, at a terminal event; ``"failed"``;
+        ``"stopped"``, by Ctrl-C; or ``"not run"``, since another body failed first. States after the end are
+        NaN.
+    events : Events
+        The passages of the event functions through zero, as a table.
+    failures : tuple of PolhodeError
+        One error for each body that failed, with its ``row`` in the stack, and the ``time`` and ``state``
+        that were reached.
+    pivoted : bool
+        Whether the point `about` is fixed in space.
+    uncertain_start : tuple, FreeMotion, HeavyTop or None
+        The sigmas of the start. In most cases this is a tuple: the angular velocity and the attitude at the
+        first time, each as an `Uncertain`, or None if it was given without a sigma. For states of a motion in
+        closed form, the sigmas are those at t = 0. If the first time is not 0, this attribute is therefore
+        the motion itself. It is None for a trajectory that :meth:`resume` made from an uncertain one; its
+        :attr:`covariance` cannot be computed.
+    states : dict of str and numpy.ndarray, shape (..., T, k)
+        The states of the load, by name. Of a wheel it is the angular momentum ``J (Ω + a·ω)`` about its axis
+        a, with its moment of inertia J and its rate Ω relative to the body. Of a slug it is the angular
+        velocity, components in the body frame.
+    carried : tuple of numpy.ndarray, shapes (..., T, 3) and (..., T), or None
+        What the wheels, rotors and slugs of the load, or of a gyrostat, add to the body: first the angular
+        momentum in addition to ``I ω``, components in the body frame; then the energy in addition to
+        ``½ ω·I ω``. A rotor adds angular momentum, but no energy: see :meth:`kinetic_energy`. None if there
+        are none of these.
+    """
+
+    body: _core.RigidBody
+    t: Floats
+    omega: Floats
+    quaternion: Floats
+    position: Floats
+    velocity: Floats
+    about: Floats
+    steps: NDArray[np.int64]
+    evaluations: NDArray[np.int64]
+    load: _core.Load | None = field(default_factory=lambda: None)
+    status: Any = "complete"
+    events: Events = field(default_factory=Events.none)
+    failures: tuple[IntegrationError | PolhodeError, ...] = ()
+    pivoted: bool = False
+    uncertain_start: (
+        tuple[_core.Uncertain | None, _core.Uncertain | None] | _core.FreeMotion | _core.HeavyTop | None
+    ) = (None, None)
+    states: dict[str, Floats] = field(default_factory=dict)
+    carried: tuple[Floats, Floats] | None = field(default_factory=lambda: None)
+
+    @classmethod
+    def _of_run(cls, known: dict[str, Any]) -> Trajectory:
+        """Make the motion of a run; what is not in `known` is read from its ``_outcome`` when needed."""
+        motion = object.__new__(cls)
+        object.__setattr__(motion, "__dict__", known)
+        return motion
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """Get the attributes that few ask for from the outcome of the run."""
+            outcome = self.__dict__.get("_outcome")
+            if name == "carried":
+                value = self._carried_now()
+            elif outcome is not None and name in type(self).__dataclass_fields__:
+                value = getattr(outcome, name)
+            else:
+                raise no_attribute("Trajectory", name, dir(self))
+            self.__dict__[name] = value
+            return value
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return all attributes, for copy and pickle."""
+        held = {
+            name: self.__dict__[name]
+            for name in ("_within", "_was_loaded", "_given", "_began")
+            if name in self.__dict__
+        }
+        return held | {one.name: getattr(self, one.name) for one in fields(self)}
+
+    def __len__(self) -> int:
+        """Count the times."""
+        return len(self.t)
+
+    def __repr__(self) -> str:
+        shape = self.omega.shape[: -1 - self.t.ndim]
+        bodies = f"{'x'.join(map(str, shape))} bodies, " if shape else ""
+        count = self.t.size
+        span = f" from {self.t.flat[0]:.6g} to {self.t.flat[-1]:.6g}" if count else ""
+        ends = np.unique(self.status).tolist()
+        ended = f", {' or '.join(ends)}" if ends != ["complete"] else ""
+        return f"Trajectory({bodies}{count} times{span}{ended})"
+
+    @cached_property
+    def rotation(self) -> Rotation:
+        """The attitude as :class:`scipy.spatial.transform.Rotation`, shape (..., T); needs SciPy."""
+        from polhode._optional import require
+
+        transform = require("scipy.spatial.transform", extra=None, purpose="Trajectory.rotation")
+        rotation: Rotation = transform.Rotation.from_quat(self.quaternion)
+        return rotation
+
+    def kinetic_energy(self) -> KineticEnergy:
+        """Kinetic energy at every time, in parts that refer to the point `about`.
+
+        Returns
+        -------
+        KineticEnergy
+            Each part of shape (..., T). The rotational part includes the energy of wheels and slugs. It does
+            not include the energy of a rotor, of which only the momentum is known. For a body with a rotor
+            and no other load, ``½ ω·I ω`` stays constant. For a gyrostat in closed form the total is
+            :attr:`polhode.GyrostatMotion.kinetic_energy`.
+        """
+        found = self._bodies().kinetic_energy(
+            self.omega,
+            velocity=_core.rotate(self.quaternion, self.velocity, inverse=True),
+            about=self._reference(),
+        )
+        return (
+            found if self.carried is None else found._replace(rotational=found.rotational + self.carried[1])
+        )
+
+    def angular_momentum(self, frame: Literal["space", "body"] = "space") -> AngularMomentum:
+        """Angular momentum about the origin of space at every time.
+
+        Parameters
+        ----------
+        frame : {"space", "body"}
+            The frame whose axes the components refer to.
+
+        Returns
+        -------
+        AngularMomentum
+            Each part of shape (..., T, 3). The part ``spin`` includes the angular momentum of wheels, rotors
+            and slugs.
+        """
+        if frame not in ("space", "body"):
+            raise ValueError(f"frame: {frame!r} is not 'space' or 'body'")
+        in_body = self._bodies().angular_momentum(
+            self.omega,
+            velocity=_core.rotate(self.quaternion, self.velocity, inverse=True),
+            position=_core.rotate(self.quaternion, self.position, inverse=True),
+            about=self._reference(),
+        )
+        if self.carried is not None:
+            in_body = in_body._replace(spin=in_body.spin + self.carried[0])
+        if frame == "body":
+            return in_body
+        return AngularMomentum(*(_core.rotate(self.quaternion, part) for part in in_body))
+
+    def point(self, point: Literal["center_of_mass", "com", "origin"] | ArrayLike) -> Floats:
+        """Position in space of a point of the body at every time.
+
+        Parameters
+        ----------
+        point : {"center_of_mass", "origin"} or array_like, shape (..., 3)
+            The point in the body frame; ``"com"`` is the centre of mass too.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T, 3)
+        """
+        center = self.body.center_of_mass
+        words = {"center_of_mass": center, "com": center, "origin": np.zeros(3)}
+        if isinstance(point, str) and point not in words:
+            raise ValueError(f"point: {point!r} is not 'center_of_mass', 'origin' or a point of shape (..., 3)")
+        place = words[point] if isinstance(point, str) else _core.real_numbers(point, "point")
+        if place.shape[-1:] != (3,):
+            raise ValueError(f"point: expected shape (..., 3), got {place.shape}")
+        arm = place - self.about
+        return self.position + _core.rotate(self.quaternion, self._per_time(arm))
+
+    def invariants(self) -> Invariants:
+        """Return the conserved quantities of the motion, and how far the numbers have drifted from them.
+
+        Returns
+        -------
+        Invariants
+
+        Examples
+        --------
+        >>> from polhode import RigidBody
+        >>> body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
+        >>> kept = body.simulate([0, 50, 100], omega=(1.0, 0.1, 1.0), rtol=1e-13).invariants()
+        >>> bool(kept.energy_drift < 1e-11), bool(kept.angular_momentum_drift < 1e-11)
+        (True, True)
+        """
+        kinetic, potential = self.kinetic_energy().total, self._potential()
+        spin = self.angular_momentum().spin
+        energy = None if potential is None else kinetic + potential
+        kept = self._kept_directions()
+        along = None
+        if kept is not None:
+            along = spin if kept is True else np.einsum("...i,...i->...", spin, self._per_time(kept))
+
+        def drifted(values: Floats, size: Floats) -> Any:
+            stack = size.shape[: size.ndim - self.t.ndim]
+            if not self.t.size:
+                return np.zeros(stack)[()]
+            flat = (*stack, self.t.size)  # whatever the shape of t
+            return drift(values.reshape(*flat, *values.shape[size.ndim :]), size.reshape(flat))
+
+        return Invariants(
+            energy,
+            along,
+            None if potential is None else drifted(kinetic + potential, kinetic + np.abs(potential)),
+            None if along is None else drifted(along, lengths(spin)),
+        )
+
+    def state(self, index: int = -1) -> State:
+        """Return the state at one of the times, to go on from or to begin anew with.
+
+        Parameters
+        ----------
+        index : int
+            Which of the times; the last by default.
+
+        Returns
+        -------
+        State
+        """
+        if self.t.ndim == 0:  # of an exact motion, at one time
+            return State(self.omega, self.quaternion, self.position, self.velocity)
+        self._check_series("state")
+        if not -len(self.t) <= operator.index(index) < len(self.t):
+            raise IndexError(f"index: {index} is none of {len(self.t)} times")
+        at: list[Floats] = [
+            x[..., index, :] for x in (self.omega, self.quaternion, self.position, self.velocity)
+        ]
+        states = {name: values[..., index, :] for name, values in self.states.items()}
+        return State(at[0], at[1], at[2], at[3], states or None)
+
+    @staticmethod
+    def from_file(path: str | PathLike[str]) -> Trajectory:
+        """Read a motion that `save` wrote as ``.json`` or ``.npz``.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+
+        Returns
+        -------
+        Trajectory
+            With the same bits; without load and events, which the file does not hold.
+
+        Raises
+        ------
+        FileFormatError
+            For a file that is not such a motion.
+        """
+        from polhode.io.saved import read_motion
+
+        known, besides = read_motion(path)
+        motion = Trajectory(**known)
+        motion.__dict__.update(besides)
+        return motion
+
+    def euler_angles(
+        self,
+        sequence: str = "ZXZ",
+        singular: Literal["raise", "nan"] = "raise",
+        *,
+        unwrap: bool = False,
+        degrees: bool = False,
+    ) -> Floats:
+        """Euler angles of the attitude at every time.
+
+        Parameters
+        ----------
+        sequence : str
+            As in :mod:`polhode.euler_angles`; the default is the (phi, theta, psi) of Goldstein and Landau.
+        singular : {"raise", "nan"}
+            What to do at an attitude at which two of the angles are not defined; ``np.isnan`` of the result
+            is the mask of those.
+        unwrap : bool
+            Whether the first and the third angle are counted on over many turns. Each then changes by less
+            than half a turn from one time to the next at which it is defined. By default each is within its
+            range.
+        degrees : bool
+            Give degrees.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T, 3)
+            In radians unless `degrees`.
+        """
+        if unwrap:
+            self._check_series("euler_angles, unwrap")
+        angles = _core.euler_angles_from_quaternion(self.quaternion, sequence, singular)
+        angles = _unwrapped(angles) if unwrap else angles
+        return np.rad2deg(angles) if degrees else angles
+
+    def euler_rates(
+        self,
+        sequence: str = "ZXZ",
+        singular: Literal["raise", "nan"] = "raise",
+        *,
+        degrees: bool = False,
+    ) -> Floats:
+        """Rates of the Euler angles at every time.
+
+        Parameters
+        ----------
+        sequence : str
+            As in :mod:`polhode.euler_angles`; the default is the (phi, theta, psi) of Goldstein and Landau.
+        singular : {"raise", "nan"}
+            What to do at an attitude at which the angles or their rates are not defined.
+        degrees : bool
+            Give degrees per time.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T, 3)
+            In radians per time unless `degrees`.
+        """
+        angles = self.euler_angles(sequence, singular)
+        rates = _core.euler_rates(angles, self.omega, sequence, "body", singular)
+        return np.rad2deg(rates) if degrees else rates
+
+    def torque(self) -> Floats:
+        """Torque of the load about the point `about` at every time, components in the body frame.
+
+        The torque of wheels is ``I ω̇ + ω × I ω``, where I includes the wheels as if they were locked.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T, 3)
+        """
+        if self.load is None and "_within" in self.__dict__:
+            return self._torque_of_rotor()
+        if self._acting("torque") is None:
+            return np.zeros_like(self.omega)
+        assert self.load is not None
+        return self._over_time(self.load).torque(
+            *self._states(), **self._subject(), states=self._own_states()
+        )
+
+    def force(self) -> Floats:
+        """Sum of the forces of the load at every time, components in space.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T, 3)
+        """
+        if self.load is None:
+            if self._is_loaded():
+                self._acting("force")
+            return np.zeros_like(self.omega)
+        return self._over_time(self.load).force(*self._states(), **self._subject(), states=self._own_states())
+
+    def angular_acceleration(self) -> Floats:
+        """Angular acceleration at every time by Euler's equations, components in the body frame.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T, 3)
+        """
+        return self._bodies().angular_acceleration(self.omega, self.torque(), about=self._reference())
+
+    def potential_energy(self) -> Floats:
+        """Potential energy in the field of the load at every time.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T)
+            For example ``-m g·r_C`` in uniform gravity; see :meth:`polhode.loads.Load.potential`; zero
+            without a load.
+
+        Raises
+        ------
+        ValueError
+            For a load with a part that has no potential.
+        """
+        potential = self._potential()
+        if potential is None:
+            raise ValueError(
+                "potential_energy: a part of the load has no potential; weight, forces constant in space and "
+                "feedback without damping have one"
+            )
+        return potential
+
+    def pivot_reaction(
+        self, gravity: ArrayLike = (0.0, 0.0, 0.0), force: ArrayLike = (0.0, 0.0, 0.0)
+    ) -> Floats:
+        """Force with which the pivot holds a body simulated with ``about="origin"``, at every time.
+
+        Parameters
+        ----------
+        gravity : array_like, shape (..., 3)
+            Gravitational acceleration g, components in space. Give it only if the load of the simulation held
+            the torque of the weight but not the weight itself.
+        force : array_like, shape (..., 3)
+            Sum of the forces that act besides those of the load, components in space.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T, 3)
+            Force on the body, components in space: m a_C minus the forces of the load, minus m g, minus
+            `force`.
+
+        Raises
+        ------
+        ValueError
+            For a motion whose point `about` is not the origin of the body frame, or moves.
+        """
+        if not self.pivoted:
+            raise ValueError('pivot_reaction: no pivot holds this body; simulate it with about="origin"')
+        return self._bodies().pivot_reaction(
+            self.omega,
+            self.angular_acceleration(),
+            self.quaternion,
+            gravity=gravity,
+            force=self.force() + _core.real_numbers(force, "force"),
+        )
+
+    def sensitivity(self, method: Literal["series", "differences"] = "series") -> MotionSensitivity:
+        """Describe how the motion depends on its start, on the body and on the numbers of the load.
+
+        Parameters
+        ----------
+        method : {"series", "differences"}
+            ``"series"`` integrates the linearised equations of motion. ``"differences"`` takes finite
+            differences of order six between motions that are simulated anew; it gives about nine digits. It
+            also serves the loads for which there are no series: see Raises.
+
+        Returns
+        -------
+        MotionSensitivity
+            Derivatives of the attitude, the angular velocity and the states of the load at every time. They
+            are taken with respect to the same quantities at the first time, to the principal moments,
+            products of inertia, centre of mass and mass of the body, and to the numbers of the load. Some
+            arguments of loads are not varied, such as times: see :class:`polhode.MotionSensitivity`.
+
+        Raises
+        ------
+        PolhodeError
+            With ``"series"``, for a load without series: a callback, a compiled function, a gravity gradient
+            along an oblate or sampled orbit, a magnetic field along an orbit or at given times, B-dot, a
+            motor with a limit, dry friction, a feedback on a moving target. With ``"differences"``, if the
+            differences of order four and of order six do not agree.
+        IntegrationError
+            If the integration of the motion or of the derivatives cannot go on.
+
+        Notes
+        -----
+        The linearised equations are integrated together with the motion, by Taylor series in which every
+        number carries its derivatives. They are accurate to the last digits, whatever method and tolerance
+        this motion was computed with. A feedback reverses its torque at half a turn from its target; the
+        derivatives jump there, and the jump is computed. For free bodies :meth:`FreeMotion.sensitivity` is
+        exact at any time.
+
+        If the initial states of a load were not given to `simulate`, they follow from other numbers. At the
+        start a wheel has the momentum ``h = J (Ω + a·ω)``, where J is its moment of inertia, a its axis and Ω
+        its rate relative to the body. The derivatives with respect to J, a and Ω include the change of h. The
+        derivatives with respect to ω at the first time do not: h stays fixed there. The field ``begins`` of
+        :class:`polhode.MotionSensitivity` says how to find those with Ω fixed.
+
+        Differences remain right where the law of the load changes on the way, for example when a wheel stops
+        in its bearing or a motor saturates: each of the neighbouring motions finds its own time of the
+        change. All numbers of an orbit are varied: also J₂, radius and pole of an oblate attractor, and each
+        position of a table. Each number takes six runs, and more if it is zero: they find a step that fits
+        the motion. A number that is zero and must not be negative, such as a friction, is only increased.
+
+        The following numbers cannot be varied, and have no derivatives by differences:
+
+        - numbers inside a function,
+        - the attitude of a target at rest,
+        - the arguments of a stack of loads,
+        - the arguments of a load that is multiplied by a factor, or is added to a compiled function.
+
+        Examples
+        --------
+        How a top's spin after three seconds depends on where it pointed at the start, and on the weight:
+
+        >>> import numpy as np
+        >>> from polhode import RigidBody, loads
+        >>> top = RigidBody.from_principal(1.0, (0.2, 0.2, 0.1), center_of_mass=(0, 0, 0.3))
+        >>> weight = loads.uniform_gravity((0, 0, -9.81))
+        >>> tilted = (np.sin(0.2), 0, 0, np.cos(0.2))
+        >>> run = top.simulate([0, 3], (0, 0, 40), tilted, load=weight, about="origin")
+        >>> slopes = run.sensitivity()
+        >>> slopes.state.shape, slopes.load[0]["gravity"].shape
+        ((2, 6, 6), (2, 6, 3))
+        """
+        self._check_series("sensitivity", "; FreeMotion.sensitivity(t) has those of a free body at any times")
+        if method == "differences":
+            from polhode.motion.finite_differences import by_differences
+
+            return by_differences(self)
+        if method != "series":
+            raise ValueError(f"method: expected 'series' or 'differences', got {method!r}")
+        start, load = self.state(0), self._acting("sensitivity")
+        return _core.motion_sensitivity(
+            self.body,
+            self.t,
+            start.omega,
+            start.attitude,
+            load,
+            self._about_word(),
+            start.states if load is self.load else None,
+            self.__dict__.get("_given", ()),
+        )
+
+    def resume(self, t: ArrayLike, **options: Any) -> Trajectory:
+        """Go on from the last state under the same load, or under another one.
+
+        The clock of the motion goes on too: orbits without an epoch and controllers with a period count from
+        the first time of the motion, in every load and however often it is resumed.
+
+        Parameters
+        ----------
+        t : array_like, shape (T,)
+            Times as in `simulate`; the first must be the last of this motion.
+        **options
+            Further arguments of :meth:`polhode.RigidBody.simulate`, such as `method` and `rtol`. States of
+            another `load` go on from those of the same name and number, so that wheels keep their momentum;
+            the others begin anew. `states` sets some of them. The angular momentum of wheels, rotors and
+            slugs must not jump.
+
+        Returns
+        -------
+        Trajectory
+
+        Raises
+        ------
+        ValueError
+            If another load, or `states`, makes the total angular momentum jump: the wheels of the motion are
+            missing in it, or it has others that turn.
+
+        Examples
+        --------
+        >>> from polhode import RigidBody, loads
+        >>> body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
+        >>> first = body.simulate([0, 1], omega=(0, 0, 1))
+        >>> first.resume([1, 2]).quaternion[-1].round(6)
+        array([0.      , 0.      , 0.841471, 0.540302])
+
+        A thruster fires for a second; the wheel goes on:
+
+        >>> wheel = loads.wheel((0, 0, 1), inertia=0.5, torque=0.1)
+        >>> first = body.simulate([0, 1], omega=(0, 0, 0), load=wheel)
+        >>> fires = first.resume([1, 2], load=wheel + loads.constant_torque((0, 0, 0.3)))
+        >>> fires.states["wheel"][-1].round(9), fires.angular_momentum().spin[-1].round(9)
+        (array([0.2]), array([0. , 0. , 0.3]))
+        """
+        start = _core.real_numbers(t, "t").reshape(-1)[:1]
+        state, last = self.state(), self.t.reshape(-1)[-1:]
+        if not np.array_equal(start, last):
+            raise ValueError(f"t: the motion goes on from t = {float(last[0])!r}, got {start.tolist()}")
+        if np.isnan(state.omega).any():
+            raise ValueError(
+                "resume: the last state is not known, since the run did not come to the last time"
+            )
+        about = self._about_word()
+        for name in _OF_THE_MOTION:
+            if name in options and not (name == "about" and options[name] == about):
+                raise TypeError(
+                    f"resume: {name}: the motion goes on from its own state; for another one begin anew: "
+                    f"body.simulate(t, **motion.state()._asdict() | {{{name!r}: ...}})"
+                )
+        given = state._asdict() | {"about": about}
+        if self.pivoted:
+            del given["velocity"]
+        began = self.__dict__.get("_began", float(self.t.flat[0]))
+        is_another = "load" in options or "states" in options
+        load = options.pop("load") if "load" in options else self._acting("resume", -1)
+        if isinstance(load, _core.Load):
+            load = load.anchored(began)
+        known = load.states if isinstance(load, _core.Load) else {}
+        states = {
+            name: values
+            for name, values in (state.states or {}).items()
+            if known.get(name) == np.shape(values)[-1]
+        }
+        own = options.pop("states", None)
+        given |= {"load": load, "states": (states | dict(own) if own is not None else states) or None}
+        if is_another:
+            self._check_momentum(start, given)
+        run = self.body.simulate(t, **given | options)
+        run.__dict__["_began"] = began
+        if self.uncertain_start != (None, None) or self.body._doubts() is not None:
+            run.__dict__["uncertain_start"] = None  # the last state is uncertain, together with the body
+        return run
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the motion to a file, with every bit of it.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            The ending of the name tells the format. The load and the events are not written.
+
+            ``.csv`` has one line for each time. The columns are ``t``; ``omega_*``, components in the body
+            frame; ``quaternion_*``; ``position_*`` and ``velocity_*``, components in space; the angles
+            ``euler_phi``, ``euler_theta``, ``euler_psi`` (ZXZ, in radians, nan where they are not defined);
+            ``torque_*`` of the load about the point `about`, components in the body frame; and the states of
+            the load. The torque is left out if the load is not known or a state is nan. For a stack, each
+            line begins with the indices of the body.
+
+            ``.npz`` has the arrays under the names of the attributes, and ``mass``, ``inertia`` and
+            ``center_of_mass`` of the body. ``.json`` is text after the schema
+            :data:`polhode.io.TRAJECTORY_SCHEMA`.
+        """
+        from polhode.io.saved import save_trajectory
+
+        save_trajectory(self, path)
+
+    def to_xarray(self) -> Dataset:
+        """Return the motion as an :class:`xarray.Dataset`; needs xarray.
+
+        Returns
+        -------
+        xarray.Dataset
+            Its dimensions are ``time``, for a stack after ``body`` (or ``body_0``, ``body_1``, …). Components
+            are named ``x y z`` and ``x y z w``; an attribute of each variable names its frame.
+        """
+        from polhode._optional import require
+
+        xarray = require("xarray", extra=None, purpose="Trajectory.to_xarray")
+        self._check_series("to_xarray")
+        shape = self.omega.shape[:-2]
+        stack = ["body"] if len(shape) == 1 else [f"body_{axis}" for axis in range(len(shape))]
+        vector, frames = (
+            [*stack, "time", "component"],
+            {"omega": "body", "position": "space", "velocity": "space"},
+        )
+        variables: dict[str, Any] = {
+            name: (vector, getattr(self, name), {"frame": frame}) for name, frame in frames.items()
+        }
+        variables["quaternion"] = (
+            [*stack, "time", "quaternion_component"],
+            self.quaternion,
+            {"long_name": "R_NB, scalar last"},
+        )
+        for name, values in self.states.items():
+            variables[name] = ([*stack, "time", f"{name}_component"], values, {"long_name": "of the load"})
+        coordinates = {"time": self.t, "component": list("xyz"), "quaternion_component": list("xyzw")}
+        dataset: Dataset = xarray.Dataset(variables, coordinates, {"title": repr(self)})
+        return dataset
+
+    def to_pandas(self) -> DataFrame:
+        """Return the motion as a :class:`pandas.DataFrame`; needs pandas.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A row for each time, indexed by ``t``, after ``body`` (or ``body_0``, ``body_1``, …) of a stack;
+            its columns are those of the ``.csv`` that `save` writes.
+        """
+        from polhode._optional import require
+        from polhode.io.saved import table_of
+
+        pandas = require("pandas", extra=None, purpose="Trajectory.to_pandas")
+        self._check_series("to_pandas")
+        index, columns = table_of(self)
+        rows = pandas.MultiIndex.from_arrays([values.ravel() for values in index.values()], names=list(index))
+        if len(index) == 1:
+            rows = pandas.Index(index["t"], name="t")
+        table: DataFrame = pandas.DataFrame(
+            {name: values.ravel() for name, values in columns.items()}, index=rows
+        )
+        return table
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the components of the angular velocity in the body over time; needs matplotlib.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; a new figure by default.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+        """
+        from polhode.plot import angular_velocity
+
+        return angular_velocity(self, ax)
+
+    def view(self, plotter: Plotter | None = None, **options: Any) -> Plotter:
+        """Show the motion of one body in a window; needs pyvista.
+
+        Parameters
+        ----------
+        plotter : pyvista.Plotter, optional
+            Where to show it; a new one by default.
+        **options
+            `at`, `shape`, `duration`, `title` and `time_label`, see :func:`polhode.view.motion`.
+
+        Returns
+        -------
+        pyvista.Plotter
+            Its ``show()`` opens the window.
+        """
+        from polhode.view import motion
+
+        return motion(self, plotter, **options)
+
+    def animate(self, path: str | PathLike[str], **options: Any) -> Path:
+        """Write the motion of one body as a moving picture.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            ``.html``: an interactive page that needs nothing else; ``.gif``: needs matplotlib;
+            ``.mp4``: needs also the program ffmpeg, which the extra ``film`` brings.
+        **options
+            `shape`, `frames`, `duration`, `title`, `time_label`, `size`, `fps`, `labels` and `progress`, see
+            :func:`polhode.animation.animate`.
+
+        Returns
+        -------
+        pathlib.Path
+            Where it was written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> import numpy as np
+        >>> from polhode import solids
+        >>> motion = solids.box((3, 2, 1), mass=1.0).simulate(np.linspace(0, 10, 201), omega=(0.01, 1, 0))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     page = motion.animate(Path(folder) / "racket.html", title="The tennis racket")
+        ...     page.read_text(encoding="utf-8")[:15]
+        '<!DOCTYPE html>'
+        """
+        from polhode.animation import animate
+
+        return animate(self, path, **options)
+
+    @cached_property
+    def covariance(self) -> Floats | None:
+        """Return covariance of (δ, ω) at every time, shape (..., T, 6, 6); None where nothing is uncertain.
+
+        δ is a small rotation from the attitude, ``R → R exp(δ×)``, components in the body frame, in radians.
+        It comes from the covariance of the body, and from `omega` and `attitude` at the start if they were
+        given as `Uncertain`. It is computed to first order, by the derivatives of :meth:`sensitivity`, with
+        all correlations.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from polhode import Uncertain, solids
+        >>> brick = solids.box(Uncertain((1, 2, 3), sigma=0.001), mass=1.0)
+        >>> run = brick.simulate([0, 10], omega=Uncertain((0.1, 0.2, 2.0), sigma=0.001))
+        >>> run.covariance.shape, run.sigma.omega[0]
+        ((2, 6, 6), array([0.001, 0.001, 0.001]))
+        """
+        from polhode.uncertainty.motion import state_covariance
+
+        return state_covariance(self)
+
+    @cached_property
+    def sigma(self) -> StateSigma | None:
+        """Return standard deviations of attitude and angular velocity, shape (..., T, 3) each, or None."""
+        from polhode.uncertainty.motion import state_sigma
+
+        return state_sigma(self)
+
+    def show(self, *, height: int = 460, **options: Any) -> Shown:
+        """Show the motion of one body as an interactive page: below a notebook's cell, or in the browser.
+
+        Parameters
+        ----------
+        height : int
+            Of the frame in a notebook, in pixels.
+        **options
+            `shape`, `duration`, `title` and `time_label`, see :func:`polhode.animation.animate`.
+
+        Returns
+        -------
+        Shown
+            Outside a notebook its ``path`` is the page, in the folder for temporary files.
+
+        Examples
+        --------
+        >>> from polhode import solids
+        >>> motion = solids.box((3, 2, 1), mass=1.0).simulate([0.0, 20.0], omega=(0.01, 3, 0))
+        >>> motion.show(title="The tennis racket")  # doctest: +SKIP
+        """
+        from polhode.draw.html import show
+
+        return show(self, height=height, **options)
+
+    def _repr_html_(self) -> str:
+        """Show the motion at the end of a notebook's cell: omega over time, and the page below it."""
+        from polhode.draw.html import motion_html
+
+        return motion_html(self)
+
+    def _bodies(self) -> _core.RigidBody:
+        """Return the body or stack with axes for time, along which it broadcasts."""
+        return self.body[(..., *self._time_axes())]
+
+    def _time_axes(self) -> tuple[None, ...]:
+        """One new axis for a series of times; for an exact motion as many as its times have."""
+        return (np.newaxis,) * self.t.ndim
+
+    def _check_series(self, what: str, hint: str = "") -> None:
+        """Refuse times other than a series: an exact motion is known at times of any shape."""
+        if self.t.ndim != 1 or not self.t.size:
+            raise ValueError(
+                f"{what}: needs a series of times, and t of this motion has the shape {self.t.shape}; "
+                f"ask for times of shape (T,){hint}"
+            )
+
+    def _per_time(self, vectors: Floats) -> Floats:
+        """Return vectors with the axes of time before their components."""
+        return vectors[(..., *self._time_axes(), slice(None))]
+
+    def _reference(self) -> Floats:
+        return self._per_time(self.about)
+
+    def _over_time(self, load: _core.Load) -> _core.Load:
+        """Return a stack of loads with an axis for time, along which it broadcasts."""
+        return load[(..., *self._time_axes())] if load.shape else load
+
+    def _states(self) -> tuple[Floats, ...]:
+        return self.t, self.omega, self.quaternion, self.position, self.velocity
+
+    def _own_states(self) -> dict[str, Floats] | None:
+        return self.states or None
+
+    def _is_loaded(self) -> bool:
+        """Return whether a load acted, which a motion from a file does not have."""
+        return self.load is not None or "_was_loaded" in self.__dict__
+
+    def _about_word(self) -> Literal["origin", "center_of_mass"]:
+        return "origin" if self.pivoted else "center_of_mass"
+
+    def _subject(self) -> dict[str, Any]:
+        return {
+            "body": self._bodies(),
+            "about": self._about_word(),
+            "start": float(self.t.flat[0]) if self.t.size else 0.0,
+        }
+
+    def _potential(self) -> Floats | None:
+        if self.load is None:
+            return None if self._is_loaded() else np.zeros(self.omega.shape[:-1])
+        return self._over_time(self.load).potential(
+            self._bodies(), self.quaternion, self.position, self._about_word()
+        )
+
+    def _kept_directions(self) -> Any:
+        """Return the directions along which L is conserved: True for all, unit vectors, or None."""
+        if self.load is None:
+            return None if self._is_loaded() else True
+        return self.load.keeps_momentum(self._about_word())
+
+    def _check_momentum(self, start: Floats, given: dict[str, Any]) -> None:
+        """Refuse a start under another load at which the total angular momentum would jump."""
+        first = self.body.simulate(start, **given)
+        nothing = np.zeros_like(first.omega[..., 0, :])
+        was = nothing if self.carried is None else self.carried[0][..., -1, :]
+        now = nothing if first.carried is None else first.carried[0][..., 0, :]
+        body = lengths(first.angular_momentum("body").spin[..., 0, :] - now)
+        off = now - was
+        jumps = lengths(off) > _ROUNDING * (lengths(now) + lengths(was) + body)
+        if np.any(jumps):
+            into, of = (np.broadcast_to(one, off.shape)[jumps][0].tolist() for one in (now, was))
+            raise ValueError(
+                f"load: the total angular momentum would jump at t = {float(start[0])!r}: what the body "
+                f"carries along, wheels, rotors and slugs, has {of} now and {into} under this load. Wheels "
+                "of the same name keep their state: add to the load of the motion, load=motion.load + other, "
+                "name wheels as before, and give new ones no rate; or begin another motion with simulate"
+            )
+
+    def _rotor_inside(self) -> tuple[Floats, Floats]:
+        """Return the momentum h inside a gyrostat, and Σ J a aᵀ of its free wheels."""
+        motion: _core.GyrostatMotion = self.__dict__["_within"]
+        return motion.rotor, motion.gyrostat._rotor()[1]
+
+    def _carried_now(self) -> tuple[Floats, Floats] | None:
+        """Return momentum and energy of what the body carries along under the load, or as a gyrostat."""
+        if "_within" in self.__dict__:
+            momentum, free = self._rotor_inside()
+            of_free = np.einsum(
+                "...ij,...j->...i", free[(..., *self._time_axes(), slice(None), slice(None))], self.omega
+            )
+            return self._per_time(momentum) - of_free, -0.5 * np.einsum("...i,...i->...", self.omega, of_free)
+        if self.load is None or not self.load.carries:
+            return None
+        return self._over_time(self.load).carried(self.t, self.omega, self._own_states())
+
+    def _acting(self, what: str, index: int = 0) -> _core.Load | None:
+        """Return the load under which a simulation has this motion; for a gyrostat from one of its times."""
+        if self.load is None and self._is_loaded() and self.carried is None:
+            raise ValueError(f"{what}: a load acted on this motion, which its file does not hold")
+        if self.load is not None or self.carried is None:
+            return self.load
+        if "_within" not in self.__dict__:
+            raise ValueError(
+                f"{what}: the body carries something along of which these states tell the momentum alone, "
+                "not the load; a file does not hold it"
+            )
+        momentum, free = self._rotor_inside()
+        return self._wheels_inside(what, index) if np.any(free) else _core.rotor(momentum)
+
+    def _wheels_inside(self, what: str, index: int) -> _core.Load:
+        """Return the free wheels of a gyrostat along the axes of Σ J a aᵀ, and the rest as a rotor."""
+        momentum, free = self._rotor_inside()
+        inertias, axes = np.linalg.eigh(free)
+        turning = inertias > ROUNDING * inertias[..., -1:]
+        rows = turning.reshape(-1, 3)
+        if (rows != rows[0]).any():
+            raise ValueError(
+                f"{what}: the gyrostats have free wheels along one, two or three axes; ask one by one"
+            )
+        start = self.omega[..., index, :]
+        load, rest = None, momentum
+        for k in np.flatnonzero(rows[0]):
+            axis, inertia = axes[..., k], inertias[..., k]
+            held = np.einsum("...i,...i->...", axis, momentum)
+            rest = rest - held[..., None] * axis
+            rate = held / inertia - np.einsum("...i,...i->...", axis, start)
+            one = _core.wheel(axis, inertia, rate)
+            load = one if load is None else load + one
+        assert load is not None
+        return load + _core.rotor(rest)
+
+    def _exact(self) -> _core.FreeMotion | _core.GyrostatMotion | None:
+        """Return the motion in closed form from the first state on, of one body; None where none is known."""
+        if self._is_loaded() or self.pivoted:
+            return None
+        if "_within" not in self.__dict__:
+            return self.body.free_motion(self.omega[0], self.quaternion[0]) if self.carried is None else None
+        motion: _core.GyrostatMotion = self.__dict__["_within"]
+        _, (_, besides, wheels) = cast("tuple[Any, tuple[Any, Floats, Any]]", motion.gyrostat.__reduce__())
+        now = [_at(one, motion.omega - self.omega[0]) for one in wheels]
+        return self.body.gyrostat(besides, wheels=now).free_motion(self.omega[0], self.quaternion[0])
+
+    def _torque_of_rotor(self) -> Floats:
+        """Torque of the momentum inside a gyrostat: its own ``(I − F) ω̇ + ω × ((I − F) ω + h) = 0``."""
+        momentum, free = self._rotor_inside()
+        tensor = self._bodies().inertia_about(self._reference())
+        inertias = free[(..., *self._time_axes(), slice(None), slice(None))]
+        total = np.einsum("...ij,...j->...i", tensor - inertias, self.omega) + self._per_time(momentum)
+        rate = np.linalg.solve(tensor - inertias, -np.cross(self.omega, total)[..., np.newaxis])
+        in_body = np.einsum("...ij,...j->...i", tensor, self.omega)
+        torque: Floats = (tensor @ rate)[..., 0] + np.cross(self.omega, in_body)
+        return torque
+
+
+def _unwrapped(angles: Floats) -> Floats:
+    """Unwrap angles (..., T, 3) along the times, over gaps that are not numbers."""
+    columns = np.moveaxis(angles, -2, -1)
+    series = columns.reshape(-1, columns.shape[-1]).copy()
+    for one in series:
+        known = ~np.isnan(one)
+        one[known] = np.unwrap(one[known])
+    return np.moveaxis(series.reshape(columns.shape), -1, -2)
+
+
+def _at(one: Wheel, slower: Floats) -> Wheel:
+    """Return a wheel as it turns where ω is less by so much: one that is free keeps ``J (Ω + a·ω)``."""
+    if one.mode == "held":
+        return one
+    along = (one.axis / np.linalg.norm(one.axis)) @ slower
+    return wheel(axis=one.axis, inertia=one.inertia, momentum=one.momentum + one.inertia * along)
