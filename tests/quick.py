@@ -58,7 +58,7 @@ def tests_of(file: Path) -> list[Path]:
     rooms = [part for part in file.parts[:-1] if part not in ROOTS]
     for word in (file.stem, *reversed(rooms)):
         names = NAMED.get(word, [word.strip("_").removesuffix("s")])
-        found = [path for name in names for path in sorted(Path("tests").glob(f"test_*{name}*.py"))]
+        found = [path for name in names for path in sorted(Path("tests").glob(f"*/test_*{name}*.py"))]
         if found and len(word.strip("_")) > 1:
             return found
     return []

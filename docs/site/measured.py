@@ -124,7 +124,7 @@ def validation(found: dict[str, Any]) -> str:
         "|---|---|---|",
         *(f"| {row['what']} | {row['against']} | {power(row['error'])} |" for row in found["validation"]),
         "\nThe code of the reference solutions is in `tests/oracles`. For each promise on these pages, "
-        "`tests/claims.toml` names the test that checks it.\n",
+        "`tests/pages/claims.toml` names the test that checks it.\n",
     ]
     return "\n".join(lines)
 

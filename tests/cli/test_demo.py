@@ -10,11 +10,12 @@ from typing import TypeAlias
 import numpy as np
 import pytest
 from markdown_code import blocks
+from places import ROOT
 from polhode import RigidBody
 from polhode.cli import brick, main
 from sample_files import t_handle
 
-README = Path(__file__).resolve().parents[1] / "README.md"
+README = ROOT / "README.md"
 Capture: TypeAlias = pytest.CaptureFixture[str]
 
 

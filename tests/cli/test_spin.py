@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from command_line import run, write_obj
 from oracles.meshes import box, cube, icosphere
+from page_data import data
 from PIL import Image
 from polhode import samples
 from polhode.cli import brick
-from test_animation import data
 
 
 @pytest.fixture

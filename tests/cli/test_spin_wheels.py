@@ -13,9 +13,9 @@ from command_line import run, write_obj
 from oracles.bodies import matrix
 from oracles.gyrostat_equilibria import equilibria
 from oracles.meshes import box
+from page_data import data
 from polhode import Trajectory
 from scipy.integrate import solve_ivp
-from test_animation import data
 
 MOMENTS = np.array([1.0, 2.0, 2.5])
 INSIDE = np.array([-0.1, 0.2, 0.4])

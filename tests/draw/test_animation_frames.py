@@ -5,15 +5,16 @@ from __future__ import annotations
 import re
 import warnings
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 from command_line import run
+from moving_pictures import BRICK, CONE, angles, check_chords, check_frames, top
 from oracles.bodies import matrix
-from polhode import RigidBody, Trajectory, euler_angles, loads, solids
+from page_data import data
+from polhode import RigidBody, euler_angles, loads
 from polhode._scene.sampling import COARSE, TURN, axis_times, fastest, follow, motion_times
-from test_animation import data
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -23,19 +24,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-BRICK = RigidBody.from_principal(1.0, (1.0, 3.0, 3.2))
-CONE = solids.cone(radius=0.03, height=0.06, mass=0.1).rotated((1.0, 0.0, 0.0, 0.0)).translated((0, 0, 0.045))
 PULL = loads.constant_torque((0.0, 0.0, 0.1))
-
-
-def top(spin: float, tilt: float = 0.5, nod: float = 0.0) -> HeavyTop:
-    return CONE.heavy_top((nod, 0.0, spin), euler_angles.to_quaternion((0.0, tilt, 0.0)), (0.0, 0.0, -9.81))
-
-
-def angles(quaternion: Floats) -> Floats:
-    """The turn from each attitude to the next, by the shorter way."""
-    products = np.abs((quaternion[1:] * quaternion[:-1]).sum(axis=-1))
-    return np.asarray(2.0 * np.arccos(np.minimum(1.0, products)))
 
 
 def random_bodies(rng: np.random.Generator, count: int) -> list[FreeMotion]:
@@ -117,44 +106,13 @@ class TestTimes:
         assert np.diff(chosen.t).min() < 1e-15
 
 
-def check_frames(
-    motion: FreeMotion | HeavyTop, t: Floats, rate: float, turn: float = TURN, chord: float = 0.002
-) -> None:
-    """No turn above 20 degrees, no chord deeper than 0.2 %: of the ellipsoid; in space of the longest ω."""
-    shown = motion.at(t)
-    assert angles(shown.quaternion).max() <= turn * (1.0 + 1e-9)
-    assert (np.abs(np.diff(t)) * rate).max() <= turn * (1.0 + 1e-9)
-    body = motion.body
-    tensor = body.inertia_about(shown.about)
-    middles = 0.5 * (shown.omega[1:] + shown.omega[:-1])
-    doubled = np.einsum("ti,ij,tj->t", shown.omega, tensor, shown.omega)
-    level = np.einsum("ti,ij,tj->t", middles, tensor, middles)
-    if np.ptp(doubled) <= 1e-9 * doubled.max():  # one ellipsoid
-        assert (level >= (1.0 - chord) ** 2 * doubled[0] * (1.0 - 1e-9)).all()
-    check_chords(lambda times: in_space(motion.at(times)) / rate, t, chord)
-
-
 def check_page(motion: FreeMotion | HeavyTop, t: Floats) -> None:
     """Between the frames of a page it interpolates: 40 degrees, 2 %."""
     check_frames(motion, t, fastest(motion), turn=2.0 * TURN, chord=0.02)
 
 
-def check_chords(curve: Any, t: Floats, deepest: float = 0.002) -> None:
-    """Halfway in time the curve is no farther from its chord than that."""
-    ends, middle = curve(t), curve(0.5 * (t[1:] + t[:-1]))
-    chord = ends[1:] - ends[:-1]
-    length = np.maximum(np.linalg.norm(chord, axis=-1, keepdims=True), 1e-300)
-    off = middle - ends[:-1]
-    across = off - (off * chord / length).sum(axis=-1, keepdims=True) * chord / length
-    assert np.linalg.norm(across, axis=-1).max() <= deepest * (1.0 + 1e-9)
-
-
 def axis(motion: HeavyTop, t: Floats) -> Floats:
     return motion.at(t).point("center_of_mass") / np.linalg.norm(CONE.center_of_mass)
-
-
-def in_space(shown: Trajectory) -> Floats:
-    return np.stack([matrix(q) @ w for q, w in zip(shown.quaternion, shown.omega, strict=True)])
 
 
 @pytest.fixture(scope="module")

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import polhode
 import pytest
+from moving_pictures import angles, check_chords, in_space
 from oracles.bodies import matrix
+from page_data import data
 from PIL import Image
 from polhode import RigidBody, Trajectory, loads
 from polhode._scene.sampling import TURN, fastest, motion_times
-from test_animation import data
-from test_animation_frames import angles, check_chords, in_space
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from command_line import run
+from moving_pictures import BRICK, angles, check_chords, check_frames, in_space, top
 from polhode._scene.sampling import TURN, drawn_times, fastest
-from test_animation_frames import BRICK, angles, check_chords, check_frames, in_space, top
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 from browser import Browser, needs_browser
 from colors import SEEN, lab, linear, luminance
-from polhode import RigidBody, euler_angles, loads, solids
+from moving_pictures import BRICK, CONE, DESK, START, TOLD, inside, middle
+from page_data import data
+from polhode import RigidBody, euler_angles, loads
 from polhode.animation import animate_motion
-from test_animation import data
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -21,10 +22,6 @@ if TYPE_CHECKING:
 
 pytestmark = needs_browser
 
-DESK, PHONE, ON_ITS_SIDE = (1200, 820), (390, 844), (700, 420)
-START = (0.01, 6.0, 0.0)
-BRICK = RigidBody.from_principal(1.0, (1.0, 3.0, 3.2))
-CONE = solids.cone(radius=0.03, height=0.06, mass=0.1).rotated((1.0, 0.0, 0.0, 0.0)).translated((0, 0, 0.045))
 
 BETWEEN = "{}.map((t) => {{ const s = polhode.frames.at(t); return [s.q, s.omega]; }})"
 MOVE = """(() => {{
@@ -37,12 +34,6 @@ FASTER = """(() => {
   choice.selectedIndex += 1;
   choice.dispatchEvent(new Event("change"));
 })()"""
-TOLD = """Object.fromEntries([...document.querySelectorAll("#readouts div")].map(
-  (row) => [...row.children].map((cell) => cell.textContent)))"""
-IN_VIEW = """(() => {{
-  const box = document.getElementById("{}").getBoundingClientRect(), right = box.right <= innerWidth;
-  return box.width > 0 && box.left >= 0 && box.top >= 0 && right && box.bottom <= innerHeight;
-}})()"""
 NAMES = "polhode.views.{}.written.map((n) => [n.name, n.at, n.width, [n.x, n.y], [n.ux, n.uy], n.size])"
 CAMERA = "(({ azimuth, elevation, zoom }) => [azimuth, elevation, zoom])(polhode.views.space)"
 
@@ -74,19 +65,6 @@ def running(folder: Path) -> Iterator[Browser]:
 def browser(running: Browser) -> Browser:
     running.screen(*DESK)
     return running
-
-
-def inside(browser: Browser, identity: str) -> bool:
-    """Whether an element is in view as a whole, without scrolling."""
-    return bool(browser.run(IN_VIEW.format(identity)))
-
-
-def middle(browser: Browser, identity: str) -> tuple[float, float]:
-    x, y = browser.run(
-        f"(() => {{ const b = document.getElementById({identity!r}).getBoundingClientRect();"
-        "return [b.left + b.width / 2, b.top + b.height / 2] })()"
-    )
-    return x, y
 
 
 def near(picture: NDArray[np.int64], color: str, within: int = 24) -> NDArray[np.bool_]:

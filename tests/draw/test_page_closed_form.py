@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from browser import BROWSER, Browser
+from places import ROOT
 from polhode import RigidBody
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-MODULES = Path(__file__).resolve().parents[1] / "python/polhode/animation/page"
+MODULES = ROOT / "python/polhode/animation/page"
 NODE = shutil.which("node")
 ASKED = """([moments, omega, attitude, times]) => {
   const body = new FreeBody(moments, omega, attitude);

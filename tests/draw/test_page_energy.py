@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from browser import Browser, needs_browser
+from moving_pictures import TOLD
 from polhode import RigidBody, Trajectory, euler_angles, loads, solids
 from polhode._scene.energy import energy_of
 from polhode._scene.footage import Footage
-from test_page import TOLD
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -8,10 +8,10 @@ import numpy as np
 import polhode
 import pytest
 from browser import Browser, needs_browser
+from moving_pictures import TOLD
+from page_data import data
 from polhode import RigidBody, animation, euler_angles, loads, solids
 from polhode.animation import animate
-from test_animation import data
-from test_page import TOLD
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

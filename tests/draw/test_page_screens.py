@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 from browser import Browser, needs_browser
+from moving_pictures import BRICK, CONE, DESK, ON_ITS_SIDE, PHONE, START, inside, middle
 from polhode import RigidBody, euler_angles
 from polhode.animation import animate_motion
-from test_page import BRICK, CONE, DESK, ON_ITS_SIDE, PHONE, START, inside, middle
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

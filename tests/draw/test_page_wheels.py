@@ -8,13 +8,13 @@ import numpy as np
 import polhode
 import pytest
 from browser import Browser, needs_browser
+from page_data import data
 from PIL import Image
 from polhode import RigidBody, Trajectory, loads
 from polhode._scene.sampling import TURN
 from polhode._scene.scene import Scene
 from polhode._scene.wheels import slowed
 from polhode.animation import animate
-from test_animation import data
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -11,10 +11,11 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
+from places import ROOT
 
 pytest.importorskip("distributed")
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="the script is for a shell")
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "ensembles.md"
+PAGE = ROOT / "docs" / "ensembles.md"
 
 #: What stands for SLURM's: as many processes as it says, two at most, which take any ports.
 SRUN = """#!{python}

@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 import pickle
 import re
-from pathlib import Path
 from typing import Any
 
 import pytest
 from ensemble_cases import all_reductions, twisted
+from places import ROOT
 from polhode import RigidBody, flybys, orbits
 from polhode.ensembles.reducing import nodes_of_chunk
 
-PAGE = (Path(__file__).resolve().parents[1] / "docs" / "scaling.md").read_text("utf-8")
+PAGE = (ROOT / "docs" / "scaling.md").read_text("utf-8")
 CHUNK = 120 * 4096
 
 

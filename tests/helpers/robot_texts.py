@@ -9,6 +9,7 @@ __all__ = [
     "CUBE",
     "HEAVY",
     "HINGE",
+    "ONE_BALL",
     "ROUND",
     "SHARP",
     "UNREAD",
@@ -32,6 +33,15 @@ UNREAD: Final = '<mesh filename="nowhere.stl"/>'
 HINGE: Final = '<joint type="hinge"/>'
 HEAVY: Final = '<inertial pos="0 0 0" mass="5" diaginertia="0.02 0.02 0.021"/>'
 SHARP: Final = '<inertial pos="0 0 0" mass="5" diaginertia="0.02 0.02 0.041"/>'
+
+#: Two links, one with matter; its moments are filled in.
+ONE_BALL: Final = """<robot name="r">
+  <link name="frame"/>
+  <link name="ball"><inertial><mass value="5"/>
+    <inertia ixx="{0}" iyy="{0}" izz="{0}" ixy="0" ixz="0" iyz="0"/></inertial>
+    <collision><geometry><sphere radius="0.1"/></geometry></collision></link>
+</robot>
+"""
 
 
 class Row(NamedTuple):

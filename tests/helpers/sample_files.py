@@ -7,15 +7,15 @@ rounded: any machine makes the same bytes.
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from places import ROOT
 
 __all__ = ["FILES", "FOLDER", "stl", "t_handle"]
 
 Mesh = tuple[NDArray[np.float64], NDArray[np.int64]]
-FOLDER = Path(__file__).resolve().parents[1] / "python" / "polhode" / "samples"
+FOLDER = ROOT / "python" / "polhode" / "samples"
 _TRIANGLE = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 

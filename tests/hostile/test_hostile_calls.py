@@ -12,7 +12,8 @@ from pathlib import Path
 
 import polhode
 import pytest
-from hostile.valid import Call, all_calls
+from hostile_calls.valid import Call, all_calls
+from places import IMPORTED
 
 SEED = 20261122
 PATIENCE = 30.0
@@ -22,17 +23,24 @@ CALLS = all_calls()
 
 def hostile(seed: int, first: int, last: int, folder: Path) -> tuple[list[str], int]:
     """Make the calls in a worker, and in another one after each call that kills or hangs it."""
-    here = Path(__file__).parent
     environment = {**os.environ, "POLHODE_NUM_THREADS": "2", "RUST_BACKTRACE": "0"}
-    environment["PYTHONPATH"] = os.pathsep.join([str(here), str(Path(polhode.__path__[0]).parent)])
+    environment["PYTHONPATH"] = os.pathsep.join([*IMPORTED, str(Path(polhode.__path__[0]).parent)])
     progress = folder / "progress"
     wrong: list[str] = []
     made = 0
     while first < last and len(wrong) < 100:
         progress.write_bytes(struct.pack("<q", first))
-        command = [sys.executable, "-m", "hostile.worker", str(seed), str(first), str(last), str(progress)]
+        command = [
+            sys.executable,
+            "-m",
+            "hostile_calls.worker",
+            str(seed),
+            str(first),
+            str(last),
+            str(progress),
+        ]
         with (folder / "out").open("w+") as out, (folder / "err").open("w+") as err:
-            worker = subprocess.Popen(command, cwd=here, env=environment, stdout=out, stderr=err)
+            worker = subprocess.Popen(command, env=environment, stdout=out, stderr=err)
             at, since = first, time.monotonic()
             while worker.poll() is None:
                 time.sleep(0.02)

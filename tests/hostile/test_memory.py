@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from absurd import OTHERS, ROWS
+from places import IMPORTED
 from polhode import RigidBody, _core
 
 #: Callables without an argument whose size the caller chooses: functions, and properties of what exists.
@@ -71,8 +72,8 @@ CLASSES = (
 LIMITED = """
 import resource, runpy, sys
 resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))
-sys.path.insert(0, sys.argv[1])
-runpy.run_path(sys.argv[2], run_name="__main__")
+sys.path[:0] = sys.argv[2:]
+runpy.run_path(sys.argv[1], run_name="__main__")
 """
 
 
@@ -80,9 +81,8 @@ runpy.run_path(sys.argv[2], run_name="__main__")
 def answers() -> dict[str, tuple[str, str]]:
     """Do every call of ``absurd.py`` in a process with an address space of 4 GB."""
     pytest.importorskip("resource")
-    folder = Path(__file__).parent
     run = subprocess.run(
-        [sys.executable, "-c", LIMITED, str(folder), str(folder / "absurd.py")],
+        [sys.executable, "-c", LIMITED, str(Path(__file__).with_name("absurd.py")), *IMPORTED],
         capture_output=True,
         text=True,
         check=False,

@@ -11,52 +11,17 @@ import pickle
 import subprocess
 import sys
 import types
-from collections.abc import Iterator
 from functools import cached_property
-from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import polhode
 import pytest
 from markdown_code import blocks, run_examples, run_page
+from places import ROOT
 from polhode import RigidBody, loads, solids
+from public_objects import MODULES, OBJECTS
 
-ROOT = Path(__file__).resolve().parents[1]
-MODULES = [
-    "polhode",
-    "polhode.assembly",
-    "polhode.distributions",
-    "polhode.forms",
-    "polhode.labelled",
-    "polhode.laminae",
-    "polhode.reductions",
-    "polhode.regions",
-    "polhode.rods",
-    "polhode.solids",
-    "polhode.validity",
-    "polhode.loads",
-    "polhode.euler_angles",
-    "polhode.equimomental",
-    "polhode.errors",
-    "polhode.flybys",
-    "polhode.animation",
-    "polhode.events",
-    "polhode.files",
-    "polhode.free_motion",
-    "polhode.kinematics",
-    "polhode.orbits",
-    "polhode.parallel_axis",
-    "polhode.results",
-    "polhode.robots",
-    "polhode.samples",
-    "polhode.tops",
-    "polhode.trajectory",
-    "polhode.uncertainty",
-    "polhode.view",
-]
-MODULES += ["polhode.symbolic"] if find_spec("sympy") else []
 HEAVY = (
     "uncertainties",
     "matplotlib",
@@ -82,37 +47,6 @@ def test_examples_of_every_module_are_run() -> None:
     assert {f"polhode.{name}" for name in modules} <= set(MODULES)
 
 
-def public_objects() -> Iterator[tuple[str, Any]]:
-    """Every function, class, method and property that a user can reach, compiled or not, by dotted name."""
-    seen: set[int] = set()
-    for module_name in MODULES:
-        module = importlib.import_module(module_name)
-        yield module_name, module
-        for name in module.__all__:
-            value = getattr(module, name)
-            if isinstance(value, types.ModuleType | str) or id(value) in seen:
-                continue
-            seen.add(id(value))
-            yield f"{module_name}.{name}", value
-            if inspect.isclass(value):
-                yield from _members(f"{module_name}.{name}", value)
-
-
-def _members(path: str, cls: type) -> Iterator[tuple[str, Any]]:
-    for name, member in sorted(vars(cls).items()):  # two processes that share the tests name them alike
-        if name.startswith("_"):
-            continue
-        is_data = not (
-            callable(member) or isinstance(member, property | cached_property | staticmethod | classmethod)
-        )
-        if is_data and not inspect.isdatadescriptor(member):
-            continue
-        if type(member).__name__ in {"member_descriptor", "_tuplegetter"}:
-            continue  # slots and tuple fields: described by their class
-        yield f"{path}.{name}", member
-
-
-OBJECTS = dict(public_objects())
 FUNCTIONS = [n for n, v in OBJECTS.items() if inspect.isroutine(v) and not isinstance(v, cached_property)]
 WITH_EXAMPLES = [name for name, value in OBJECTS.items() if ">>>" in (inspect.getdoc(value) or "")]
 

@@ -6,9 +6,9 @@ import re
 from pathlib import Path
 
 import pytest
+from places import ROOT
 from public_rust import examples, public
 
-ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "rust" / "core" / "src"
 
 

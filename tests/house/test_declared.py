@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from documented import arrays, takes_arrays_alone
-
-ROOT = Path(__file__).resolve().parents[1]
+from places import ROOT
 
 
 def _declared() -> Any:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from polhode import euler_angles, orbits, rods, solids, tops
 from polhode.results import NutationDamping
-from test_api import OBJECTS
+from public_objects import OBJECTS
 
 HAVE = {
     "polhode.HeavyTop.effective_potential",

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 from layers import circles, faults, python_graph, rooms, upward
+from places import ROOT
 
-ROOT = Path(__file__).resolve().parents[1]
 TABLE = Path(__file__).with_name("layers.toml")
 
 

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from places import ROOT
 from rust_layers import Crate, circles, first_item, out_of_order, strings, upward
 
-ROOT = Path(__file__).resolve().parents[1]
-LAYERS: dict[str, Any] = tomllib.loads((ROOT / "tests" / "layers.toml").read_text("utf-8"))
+LAYERS: dict[str, Any] = tomllib.loads((Path(__file__).with_name("layers.toml")).read_text("utf-8"))
 SOURCES = {"core": "rust/core/src", "bindings": "rust/python/src"}
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from places import ROOT
 
-ROOT = Path(__file__).resolve().parents[1]
 TABLES = ROOT / "tests" / "mutants"
 
 

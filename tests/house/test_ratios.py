@@ -10,11 +10,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from places import ROOT
 
 
 @pytest.fixture
 def harness(monkeypatch: pytest.MonkeyPatch) -> Any:
-    monkeypatch.syspath_prepend(str(Path(__file__).resolve().parents[1] / "benchmarks"))
+    monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
     yield import_module("harness")
     sys.modules.pop("harness")
 
@@ -54,7 +55,7 @@ def test_a_run_is_compared_with_the_last_release(
 def test_the_page_tells_spread_machine_and_date(
     harness: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.syspath_prepend(str(Path(__file__).resolve().parents[1] / "docs" / "site"))
+    monkeypatch.syspath_prepend(str(ROOT / "docs" / "site"))
     measured: Any = import_module("measured")
     path = tmp_path / "ratios.json"
     harness.keep("0.2.0", [result(harness, "a row", 4.0)], path)
@@ -69,7 +70,7 @@ def test_the_page_tells_spread_machine_and_date(
 
 
 def test_each_kept_row_has_words_on_the_page(harness: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.syspath_prepend(str(Path(__file__).resolve().parents[1] / "docs" / "site"))
+    monkeypatch.syspath_prepend(str(ROOT / "docs" / "site"))
     measured: Any = import_module("measured")
     told = {name for rows in measured.ROWS.values() for name in rows}
     for found in json.loads(harness.RATIOS.read_text("utf-8")).values():

@@ -17,8 +17,8 @@ from typing import Any
 
 import pytest
 from packaging.requirements import Requirement
+from places import ROOT
 
-ROOT = Path(__file__).resolve().parents[1]
 PACKAGING = ROOT / "packaging"
 
 
@@ -288,8 +288,9 @@ class TestStrangers:
         assert makefile.count("packaging/try_tests.py dist\n") == 1
 
     def test_the_quick_share_is_there(self, script: Any) -> None:
-        for name in script("try_tests")["QUICK"]:
-            assert (ROOT / "tests" / f"test_{name}.py").exists()
+        tests = script("try_tests")
+        for name in tests["QUICK"]:
+            assert (ROOT / tests["test_file"](name)).exists()
 
     def test_a_folder_without_both_files_is_refused(
         self,

@@ -1,6 +1,6 @@
-"""Files as this version saves them, which later ones read: ``python tests/saved_files.py`` at a release.
+"""Files as this version saves them, which later ones read: ``python tests/io/saved_files.py`` at a release.
 
-They stay in ``tests/saved``, a folder for each version that changed what is saved; all are read by
+They stay in ``tests/io/saved``, a folder for each version that changed what is saved; all are read by
 ``test_saved_files.py``.
 """
 

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import itertools
 from typing import Any
 
 import numpy as np
 import pytest
+from euler_sequences import INTRINSIC, SEQUENCES
 from hypothesis import given
 from hypothesis import strategies as st
 from oracles.bodies import matrix
 from polhode import euler_angles
 from polhode.errors import SingularAttitudeError
 from scipy.spatial.transform import Rotation
-
-INTRINSIC = ["".join(s) for s in itertools.product("XYZ", repeat=3) if s[0] != s[1] and s[1] != s[2]]
-SEQUENCES = INTRINSIC + [s.lower() for s in INTRINSIC]
 
 
 def same_rotation(a: np.ndarray, b: np.ndarray) -> np.ndarray:

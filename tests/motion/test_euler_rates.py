@@ -7,6 +7,7 @@ from typing import Any, Literal
 import mpmath
 import numpy as np
 import pytest
+from euler_sequences import INTRINSIC, SEQUENCES
 from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp, mpf
@@ -15,7 +16,6 @@ from polhode import RigidBody, euler_angles, solids
 from polhode.errors import SingularAttitudeError
 from scipy.integrate import solve_ivp
 from scipy.special import ellipj
-from test_euler_angles import INTRINSIC, SEQUENCES
 
 FRAMES: tuple[Literal["body", "space"], ...] = ("body", "space")
 angle = st.floats(-3.1, 3.1)

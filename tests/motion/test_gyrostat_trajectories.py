@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import polhode
 import pytest
+from page_data import data
 from polhode import GyrostatMotion, RigidBody, Trajectory, loads, wheel
-from test_animation import data
 
 if TYPE_CHECKING:
     from pathlib import Path

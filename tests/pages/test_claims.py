@@ -23,8 +23,8 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from places import ROOT
 
-ROOT = Path(__file__).resolve().parents[1]
 CLAIMS: dict[str, dict[str, str | list[str]]] = tomllib.loads(
     (Path(__file__).parent / "claims.toml").read_text("utf-8")
 )
@@ -123,7 +123,7 @@ def names_in(file: str) -> set[str]:
 @pytest.mark.parametrize("page", [*PROMISES, *THEORY])
 def test_a_sentence_with_a_number_has_its_test(page: str) -> None:
     found = open_sentences(page)
-    assert not found, f"{page}: no claim of tests/claims.toml holds\n" + "\n".join(found)
+    assert not found, f"{page}: no claim of tests/pages/claims.toml holds\n" + "\n".join(found)
 
 
 @pytest.mark.parametrize("page", CLAIMS)

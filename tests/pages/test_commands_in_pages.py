@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 from command_line import run
 from markdown_code import blocks, pages_of
+from places import ROOT
 
-ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", *pages_of(ROOT / "docs")]
 LANGUAGES = {"python", "text", "console", "sh", "bash", "toml", "{toctree}", "{eval-rst}", "{literalinclude}"}
 

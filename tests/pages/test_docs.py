@@ -17,9 +17,9 @@ import numpy as np
 import polhode
 import pytest
 from markdown_code import MADE, blocks, pages_of, run_page
+from places import ROOT
 from polhode import FreeMotion, RigidBody, Trajectory
 
-ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
 CORE = ROOT / "rust" / "core" / "src"
 PAGES = pages_of(DOCS)

@@ -12,10 +12,10 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from places import ROOT
 
 pytest.importorskip("matplotlib")
 
-ROOT = Path(__file__).resolve().parents[1]
 EXAMPLES = ROOT / "examples"
 PRINTED = {
     "apophis": [r"before: 0\.[67]\d to 1\.[34]\d", r"short-axis: 9\d % after"],

@@ -8,12 +8,12 @@ import io
 import itertools
 import json
 import sys
-from pathlib import Path
 from typing import Any
 
 import pytest
+from places import ROOT
 
-FOLDER = Path(__file__).resolve().parents[1] / "docs/notebooks"
+FOLDER = ROOT / "docs/notebooks"
 PROMISED = {
     "asteroid": ["long-axis 5.4", " 1 -1 ", "relative change of the energy: "],
     "racket": ["turns over every ", "   0.01 rad/s: "],

@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 import pytest
 from command_line import one_line, run
+from places import ROOT
 from polhode import Event, RigidBody, euler_angles, regions, robots
 from polhode.errors import SingularAttitudeError
 from polhode.files.budget import LIMITS
 from polhode.files.reading import MOST_TEXT
+from robot_texts import ONE_BALL
 from scipy.spatial.transform import Rotation
-from test_check import ROBOT
 
-ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text("utf-8")
 WORDS = {"six": 6, "seven": 7, "eight": 8, "nine": 9, "ten": 10, "eleven": 11, "twelve": 12, "thirty": 30}
 
@@ -71,7 +71,7 @@ def test_the_examples_are_as_many_as_is_said(page: str) -> None:
 def test_commands_print_json_and_end_with_0_1_or_2(tmp_path: Path) -> None:
     part, robot, water = tmp_path / "part.obj", tmp_path / "r.urdf", tmp_path / "water.xyz"
     part.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n", "utf-8")
-    robot.write_text(ROBOT.format(0.02), "utf-8")
+    robot.write_text(ONE_BALL.format(0.02), "utf-8")
     water.write_text("3\n\nO 0 0 0\nH 0.757 0 0.587\nH -0.757 0 0.587\n", "utf-8")
     for command, file, *options in (
         ("report", part),
@@ -88,7 +88,7 @@ def test_commands_print_json_and_end_with_0_1_or_2(tmp_path: Path) -> None:
         code, out, err = run(command, tmp_path / "absent", *options)
         assert (code, out) == (2, "")
         assert one_line(err)
-    robot.write_text(ROBOT.format(1), "utf-8")
+    robot.write_text(ONE_BALL.format(1), "utf-8")
     assert run("check", robot)[0] == 1
 
 
@@ -105,13 +105,13 @@ def test_the_help_of_each_command_lists_its_options(command: str) -> None:
 )
 def test_both_sides_of_what_is_suspect(moment: float, verdict: str) -> None:
     """A ball of 5 kg with the radius 0.1 m has 2/5 m r² = 0.02 kg m²."""
-    robot = robots.parse_robot(ROBOT.format(moment).encode(), name="r", folder=".")
+    robot = robots.parse_robot(ONE_BALL.format(moment).encode(), name="r", folder=".")
     assert robots.check(robot)[1].verdict == verdict
 
 
 @pytest.mark.parametrize(("mass", "is_read"), [("9.9e49", True), ("1.1e50", False), ("-1.1e50", False)])
 def test_both_sides_of_the_largest_number_of_a_robot(mass: str, is_read: bool) -> None:
-    text = ROBOT.format(1).replace('value="5"', f'value="{mass}"')
+    text = ONE_BALL.format(1).replace('value="5"', f'value="{mass}"')
     found = robots.check(robots.parse_robot(text.encode(), name="r", folder="."))[1].verdict
     assert (found != "unreadable") == is_read
 
@@ -153,7 +153,7 @@ def test_both_sides_of_the_singular_attitude(sequence: str) -> None:
 def test_shapes_that_overlap_count_twice() -> None:
     """A ball and a half of its size at one place, together of 5 kg: 8/9 and 1/9 of the mass."""
     shape = '<collision><geometry><sphere radius="0.1"/></geometry></collision>'
-    text = ROBOT.format(1).replace(shape, shape + shape.replace("0.1", "0.05"))
+    text = ONE_BALL.format(1).replace(shape, shape + shape.replace("0.1", "0.05"))
     found = robots.check(robots.parse_robot(text.encode(), name="r", folder="."))[1].shape_moments
     assert found is not None
     assert found == pytest.approx(0.4 * 5 / 9 * (8 * 0.1**2 + 0.05**2), rel=1e-12)

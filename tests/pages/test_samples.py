@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from command_line import run
 from markdown_code import blocks
+from places import ROOT
 from polhode import RigidBody, assembly, robots, samples, solids
 from polhode.errors import PolhodeError
 from polhode.uncertainty import ledger
 from sample_files import FILES, FOLDER, t_handle
 
-ROOT = Path(__file__).resolve().parents[1]
 TYPED = {"craft.csv", "robot.sdf", "robot.urdf", "rover.toml", "water.xyz", "wheel.toml"}
 MESHES = {"asteroid.obj": "m", "bracket.ply": "in", "t-handle.stl": "mm", "torus.obj": "mm"}
 

@@ -16,11 +16,11 @@ from urllib.parse import unquote, urldefrag
 
 import pytest
 from browser import Browser, needs_browser
+from places import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-ROOT = Path(__file__).resolve().parents[1]
 SITE = ROOT / "docs" / "_build" / "html"
 SOURCES = [
     path

@@ -11,23 +11,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from command_line import run, write_obj
 from oracles.meshes import cube
+from robot_texts import ONE_BALL
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     import pytest
 
-ROBOT = """<robot name="r">
-  <link name="frame"/>
-  <link name="ball"><inertial><mass value="5"/>
-    <inertia ixx="{0}" iyy="{0}" izz="{0}" ixy="0" ixz="0" iyz="0"/></inertial>
-    <collision><geometry><sphere radius="0.1"/></geometry></collision></link>
-</robot>
-"""
-
 
 def test_good_robot(tmp_path: Path) -> None:
-    (tmp_path / "r.urdf").write_text(ROBOT.format(0.02))
+    (tmp_path / "r.urdf").write_text(ONE_BALL.format(0.02))
     code, out, err = run("check", tmp_path / "r.urdf", "--format", "json")
     assert (code, err) == (0, "")
     report = json.loads(out)
@@ -40,18 +33,20 @@ def test_good_robot(tmp_path: Path) -> None:
 
 
 def test_suspect_fails_only_when_strict(tmp_path: Path) -> None:
-    (tmp_path / "r.urdf").write_text(ROBOT.format(0.001))
+    (tmp_path / "r.urdf").write_text(ONE_BALL.format(0.001))
     code, out, _ = run("check", tmp_path / "r.urdf")
     assert code == 0
     assert "0.05 times its collision shape's" in out
     assert run("check", tmp_path / "r.urdf", "--strict")[0] == 1
     assert run("check", tmp_path / "r.urdf", "--strict", "--fix", tmp_path / "better.urdf")[0] == 0
-    assert (tmp_path / "better.urdf").read_text() == ROBOT.format(0.02)  # numbers that stay are not touched
+    assert (tmp_path / "better.urdf").read_text() == ONE_BALL.format(
+        0.02
+    )  # numbers that stay are not touched
 
 
 def test_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
     for moment, want in ((0.02, 0), (1, 1)):
-        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(ROBOT.format(moment).encode())))
+        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(ONE_BALL.format(moment).encode())))
         assert run("check", "-")[0] == want
 
 
@@ -61,7 +56,7 @@ def test_meshes_elsewhere_are_read_where_that_is_allowed(tmp_path: Path) -> None
     path = tmp_path / "arm" / "r.urdf"
     path.parent.mkdir()
     mesh = '<mesh filename="../cube.obj"/>'
-    path.write_text(ROBOT.format(1).replace('"5"', '"6"').replace('<sphere radius="0.1"/>', mesh))
+    path.write_text(ONE_BALL.format(1).replace('"5"', '"6"').replace('<sphere radius="0.1"/>', mesh))
     code, out, err = run("check", path)
     assert (code, err) == (1, "")
     assert f"line 5: mesh ../cube.obj lies outside {path.parent}" in out
@@ -75,7 +70,7 @@ def test_meshes_elsewhere_are_read_where_that_is_allowed(tmp_path: Path) -> None
 
 def test_control_characters_of_a_file_do_not_reach_the_terminal(tmp_path: Path) -> None:
     path = tmp_path / "r.urdf"
-    path.write_text(ROBOT.format(1).replace('<sphere radius="0.1"/>', '<mesh filename="a\x9b2J\u202e"/>'))
+    path.write_text(ONE_BALL.format(1).replace('<sphere radius="0.1"/>', '<mesh filename="a\x9b2J\u202e"/>'))
     _, out, _ = run("check", path)
     assert "mesh a\\x9b2J\\u202e was not found" in out
 

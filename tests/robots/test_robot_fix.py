@@ -10,7 +10,7 @@ import pytest
 from command_line import run
 from polhode import robots
 from robot_texts import BALL, CUBE, ROUND, UNREAD, bare, joint, link, mjcf, sdf, sjoint, slink, urdf, weighed
-from test_robots import there
+from three_formats import there
 
 if TYPE_CHECKING:
     from pathlib import Path

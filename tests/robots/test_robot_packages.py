@@ -13,7 +13,7 @@ from command_line import write_obj
 from oracles.meshes import cube
 from polhode import robots
 from robot_texts import HEAVY, ROUND, link, mjcf, sdf, slink, urdf, weighed
-from test_robots import there
+from three_formats import there
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -9,7 +9,7 @@ import pytest
 from polhode import robots
 from polhode.robots.verdict import Word
 from robot_rules import ROWS
-from test_robots import there
+from three_formats import there
 
 
 def test_there_is_a_robot_for_each_rule() -> None:

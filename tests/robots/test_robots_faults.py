@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from polhode import robots
 from polhode.errors import FileFormatError
-from test_robots import FORMATS, PLAIN, there
+from three_formats import FORMATS, PLAIN, there
 
 
 class TestOneBadItem:

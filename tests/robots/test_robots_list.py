@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from places import ROOT
 
-BENCHMARKS = Path(__file__).resolve().parents[1] / "benchmarks"
+BENCHMARKS = ROOT / "benchmarks"
 WORDS = {"suspect", "disputed", "missing", "placeholder", "impossible", "unreadable"}
 
 

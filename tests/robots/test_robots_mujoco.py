@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from polhode import robots, solids
-from test_robots import fixed_axes, there
+from three_formats import fixed_axes, there
 
 
 class TestMuJoCo:
