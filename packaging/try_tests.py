@@ -23,9 +23,9 @@ NEEDS = ["hypothesis", "mpmath", "pytest", "pytest-timeout", "pytest-xdist", "sc
 #: Files of the quick share: every class of the extension is made, and moves.
 QUICK = [
     "house/reprs", "loads/loads", "loads/states", "loads/wheels", "mass/accumulator", "mass/composites",
-    "mass/laminae", "mass/particles", "mass/rigid_body", "mass/rods", "mass/solids", "mass/validity", "mass/voxels",
-    "motion/euler_angles", "motion/events", "motion/free_motion", "motion/gyrostat", "motion/heavy_top",
-    "motion/sensitivity", "motion/simulate", "principal/principal_axes",
+    "mass/laminae", "mass/particles", "mass/rigid_body", "mass/rods", "mass/solids", "mass/validity",
+    "mass/voxels", "motion/euler_angles", "motion/events", "motion/free_motion", "motion/gyrostat",
+    "motion/heavy_top", "motion/sensitivity", "motion/simulate", "principal/principal_axes",
 ]  # fmt: skip
 #: What all tests import, the site and the tests of mutants among them.
 GROUPS = ["test", "docs", "mutants"]

@@ -1,4 +1,4 @@
-"""Motions that moving pictures show, and what holds of the frames of a picture and of the elements of a page."""
+"""Motions for moving pictures; checks of the frames of a picture and of the elements of a page."""
 
 from __future__ import annotations
 

@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 from places import ROOT
+from polhode.cli.cluster import client_at
+from polhode.errors import PolhodeError
 
 pytest.importorskip("distributed")
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="the script is for a shell")
@@ -82,3 +84,18 @@ def test_the_script_for_slurm_runs_with_plain_processes(tmp_path: Path) -> None:
             os.killpg(job.pid, signal.SIGKILL)
     assert job.returncode == 0, told[-3000:]
     assert "the same bits: True" in out
+
+
+# The client of the option ``--client``.
+
+dask = pytest.importorskip("dask")
+distributed = pytest.importorskip("distributed")
+
+
+def test_one_that_finds_no_scheduler_leaves_dask_as_it_was() -> None:
+    before = dask.config.get("scheduler", None)
+    with pytest.raises(PolhodeError, match="no scheduler of dask answers at 'nowhere'"), client_at("nowhere"):
+        pass
+    assert dask.config.get("scheduler", None) == before
+    with pytest.raises(ValueError, match="No clients found"):
+        distributed.default_client()

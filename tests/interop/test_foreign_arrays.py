@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import polhode
 import pytest
-from polhode import RigidBody, _core, molecules, solids
+from polhode import RigidBody, _core, molecules, plot, solids
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -240,3 +242,59 @@ def test_true_beside_a_number_with_a_sigma_is_one(true: Any) -> None:
     masses = [uncertainties.ufloat(2.0, 0.1)] * 3
     bodies = [MADE.from_particles([*masses, one], CORNERS) for one in (true, 1.0)]
     assert repr(bodies[0]) == repr(bodies[1])
+
+
+# Masks and units: pictures and motions refuse what has them, and name the argument.
+
+BOX = solids.box((3.0, 2.0, 1.0), mass=1.0)
+MOTION = BOX.free_motion((0.1, 1.0, 0.2))
+FALL = BOX.simulate([0.0, 1.0], (0.1, 1.0, 0.2), about="origin")
+TOP = solids.cylinder(1.0, 2.0, mass=1.0).translated((0.0, 0.0, 1.0))
+TIMES = np.linspace(0.0, 1.0, 5)
+CENTER = np.array([0.1, 0.2, 0.3])
+TRIANGLE = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], dtype=float)
+FACES = np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
+
+CALLS: dict[str, tuple[Any, Callable[[Any], object]]] = {
+    "plot.body: vertices": (TRIANGLE, lambda value: plot.body(value, FACES)),
+    "plot.body: faces": (FACES, lambda value: plot.body(TRIANGLE, value)),
+    "plot.ellipsoid: center": (CENTER, lambda value: plot.ellipsoid(BOX, center=value)),
+    "plot.poinsot: t": (TIMES, lambda value: plot.poinsot(MOTION, value)),
+    "plot.cones: t": (
+        TIMES,
+        lambda value: plot.cones(solids.cylinder(1, 3, mass=1).free_motion((0.1, 0, 1)), value),
+    ),
+    "plot.nutation: t": (
+        TIMES,
+        lambda value: plot.nutation(TOP.heavy_top((0, 0.1, 9), (0.6, 0, 0, 0.8), (0, 0, -9.81)), value),
+    ),
+    "animate: shape": (TRIANGLE, lambda value: MOTION.at(TIMES).animate("never.html", shape=(value, FACES))),
+    "Trajectory.point: r": (CENTER, MOTION.at(TIMES).point),
+    "pivot_reaction: force": (CENTER, lambda value: FALL.pivot_reaction(force=value)),
+    "resume: t": (TIMES + 1.0, FALL.resume),
+    "ray_kappa: constants": (np.array([3.0, 2.0, 1.0]), molecules.ray_kappa),
+    "planar_moments: moments": (np.array([1.0, 2.0, 2.5]), molecules.planar_moments),
+}
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    pyplot.switch_backend("agg")
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_a_mask_and_a_unit_are_told(name: str, tmp_path: Path) -> None:
+    good, call = CALLS[name]
+    argument = name.partition(": ")[2]
+    mask = np.zeros(np.shape(good), dtype=bool)
+    mask[-1] = True
+    with pytest.raises(ValueError, match=f"{argument}: .*is masked"):
+        call(np.ma.masked_array(good, mask))
+    quantity = pytest.importorskip("pint").UnitRegistry().Quantity(good, "second")
+    with pytest.raises(TypeError, match=f"{argument}: .*would lose its unit"):
+        call(quantity)
+    assert list(tmp_path.iterdir()) == []
+    call(np.ma.masked_array(good, False))  # nothing of it is masked
+    pytest.importorskip("matplotlib.pyplot").close("all")

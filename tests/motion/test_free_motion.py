@@ -1,9 +1,9 @@
-"""Exact free motion against series in forty digits, closed forms, conservation laws; shapes and scales."""
+"""Exact free motion against series in forty digits, closed forms, laws; every regime, random bodies."""
 
 from __future__ import annotations
 
 import pickle
-from typing import Any
+from typing import Any, NamedTuple
 
 import mpmath
 import numpy as np
@@ -12,6 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mpf
 from oracles.free_motion import taylor_motion
+from oracles.jacobi import JacobiMotion
+from oracles.motion_cases import MotionCase, angle, load_table, relative_error
 from polhode import RigidBody, errors
 from scipy.spatial.transform import Rotation
 
@@ -227,3 +229,89 @@ def test_pickles_and_tells_what_it_is() -> None:
     stack = motion.body.free_motion(np.ones((3, 1, 3)))
     assert repr(stack) == "<FreeMotion stack of shape (3, 1): 3 motions>"
     assert np.array_equal(motion.omega, (0.3, 0.2, 1.1))
+
+
+# Every regime against forty digits, up to 1e6 rotations.
+
+TABLE = load_table("free_motion")
+
+
+@pytest.mark.parametrize("case", TABLE, ids=lambda case: case.name)
+def test_every_regime(case: MotionCase) -> None:
+    full = "inertia" in case.body
+    body = RigidBody(**case.body) if full else RigidBody.from_principal(**case.body)
+    motion = body.free_motion(case.omega, case.attitude).at(np.array(case.times))
+    bar = 1e-13 if full else 1e-14
+    for t, omega, quaternion, want in zip(
+        case.times, motion.omega, motion.quaternion, case.expected, strict=True
+    ):
+        assert angle(quaternion, want.quaternion) <= bar, f"attitude at t = {t:g}"
+        assert relative_error(omega, want.omega) <= bar, f"rates at t = {t:g}"
+
+
+def test_one_time_and_many_agree_to_the_last_bit() -> None:
+    case = TABLE[0]
+    motion = RigidBody.from_principal(**case.body).free_motion(case.omega, case.attitude)
+    together = motion.at(np.array(case.times))
+    for i, t in enumerate(case.times):
+        alone = motion.at(t)
+        assert np.array_equal(alone.omega, together.omega[i])
+        assert np.array_equal(alone.quaternion, together.quaternion[i])
+
+
+# Random bodies, from needles to near-spheres, up to 1e12 rotations, against elliptic functions.
+
+SEED = 20261121
+ROTATIONS = np.array([1.0, 10.0, 1e3, 1e6, 1e9, 1e12])
+
+
+class Start(NamedTuple):
+    moments: np.ndarray
+    omega: np.ndarray
+    attitude: np.ndarray
+    times: np.ndarray
+
+
+def random_starts(count: int) -> list[Start]:
+    """Second moments over three decades, rates over two; the first `count` of one endless sequence."""
+    rng = np.random.default_rng(SEED)
+    drawn: list[Start] = []
+    while len(drawn) < count:
+        x, y, z = 10.0 ** rng.uniform(-3.0, 0.0, 3)
+        moments = np.sort([y + z, z + x, x + y])
+        omega = rng.normal(size=3) * 10.0 ** rng.uniform(-2.0, 0.0, 3)
+        attitude = rng.normal(size=4)
+        rotation = 2 * np.pi * moments[1] / np.linalg.norm(moments * omega)
+        times = ROTATIONS * rotation * rng.uniform(0.5, 1.0, len(ROTATIONS))
+        drawn.append(Start(moments, omega, attitude / np.linalg.norm(attitude), times))
+    return drawn
+
+
+def random_errors(start: Start) -> list[float]:
+    """The larger of the angle and the relative error of ω, at each time."""
+    exact = JacobiMotion(start.moments, start.omega, start.attitude)
+    body = RigidBody.from_principal(1.0, start.moments)
+    motion = body.free_motion(start.omega, start.attitude).at(start.times)
+    worst = []
+    for t, omega, quaternion in zip(start.times, motion.omega, motion.quaternion, strict=True):
+        rates, attitude = exact.at(t)
+        worst.append(max(angle(quaternion, attitude), relative_error(omega, rates)))
+    return worst
+
+
+def assert_errors(count: int) -> None:
+    found = np.array([random_errors(start) for start in random_starts(count)])
+    assert (np.median(found, axis=0) <= 2e-15).all()
+    assert found[:, ROTATIONS <= 1e6].max() <= 1e-13
+    assert found.max() <= 1e-10
+
+
+@pytest.mark.timeout(600)
+def test_a_hundred_random_bodies() -> None:
+    assert_errors(100)
+
+
+@pytest.mark.long
+@pytest.mark.timeout(1800)
+def test_nine_hundred_random_bodies() -> None:
+    assert_errors(900)

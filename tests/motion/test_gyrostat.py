@@ -4,12 +4,22 @@ from __future__ import annotations
 
 import copy
 import pickle
+from typing import TYPE_CHECKING, Any
 
+import mpmath
 import numpy as np
 import polhode
 import pytest
+from mpmath import mp, mpf
+from oracles.gyrostat_cases import cases, proven
+from oracles.motion_cases import MotionCase, State, angle, apart, load_table, relative_error
 from polhode import RigidBody, loads
 from polhode.errors import InvalidInertiaError, PolhodeError
+
+if TYPE_CHECKING:
+    from polhode import GyrostatMotion
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 BODY = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
 
@@ -19,7 +29,7 @@ def skew(h: np.ndarray) -> np.ndarray:
     return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
 
 
-def apart(a: np.ndarray, b: np.ndarray) -> float:
+def quaternions_apart(a: np.ndarray, b: np.ndarray) -> float:
     """Tell how far quaternions are from each other, whatever their signs."""
     return float(np.minimum(np.abs(a - b).max(-1), np.abs(a + b).max(-1)).max())
 
@@ -59,7 +69,7 @@ def test_integration_finds_the_same(
     exact = motion.at(times)
     largest = np.abs(run.omega).max() or 1.0
     assert np.abs(exact.omega - run.omega).max() <= 3e-13 * max(largest, 1.0)
-    assert apart(exact.quaternion, run.quaternion) <= 3e-12
+    assert quaternions_apart(exact.quaternion, run.quaternion) <= 3e-12
 
 
 def test_random_gyrostats_keep_their_laws_and_agree_with_integration() -> None:
@@ -84,7 +94,7 @@ def test_random_gyrostats_keep_their_laws_and_agree_with_integration() -> None:
     run = bodies.simulate([0.0, 5.0, 50.0], omega, load=loads.rotor(h), method="taylor", rtol=1e-22)
     largest = np.linalg.norm(run.omega, axis=-1).max(1)
     assert (np.abs(late.omega[:, :3] - run.omega).max((1, 2)) / largest).max() <= 3e-15
-    assert apart(late.quaternion[:, :3], run.quaternion) <= 3e-15
+    assert quaternions_apart(late.quaternion[:, :3], run.quaternion) <= 3e-15
 
 
 @pytest.mark.long
@@ -97,7 +107,7 @@ def test_random_gyrostats_over_hundreds_of_rotations() -> None:
     run = bodies.simulate(times, omega, load=loads.rotor(h), method="taylor", rtol=1e-24)
     largest = np.linalg.norm(run.omega, axis=-1).max(1)
     assert (np.abs(exact.omega - run.omega).max((1, 2)) / largest).max() <= 3e-15
-    assert apart(exact.quaternion, run.quaternion) <= 3e-15
+    assert quaternions_apart(exact.quaternion, run.quaternion) <= 3e-15
 
 
 def test_after_its_period_omega_is_back() -> None:
@@ -118,7 +128,7 @@ def test_rotating_the_axes_and_scaling_change_nothing() -> None:
         body = RigidBody.from_principal(1.0, np.array([1.0, 2.0, 2.5]) * inertia)
         scaled = body.gyrostat(h * inertia * rate).free_motion(omega * rate).at(times / rate)
         assert np.abs(scaled.omega / rate - plain.omega).max() < 1e-14
-        assert apart(scaled.quaternion, plain.quaternion) < 1e-14
+        assert quaternions_apart(scaled.quaternion, plain.quaternion) < 1e-14
 
 
 @pytest.mark.parametrize("power", [-4, -10, -20, -100, -300])
@@ -129,7 +139,7 @@ def test_little_momentum(power: int) -> None:
         exact = body.gyrostat(h).free_motion((0.3, 0.2, 1.1)).at(times)
         run = body.simulate(times, (0.3, 0.2, 1.1), load=loads.rotor(h), method="taylor", rtol=1e-25)
         assert np.abs(exact.omega - run.omega).max() <= 2e-15
-        assert apart(exact.quaternion, run.quaternion) <= 2e-15
+        assert quaternions_apart(exact.quaternion, run.quaternion) <= 2e-15
         free = body.free_motion((0.3, 0.2, 1.1)).at(times)
         assert np.abs(exact.omega - free.omega).max() <= 2e-15 + 20 * 10.0**power
 
@@ -142,7 +152,7 @@ def test_from_one_equilibrium_to_another() -> None:
     run = body.simulate(times, omega, load=loads.rotor(h), method="taylor", rtol=1e-26)
     exact = motion.at(times)
     assert motion.mode == "separatrix"
-    assert apart(exact.quaternion, run.quaternion) <= 4e-15
+    assert quaternions_apart(exact.quaternion, run.quaternion) <= 4e-15
     assert np.abs(exact.omega - run.omega).max() <= 4e-14
     for t in (150.0, 1e3, 1e6):
         ends = motion.at([-t, t]).omega
@@ -231,7 +241,7 @@ def test_free_and_held_wheels_are_two_systems() -> None:
     run = rest.simulate(times, omega, load=loads.damping(-skew(h)), method="taylor", rtol=1e-14)
     exact = motion.at(times)
     assert np.abs(exact.omega - run.omega).max() < 1e-12
-    assert apart(exact.quaternion, run.quaternion) < 1e-12
+    assert quaternions_apart(exact.quaternion, run.quaternion) < 1e-12
     start = np.diag([1.0, 2.0, 2.5]) @ omega + inertia * rate * axis
     assert np.abs(exact.angular_momentum().spin - start).max() < 1e-13
     assert exact.invariants().energy_drift < 1e-13
@@ -268,3 +278,129 @@ def test_what_is_refused() -> None:
         polhode.wheel(axis=(1, 0, 0), inertia=0.1, rate=1.0, mode="loose")  # type: ignore[arg-type]
     with pytest.raises(TypeError, match=r"polhode\.wheel"):
         BODY.gyrostat(wheels=[3])  # type: ignore[list-item]
+
+
+# Every regime against forty digits, up to 1e12 rotations.
+
+CASES = load_table("gyrostat")
+SHORT = 15.0
+"""Rotations that a general integrator is followed for."""
+
+
+def _body(case: MotionCase) -> RigidBody:
+    return RigidBody(**case.body) if "inertia" in case.body else RigidBody.from_principal(**case.body)
+
+
+def _error(
+    case: MotionCase, omega: NDArray[np.float64], quaternion: NDArray[np.float64], want: State
+) -> float:
+    return max(angle(quaternion, want.quaternion), relative_error(omega, want.omega, at_least=case.fastest))
+
+
+def test_every_regime_has_its_cases() -> None:
+    assert [case.name for case in CASES] == [case.name for case in cases()]
+    assert len(CASES) >= 60
+    assert all(len(case.kappa) == len(case.expected) == len(case.times) for case in CASES)
+
+
+@pytest.mark.parametrize(
+    "name", ["symmetric: oblate, h along its axis", "spherical: h along none", "generic: two lobes, one"]
+)
+def test_the_generator_makes_the_table(name: str) -> None:
+    made = next(proven(case) for case in cases() if case.name == name)
+    kept = next(case for case in CASES if case.name == name)
+    assert (made.kappa, made.fastest, made.periods) == (kept.kappa, kept.fastest, kept.periods)
+    assert max(apart(a, b) for a, b in zip(made.expected, kept.expected, strict=True)) < 1e-38
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_the_table_against_integration(case: MotionCase) -> None:
+    x, y, z = case.rotor
+    inside = loads.damping([[0, z, -y], [-z, 0, x], [y, -x, 0]])
+    turn = max(case.times[0] * 4, 1e-300)
+    short = [i for i, t in enumerate(case.times) if t <= SHORT * turn]
+    times = np.array([0.0, *(case.times[i] for i in short)])
+    run = _body(case).simulate(times, case.omega, case.attitude, load=inside, method="taylor", rtol=1e-26)
+    for k, i in enumerate(short, start=1):
+        bar = 1e-15 + 1e-16 * case.kappa[i]
+        assert _error(case, run.omega[k], run.quaternion[k], case.expected[i]) <= bar, (
+            f"t = {case.times[i]:g}"
+        )
+
+
+STATES = [pytest.param(case, i, id=f"{case.name}: {i}") for case in CASES for i in range(len(case.times))]
+
+
+@pytest.mark.parametrize(("case", "i"), STATES)
+def test_the_closed_form(case: MotionCase, i: int) -> None:
+    motion = _body(case).gyrostat(case.rotor).free_motion(case.omega, case.attitude)
+    state, want = motion.at(case.times[i]), case.expected[i]
+    bar = 1e-14 + 1e-16 * case.kappa[i]
+    assert _error(case, state.omega, state.quaternion, want) <= bar, f"t = {case.times[i]:g}"
+
+
+# The period next to a separatrix, against 80 digits: by the pencil of energy and momentum.
+
+TURN = np.array([[2, -1, 2], [2, 2, -1], [-1, 2, 2]])
+"""Three times a rotation: what it makes of whole numbers is exact."""
+
+
+def period(moments: Any, momentum: Any, omega: Any) -> Any:
+    """Give det I · 2∫dx/y over a positive lobe of y² = det(Q_T − x Q_L), by the arithmetic-geometric mean."""
+    inertia, h, w = mpmath.diag(moments), mpmath.matrix(momentum), mpmath.matrix(omega)
+    twice = (w.T * inertia * w)[0]
+    whole = inertia * w + h
+    rest = (h.T * h)[0] - (whole.T * whole)[0]
+    inside = inertia * h
+
+    def determinant(x: Any) -> Any:
+        matrix = mpmath.matrix(4, 4)
+        matrix[:3, :3] = inertia - x * inertia * inertia
+        for i in range(3):
+            matrix[i, 3] = matrix[3, i] = -x * inside[i]
+        matrix[3, 3] = -twice - x * rest
+        return mpmath.det(matrix)
+
+    places = [mpf(k) / 4 for k in range(5)]
+    powers = mpmath.matrix([[x**k for k in range(4, -1, -1)] for x in places])
+    a, b, c, d, e = mpmath.lu_solve(powers, mpmath.matrix([determinant(x) for x in places]))
+    b, c, d = b / 4, c / 6, d / 4
+    second = a * e - 4 * b * d + 3 * c * c
+    third = a * c * e + 2 * b * c * d - a * d * d - b * b * e - c**3
+    roots = mpmath.polyroots([4, 0, -second, -third], maxsteps=500, extraprec=800)
+    real = sorted(x.real for x in roots if abs(x.imag) < mpf(10) ** -60 * abs(x))
+    root = real[-1]
+    height = mpmath.sqrt(3 * root**2 - second / 4)
+    mean = mpmath.agm(2 * mpmath.sqrt(height), mpmath.sqrt(3 * root + 2 * height))
+    return 2 * mpmath.pi / mean * mpmath.det(inertia)
+
+
+def turned(moments: Any, momentum: Any, omega: Any) -> GyrostatMotion:
+    """Give the motion with other axes, three times as fast; the products of the tensor are whole numbers."""
+    tensor = TURN @ np.diag(moments) @ TURN.T
+    return RigidBody(1.0, tensor).gyrostat(9 * TURN @ momentum).free_motion(TURN @ omega)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("power", range(10, 53, 3))
+@pytest.mark.parametrize(
+    ("moments", "momentum", "omega"),
+    [
+        ((2.0, 3.0, 4.0), (1.0, 1.0, 2.0), (-2.5, 1.0, -2.5)),
+        ((3.0, 4.0, 6.0), (2.5, 0.0, -1.0), (-1.5, 1.0, -1.5)),
+        ((2.0, 3.0, 4.0), (0.0, 0.0, 2.0), (2.0, 0.0, -0.5)),
+    ],
+    ids=["h along none", "h in a plane", "h along the third axis"],
+)
+def test_next_to_a_separatrix_it_has_all_its_digits(
+    moments: Any, momentum: Any, omega: Any, power: int, sign: int
+) -> None:
+    start = np.array(omega) * [1 + sign * 2.0**-power, 1, 1]
+    body = RigidBody.from_principal(1.0, moments)
+    with mp.workdps(80):
+        exact = period(moments, momentum, start)
+        for found, want in (
+            (body.gyrostat(momentum).free_motion(start).period, exact),
+            (turned(moments, momentum, start).period, exact / 3),
+        ):
+            assert abs(mpf(float(found)) / want - 1) <= 4e-16

@@ -39,9 +39,7 @@ def test_suspect_fails_only_when_strict(tmp_path: Path) -> None:
     assert "0.05 times its collision shape's" in out
     assert run("check", tmp_path / "r.urdf", "--strict")[0] == 1
     assert run("check", tmp_path / "r.urdf", "--strict", "--fix", tmp_path / "better.urdf")[0] == 0
-    assert (tmp_path / "better.urdf").read_text() == ONE_BALL.format(
-        0.02
-    )  # numbers that stay are not touched
+    assert (tmp_path / "better.urdf").read_text() == ONE_BALL.format(0.02)  # the other numbers stay
 
 
 def test_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -312,9 +312,7 @@ def _of_signature(name: str, function: Any, arguments: ast.arguments, holder: st
             values[parameter] = specific[parameter]
         else:
             known = VALUES if parameter in VALUES else documented.arrays(function)
-            assert parameter in known, (
-                f"{name}: tests/hostile/hostile_calls/valid.py has no value for {parameter}="
-            )
+            assert parameter in known, f"{name}: hostile_calls/valid.py has no value for {parameter}="
             values[parameter] = known[parameter]
     defaults = len(arguments.defaults)
     optional = {a.arg for a in plain[len(plain) - defaults :]} if defaults else set()

@@ -1,9 +1,9 @@
 """Hostile calls, each a function of a seed and its number alone, in a process that may die of them.
 
-``python -m hostile_calls.worker SEED FROM TO [PROGRESS]`` in ``tests/hostile`` makes the calls and prints one line of JSON
-for each that went wrong. The number of the call under way stands in the file PROGRESS, so that whoever waits
-knows which one hung or killed the process. ``python -m hostile_calls.worker SEED NUMBER`` makes one call and tells
-what it was.
+``python -m hostile_calls.worker SEED FROM TO [PROGRESS]`` makes the calls and prints one line of JSON for
+each that went wrong; the search path is that of the tests, `places.IMPORTED`. The number of the call under
+way stands in the file PROGRESS, so that whoever waits knows which one hung or killed the process.
+``python -m hostile_calls.worker SEED NUMBER`` makes one call and tells what it was.
 """
 
 from __future__ import annotations
