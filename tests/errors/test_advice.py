@@ -1,7 +1,6 @@
 """Advice that presumes a cause: given where following it works, and not given where it would not.
 
-`test_ways_out.py` asks that every refusal names a way out; here the way out is taken, on both sides of the
-condition under which it is offered.
+The way out is taken, on both sides of the condition under which it is offered.
 """
 
 from __future__ import annotations

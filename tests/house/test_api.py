@@ -110,11 +110,8 @@ class TestNames:
 
 
 class TestDocumentation:
-    @pytest.mark.parametrize("name", OBJECTS)
-    def test_every_public_object_has_a_docstring(self, name: str) -> None:
-        doc = inspect.getdoc(OBJECTS[name])
-        assert doc
-        assert doc.strip()
+    def test_every_public_object_has_a_docstring(self) -> None:
+        assert [name for name, value in OBJECTS.items() if not (inspect.getdoc(value) or "").strip()] == []
 
     @pytest.mark.parametrize("name", WITH_EXAMPLES)
     def test_its_examples_print_what_they_show(self, name: str) -> None:
@@ -125,11 +122,16 @@ class TestDocumentation:
     def test_the_main_objects_have_examples(self) -> None:
         assert {"polhode.RigidBody", "polhode.principal_axes"} <= set(WITH_EXAMPLES)
 
-    @pytest.mark.parametrize("name", FUNCTIONS)
-    def test_every_function_shows_its_parameters(self, name: str) -> None:
-        value = OBJECTS[name]
-        function = value.__func__ if isinstance(value, staticmethod | classmethod) else value
-        inspect.signature(function)
+    def test_every_function_shows_its_parameters(self) -> None:
+        without = []
+        for name in FUNCTIONS:
+            value = OBJECTS[name]
+            function = value.__func__ if isinstance(value, staticmethod | classmethod) else value
+            try:
+                inspect.signature(function)
+            except ValueError:
+                without.append(name)
+        assert without == []
 
 
 class TestReadme:

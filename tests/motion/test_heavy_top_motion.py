@@ -1,4 +1,4 @@
-"""The exact motion of heavy symmetric tops: against series in high precision, laws, limits, scales; stacks and errors."""
+"""The exact motion of heavy symmetric tops against series in high precision; laws, scales, stacks, errors."""
 
 from __future__ import annotations
 

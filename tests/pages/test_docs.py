@@ -73,11 +73,6 @@ class TestCode:
         assert {label for label in LABELS if label not in index} == set()
 
 
-def test_the_tutorial_takes_twenty_minutes() -> None:
-    """At eighty words a minute, code and what it prints among them."""
-    assert len((DOCS / "tutorial.md").read_text("utf-8").split()) <= 20 * 80
-
-
 class TestTheory:
     text = "".join("\n" + page.read_text("utf-8") for page in sorted(DOCS.glob("theory/*.md")))
 
