@@ -1,8 +1,9 @@
 """The lints and tests of what differs from a commit: ``python tests/quick.py [COMMIT]``, of HEAD by default.
 
 Rust tests are those of the rooms with a changed file. Python tests are those that bear the name of a changed
-file, or those of its room, against an extension that is compiled anew, quickly, not for speed and for any machine.
-It says which changed files no test is named after; `make test` runs everything, on all instruction sets.
+file, or else those of its room, against an extension that is compiled anew, quickly, not for speed and for
+any machine. It says which changed files no test is named after; `make test` runs everything, on all
+instruction sets.
 """
 
 from __future__ import annotations
@@ -20,20 +21,17 @@ TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
 #: Folders that are no rooms.
 ROOTS = ("rust", "core", "src", "python", "polhode")
 
-#: Rooms whose tests have other names than they.
+#: Rooms of other names than those of their tests.
 NAMED = {
     "integrate": ["simulate", "taylor", "sensitivity", "load_terms"],
     "simulate": ["simulate", "events", "exact_runs"],
-    "ensembles": ["ensemble", "reductions"],
     "random": ["distributions"],
     "problem": ["simulate", "bad_inputs"],
     "numerics": ["principal_axes", "free_motion", "heavy_top_motion", "taylor"],
-    "principal": ["principal_axes", "canonical_axes"],
     "simplex": ["tetrahedra", "polyhedron"],
     "refined": ["free_motion", "near_separatrix"],
     "error": ["errors", "bad_inputs"],
-    "io": ["streams", "io"],
-    "arrays": ["foreign_arrays", "masks_and_units"],
+    "arrays": ["foreign_arrays"],
     "free": ["free_motion"],
 }
 

@@ -1,4 +1,4 @@
-"""Every row of ``bad_inputs.toml``: its exit code, and one line that names what is wrong; what it tells to do works."""
+"""Every row of ``bad_inputs.toml``: its exit code, one line that names what is wrong, and what helps."""
 
 from __future__ import annotations
 

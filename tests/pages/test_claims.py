@@ -1,7 +1,7 @@
 """Numbers on the pages that users rely on: ``claims.toml`` names the test that fails when they are false.
 
-The table has a part for each page. A key is words of the page, its value the test or the tests. A test is named
-as pytest names it; ``rust/…/file.rs::name`` is one of the core.
+The table has a part for each page. A key is words of the page, its value the test or the tests. A test is
+named as pytest names it; ``rust/…/file.rs::name`` is one of the core.
 """
 
 from __future__ import annotations
