@@ -48,7 +48,7 @@ test-python: build setup optional docs ## the tests of the package, on all cores
 
 pytest:
 	$(BIN)/python -m pytest -m "not long and not alone" --numprocesses auto --dist loadfile
-	$(BIN)/python -m pytest -m "alone and not long" $$(grep -lw mark.alone tests/test_*.py)
+	$(BIN)/python -m pytest -m "alone and not long" $$(grep -lw mark.alone tests/*/test_*.py)
 
 test-long: build setup ## the tests that take minutes: more random cases than `make test` draws
 	$(BIN)/python -m pytest -m long

@@ -22,9 +22,10 @@ LEAST = (3, 11)
 NEEDS = ["hypothesis", "mpmath", "pytest", "pytest-timeout", "pytest-xdist", "scipy"]
 #: Files of the quick share: every class of the extension is made, and moves.
 QUICK = [
-    "accumulator", "composites", "euler_angles", "events", "free_motion", "gyrostat", "heavy_top", "laminae",
-    "loads", "particles", "principal_axes", "reprs", "rigid_body", "rods", "sensitivity", "simulate",
-    "solids", "states", "validity", "voxels", "wheels",
+    "house/reprs", "loads/loads", "loads/states", "loads/wheels", "mass/accumulator", "mass/composites",
+    "mass/laminae", "mass/particles", "mass/rigid_body", "mass/rods", "mass/solids", "mass/validity",
+    "mass/voxels", "motion/euler_angles", "motion/events", "motion/free_motion", "motion/gyrostat",
+    "motion/heavy_top", "motion/sensitivity", "motion/simulate", "principal/principal_axes",
 ]  # fmt: skip
 #: What all tests import, the site and the tests of mutants among them.
 GROUPS = ["test", "docs", "mutants"]
@@ -128,9 +129,14 @@ def prepared(room: Path, sources: Path, wheel: Path, python: str, quick: bool) -
     return own
 
 
+def test_file(name: str) -> str:
+    """The path of a file of tests by its room and subject, as ``mass/solids``."""
+    return f"tests/{name.replace('/', '/test_')}.py"
+
+
 def tests(quick: bool) -> list[str]:
     """What Python is asked to run: all tests but those that take minutes or measure time, or a share."""
-    files = [f"tests/test_{name}.py" for name in QUICK] if quick else []
+    files = [test_file(name) for name in QUICK] if quick else []
     marks = ["-m", "not long and not alone"]
     return ["-m", "pytest", "--quiet", *marks, "--numprocesses", "auto", "--dist", "loadfile", *files]
 

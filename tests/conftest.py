@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
 from molecule_files import write_molecules
+from places import ROOT
 
 # Collecting makes objects that stay to the end: the garbage collector does not look through them.
 gc.disable()
@@ -46,8 +47,7 @@ def shared_data() -> Path:
 
     Without it the test is skipped; where it has to be present (``POLHODE_REQUIRE_DATA=1``) that is a failure.
     """
-    beside = Path(__file__).resolve().parents[2] / "shared" / "data"
-    folder = Path(os.environ.get("POLHODE_SHARED_DATA") or beside)
+    folder = Path(os.environ.get("POLHODE_SHARED_DATA") or ROOT.parent / "shared" / "data")
     if not folder.is_dir():
         message = f"no folder of shared data at {folder}; POLHODE_SHARED_DATA names another place"
         if os.environ.get("POLHODE_REQUIRE_DATA") == "1":

@@ -1,8 +1,9 @@
 """The lints and tests of what differs from a commit: ``python tests/quick.py [COMMIT]``, of HEAD by default.
 
 Rust tests are those of the rooms with a changed file. Python tests are those that bear the name of a changed
-file or of its room, against an extension that is compiled anew, quickly, not for speed and for any machine.
-It says which changed files no test is named after; `make test` runs everything, on all instruction sets.
+file, or else those of its room, against an extension that is compiled anew, quickly, not for speed and for
+any machine. It says which changed files no test is named after; `make test` runs everything, on all
+instruction sets.
 """
 
 from __future__ import annotations
@@ -20,20 +21,17 @@ TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
 #: Folders that are no rooms.
 ROOTS = ("rust", "core", "src", "python", "polhode")
 
-#: Rooms whose tests have other names than they.
+#: Rooms of other names than those of their tests.
 NAMED = {
     "integrate": ["simulate", "taylor", "sensitivity", "load_terms"],
     "simulate": ["simulate", "events", "exact_runs"],
-    "ensembles": ["ensemble", "reductions"],
     "random": ["distributions"],
     "problem": ["simulate", "bad_inputs"],
-    "numerics": ["principal_axes", "free_motion_cases", "heavy_top_cases", "taylor"],
-    "principal": ["principal_axes", "canonical_axes"],
+    "numerics": ["principal_axes", "free_motion", "heavy_top_motion", "taylor"],
     "simplex": ["tetrahedra", "polyhedron"],
-    "refined": ["free_motion_cases", "near_separatrix"],
+    "refined": ["free_motion", "near_separatrix"],
     "error": ["errors", "bad_inputs"],
-    "io": ["streams", "io"],
-    "arrays": ["foreign_arrays", "masks_and_units"],
+    "arrays": ["foreign_arrays"],
     "free": ["free_motion"],
 }
 
@@ -52,13 +50,15 @@ def room(file: Path) -> str:
 
 
 def tests_of(file: Path) -> list[Path]:
-    """The tests that bear the name of a file, or else of the nearest room around it."""
+    """The tests that bear the name of a file, or else those of the nearest room around it."""
     if file.parts[0] == "tests":
-        return [file] if file.name.startswith("test_") else []
+        return [file] if file.name.startswith("test_") else sorted(file.parent.glob("test_*.py"))
     rooms = [part for part in file.parts[:-1] if part not in ROOTS]
     for word in (file.stem, *reversed(rooms)):
         names = NAMED.get(word, [word.strip("_").removesuffix("s")])
-        found = [path for name in names for path in sorted(Path("tests").glob(f"test_*{name}*.py"))]
+        found = [path for name in names for path in sorted(Path("tests").glob(f"*/test_*{name}*.py"))]
+        if word in rooms and word not in NAMED:
+            found = sorted(Path("tests", word).glob("test_*.py")) or found
         if found and len(word.strip("_")) > 1:
             return found
     return []

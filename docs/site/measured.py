@@ -123,8 +123,8 @@ def validation(found: dict[str, Any]) -> str:
         "| what | compared with | error |",
         "|---|---|---|",
         *(f"| {row['what']} | {row['against']} | {power(row['error'])} |" for row in found["validation"]),
-        "\nThe code of the reference solutions is in `tests/oracles`. For each promise on these pages, "
-        "`tests/claims.toml` names the test that checks it.\n",
+        "\nThe code of the reference solutions is in `tests/oracles`. For the numbers that users rely on, "
+        "`tests/pages/claims.toml` names the tests.\n",
     ]
     return "\n".join(lines)
 

@@ -230,7 +230,9 @@ class Trajectory(metaclass=Hinting):
         center = self.body.center_of_mass
         words = {"center_of_mass": center, "com": center, "origin": np.zeros(3)}
         if isinstance(point, str) and point not in words:
-            raise ValueError(f"point: {point!r} is not 'center_of_mass', 'origin' or a point of shape (..., 3)")
+            raise ValueError(
+                f"point: {point!r} is not 'center_of_mass', 'origin' or a point of shape (..., 3)"
+            )
         place = words[point] if isinstance(point, str) else _core.real_numbers(point, "point")
         if place.shape[-1:] != (3,):
             raise ValueError(f"point: expected shape (..., 3), got {place.shape}")

@@ -1,6 +1,6 @@
 //! The 3×3 symmetric eigensolver against double-double residuals, and its promise of the same bits everywhere.
 //!
-//! The eigenvalues themselves are held against a reference of more than 50 digits in `tests/test_principal_axes.py`.
+//! The eigenvalues themselves are held against a reference of more than 50 digits in `tests/principal/test_principal_axes.py`.
 
 use crate::watch::go_on;
 
