@@ -11,7 +11,7 @@
 //! The coefficient of order k of u² is twice the sum of `u_j u_{k−j}` over j < k/2, and for even k the square in the middle.
 //! The sums begin in the middle, so that the newest coefficients are last.
 
-use super::pack::{Pack, cross_term};
+use super::batch::{Pack, cross_term};
 use crate::numerics::lane::Lane;
 use crate::numerics::number::Number;
 
@@ -103,7 +103,7 @@ pub(super) fn seen<L: Number, const R: usize>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::pack::Pack;
+    use super::super::batch::Pack;
     use super::{add_squares, axis, from_squares, halved, roots};
     use crate::numerics::lane::{Double, Lane};
 

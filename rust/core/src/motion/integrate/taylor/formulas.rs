@@ -1,9 +1,9 @@
 //! Torques that are not linear in ω, by the formulas that their laws state.
 
-use super::frame::Precision;
-use super::pack::{Lined, Pack};
+use super::principal_frame::Precision;
+use super::batch::{Lined, Pack};
 use super::series::Series;
-use super::twin::COUNT;
+use super::double_double_series::COUNT;
 use crate::motion::loads::{Formula, Step};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;

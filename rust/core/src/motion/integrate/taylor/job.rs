@@ -2,8 +2,8 @@
 
 use super::course::Course;
 use super::drive::{Job, Settings};
-use super::frame::Precision;
-use super::{series, twin};
+use super::principal_frame::Precision;
+use super::{double_double_series, series};
 use crate::error::Error;
 use crate::motion::loads::variables::Fixed;
 use crate::motion::loads::{Parts, Term};
@@ -12,7 +12,7 @@ use crate::motion::problem::{End, Run, Task, check_times};
 pub(super) fn settings(task: &Task<'_>, parts: Parts) -> Settings {
     let tolerance = task.tolerance;
     let highest = if tolerance.is_beyond_doubles() {
-        twin::HIGHEST_ORDER
+        double_double_series::HIGHEST_ORDER
     } else {
         series::HIGHEST_ORDER
     };

@@ -2,11 +2,11 @@
 
 use std::ops::ControlFlow;
 
-use super::abreast::Abreast;
-use super::almanac::Almanac;
-use super::alone::Alone;
+use super::batch_series::Abreast;
+use super::orbit_cache::Almanac;
+use super::single_series::Alone;
 use super::drive::{Job, See, Settings, drive};
-use super::twin::Twin;
+use super::double_double_series::Twin;
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lane::Lane;

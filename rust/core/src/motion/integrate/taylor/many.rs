@@ -4,7 +4,7 @@ use std::ops::{ControlFlow, Range};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use super::almanac::Almanac;
+use super::orbit_cache::Almanac;
 use super::course::parts;
 use super::job::{rows, settings};
 use super::kernels::{OneByOne, Precisely, ROWS, SideBySide};

@@ -2,21 +2,21 @@
 //!
 //! | file | what it knows |
 //! |---|---|
-//! | `frame` | the principal axes, in doubles or in numbers of twice the precision |
+//! | `principal_frame` | the principal axes, in doubles or in numbers of twice the precision |
 //! | `course` | one motion: its load in principal axes, from break to break, in a unit of its own |
-//! | `field` | the equations that are linear in the coefficients of one order |
-//! | `formulas`, `terms`, `gradient`, `pulled`, `extras` | the recurrences of terms that are not |
-//! | `circuit`, `almanac` | the series of an orbit, and where motions look them up |
+//! | `linear_terms` | the equations that are linear in the coefficients of one order |
+//! | `formulas`, `terms`, `gravity_gradient`, `pulled`, `nonlinear` | the recurrences of terms that are not |
+//! | `orbit_series`, `orbit_cache` | the series of an orbit, and where motions look them up |
 //! | `series` | the coefficients, and what is asked of the sums of their products |
-//! | `alone`, `abreast` | these sums, the lanes over the components of one motion or over motions |
-//! | `twin` | these sums in numbers of twice the precision |
-//! | `derived`, `row`, `pace` | these sums in numbers with derivatives, and how far they reach |
+//! | `single_series`, `batch_series` | these sums, the lanes over the components of one motion or over motions |
+//! | `double_double_series` | these sums in numbers of twice the precision |
+//! | `variational_series`, `row`, `pace` | these sums in numbers with derivatives, and how far they reach |
 //! | `directions` | directions of space as seen from the body |
-//! | `push` | the path of a body that forces act on |
-//! | `carried` | the states that a load has of its own |
+//! | `translation` | the path of a body that forces act on |
+//! | `internal_states` | the states that a load has of its own |
 //! | `step` | the length of a step, the state at its end or within |
 //! | `drive` | steps, outputs, breaks, until all motions are done; `seen`: each step as it is made |
-//! | `pack` | one number of several motions |
+//! | `batch` | one number of several motions |
 //! | `one`, `many` | the motion of one task, of many tasks on all cores |
 //! | `varied` | the motion of one task with its derivatives |
 //! | `job` | what there is to do of a task |
@@ -29,33 +29,33 @@
     reason = "rows and components are indices of several arrays at once"
 )]
 
-mod abreast;
-mod almanac;
-mod alone;
-mod carried;
-mod circuit;
+mod batch;
+mod batch_series;
 mod course;
-mod derived;
 mod directions;
+mod double_double_series;
 mod drive;
-mod extras;
-mod field;
 mod formulas;
-mod frame;
-mod gradient;
+mod gravity_gradient;
+mod internal_states;
 mod job;
 mod kernels;
+mod linear_terms;
 mod many;
+mod nonlinear;
 mod one;
+mod orbit_cache;
+mod orbit_series;
 mod pace;
-mod pack;
+mod principal_frame;
 mod pulled;
-mod push;
 mod row;
 mod series;
+mod single_series;
 mod step;
 mod terms;
-mod twin;
+mod translation;
+mod variational_series;
 mod varied;
 
 pub(crate) use drive::Step;

@@ -1,8 +1,8 @@
-//! The sums of products of series that the torque of a gravity gradient is made of: see [`Gradient`](super::gradient::Gradient).
+//! The sums of products of series that the torque of a gravity gradient is made of: see [`Gradient`](super::gravity_gradient::Gradient).
 
 use std::marker::PhantomData;
 
-use super::pack::{Lined, Pack};
+use super::batch::{Lined, Pack};
 use super::series::Series;
 use crate::numerics::dispatch::Kernel;
 use crate::numerics::lane::Lane;

@@ -18,9 +18,9 @@
 //! its parts are the first less the second, and the first plus the third.
 //! (Gauss's way; Knuth, The Art of Computer Programming 2, §4.6.4.)
 //!
-//! There are two ways through the sums in doubles: [`Alone`](super::alone::Alone) puts the components of one motion in the
-//! lanes, [`Abreast`](super::abreast::Abreast) the same component of several. They add the same products in the same order,
-//! so a motion has the same bits either way. In numbers of twice the precision there is [`Twin`](super::twin::Twin), which
+//! There are two ways through the sums in doubles: [`Alone`](super::single_series::Alone) puts the components of one motion in the
+//! lanes, [`Abreast`](super::batch_series::Abreast) the same component of several. They add the same products in the same order,
+//! so a motion has the same bits either way. In numbers of twice the precision there is [`Twin`](super::double_double_series::Twin), which
 //! has all twelve.
 //!
 //! That order takes the newest coefficients, on which the processor may still be busy, last: from the middle outward, first
@@ -28,7 +28,7 @@
 //! [`directions`](super::directions).
 
 /// The highest order of a series in doubles, and the number of its coefficients. Even, since
-/// [`Alone`](super::alone::Alone) sums two orders at a time.
+/// [`Alone`](super::single_series::Alone) sums two orders at a time.
 pub(super) const HIGHEST_ORDER: usize = 26;
 pub(super) const COUNT: usize = HIGHEST_ORDER + 1;
 

@@ -2,7 +2,7 @@
 
 use std::ops::{Index, IndexMut};
 
-use super::pack::Pack;
+use super::batch::Pack;
 use super::series::{Coefficient, Series};
 use crate::numerics::double_double::two_sum;
 use crate::numerics::number::Number;

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::field::Field;
-use super::pack::Pack;
+use super::linear_terms::Field;
+use super::batch::Pack;
 use super::series::Series;
 use crate::motion::loads::Forcing;
 use crate::numerics::number::Number;

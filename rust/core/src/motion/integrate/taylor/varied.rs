@@ -3,9 +3,9 @@
 use std::iter::once;
 use std::ops::ControlFlow;
 
-use super::almanac::Almanac;
+use super::orbit_cache::Almanac;
 use super::course::{Course, parts};
-use super::derived::Derived;
+use super::variational_series::Derived;
 use super::drive::{Job, Settings, Tell, drive};
 use super::row::ORDER;
 use crate::error::{Error, MotionFault};

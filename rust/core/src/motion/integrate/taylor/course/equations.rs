@@ -3,8 +3,8 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::segments::Course;
-use crate::motion::integrate::taylor::field::Field;
-use crate::motion::integrate::taylor::frame::Precision;
+use crate::motion::integrate::taylor::linear_terms::Field;
+use crate::motion::integrate::taylor::principal_frame::Precision;
 use crate::motion::kinematics::Frame;
 use crate::motion::loads::variables::{MASS, Variables};
 use crate::motion::loads::{

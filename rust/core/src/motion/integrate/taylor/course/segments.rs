@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Matrix3x4, Vector3, Vector4};
 
 use crate::error::{Error, MotionFault};
 use crate::mass::validity::ROUNDING;
-use crate::motion::integrate::taylor::frame::{Precision, Principal};
+use crate::motion::integrate::taylor::principal_frame::{Precision, Principal};
 use crate::motion::loads::variables::Variables;
 use crate::motion::loads::{Axes, Linear, Term};
 use crate::motion::problem::Task;

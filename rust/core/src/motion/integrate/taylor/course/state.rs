@@ -3,7 +3,7 @@
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::segments::Course;
-use crate::motion::integrate::taylor::frame::Precision;
+use crate::motion::integrate::taylor::principal_frame::Precision;
 use crate::motion::loads::variables::{ATTITUDE, RATES, Variables};
 use crate::motion::state::Phase;
 use crate::numerics::quaternion::{conjugate, normalized, product};

@@ -2,8 +2,8 @@
 
 use super::segments::Course;
 use crate::error::Error;
-use crate::motion::integrate::taylor::almanac::Place;
-use crate::motion::integrate::taylor::frame::Precision;
+use crate::motion::integrate::taylor::orbit_cache::Place;
+use crate::motion::integrate::taylor::principal_frame::Precision;
 use crate::motion::problem::limits::check_steps;
 use crate::numerics::double_double::two_sum;
 

@@ -2,13 +2,13 @@
 
 use super::settings::Settings;
 use crate::error::Error;
-use crate::motion::integrate::taylor::carried::Carried;
+use crate::motion::integrate::taylor::internal_states::Carried;
 use crate::motion::integrate::taylor::course::Course;
-use crate::motion::integrate::taylor::extras::Extras;
-use crate::motion::integrate::taylor::field::Field;
-use crate::motion::integrate::taylor::frame::Precision;
-use crate::motion::integrate::taylor::pack::Pack;
-use crate::motion::integrate::taylor::push::Push;
+use crate::motion::integrate::taylor::nonlinear::Extras;
+use crate::motion::integrate::taylor::linear_terms::Field;
+use crate::motion::integrate::taylor::principal_frame::Precision;
+use crate::motion::integrate::taylor::batch::Pack;
+use crate::motion::integrate::taylor::translation::Push;
 use crate::motion::integrate::taylor::series::Series;
 use crate::motion::integrate::taylor::step::Compensated;
 use crate::motion::loads::Forcing;

@@ -5,10 +5,10 @@
 //! found, however many and however close.
 
 use super::lanes::{Landing, Lanes};
-use crate::motion::integrate::taylor::frame::Precision;
-use crate::motion::integrate::taylor::pack::Pack;
+use crate::motion::integrate::taylor::principal_frame::Precision;
+use crate::motion::integrate::taylor::batch::Pack;
 use crate::motion::integrate::taylor::series::Series;
-use crate::motion::integrate::taylor::twin::COUNT;
+use crate::motion::integrate::taylor::double_double_series::COUNT;
 use crate::numerics::number::Number;
 use crate::numerics::sign_changes::sign_changes;
 

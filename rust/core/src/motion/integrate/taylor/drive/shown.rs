@@ -6,8 +6,8 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::lanes::Lanes;
 use crate::motion::integrate::taylor::course::{Besides, Course};
-use crate::motion::integrate::taylor::frame::Precision;
-use crate::motion::integrate::taylor::pack::Pack;
+use crate::motion::integrate::taylor::principal_frame::Precision;
+use crate::motion::integrate::taylor::batch::Pack;
 use crate::motion::integrate::taylor::series::{Coefficient, Series};
 use crate::motion::integrate::taylor::step::Compensated;
 use crate::motion::state::Phase;

@@ -3,8 +3,8 @@
 use super::lanes::{Landing, Lanes, OUTGROWN, Stop, effort};
 use crate::error::{Error, MotionFault};
 use crate::motion::integrate::taylor::course::{Besides, Course};
-use crate::motion::integrate::taylor::frame::Precision;
-use crate::motion::integrate::taylor::pack::Pack;
+use crate::motion::integrate::taylor::principal_frame::Precision;
+use crate::motion::integrate::taylor::batch::Pack;
 use crate::motion::integrate::taylor::series::Series;
 use crate::motion::problem::End;
 use crate::numerics::number::{Number, Real};

@@ -3,7 +3,7 @@
 use nalgebra::Matrix3;
 
 use super::*;
-use crate::motion::integrate::taylor::alone::Alone;
+use crate::motion::integrate::taylor::single_series::Alone;
 use crate::motion::integrate::taylor::series::Coefficient;
 use crate::motion::loads::{OMEGA, Steps};
 

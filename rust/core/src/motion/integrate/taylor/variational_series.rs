@@ -4,7 +4,7 @@
 //! of the linearised equations, with all that depends on the varied numbers. Steps are as long as the series of both allow.
 
 use super::pace::Pace;
-use super::pack::Pack;
+use super::batch::Pack;
 use super::row::Row;
 use super::series::{Coefficient, Series};
 use super::step::increment;

@@ -1,6 +1,6 @@
 //! The equations of a motion between two breaks of its load, as far as they are linear in the coefficients of one order.
 
-use super::pack::Pack;
+use super::batch::Pack;
 use super::series::Coefficient;
 use crate::motion::loads::Parts;
 use crate::numerics::number::Number;

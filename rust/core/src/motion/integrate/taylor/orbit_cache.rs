@@ -3,8 +3,8 @@
 use std::array::from_fn;
 use std::mem::take;
 
-use super::gradient::{AT_START, Gradient};
-use super::pack::Pack;
+use super::gravity_gradient::{AT_START, Gradient};
+use super::batch::Pack;
 use crate::numerics::number::Number;
 
 /// How many shelves there are, as a power of two, and pages on each.

@@ -1,10 +1,10 @@
 //! The path of a free body under forces: `m v̇ = F`, with F constant in space and in the body.
 
-use super::field::Field;
-use super::pack::Pack;
+use super::linear_terms::Field;
+use super::batch::Pack;
 use super::series::Series;
 use super::step::compensate;
-use super::twin;
+use super::double_double_series;
 use crate::numerics::number::{Number, Real};
 
 /// Position and velocity of the centre of mass in N, and the series of the acceleration in a step.
@@ -13,7 +13,7 @@ use crate::numerics::number::{Number, Real};
 pub(super) struct Push<T> {
     value: [T; 6],
     rest: [T; 6],
-    acceleration: [[T; 3]; twin::COUNT],
+    acceleration: [[T; 3]; double_double_series::COUNT],
 }
 
 impl<L: Number, const R: usize> Push<Pack<L, R>> {
@@ -23,7 +23,7 @@ impl<L: Number, const R: usize> Push<Pack<L, R>> {
         Self {
             value: [zero; 6],
             rest: [zero; 6],
-            acceleration: [[zero; 3]; twin::COUNT],
+            acceleration: [[zero; 3]; double_double_series::COUNT],
         }
     }
 

@@ -2,13 +2,13 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::circuit::Circuit;
-use super::field::Field;
-use super::frame::of_matrix;
-use super::pack::{Lined, Pack, plus};
+use super::orbit_series::Circuit;
+use super::linear_terms::Field;
+use super::principal_frame::of_matrix;
+use super::batch::{Lined, Pack, plus};
 use super::pulled::{Attitudes, Paired, Turned, pointed, square_terms};
 use super::series::Series;
-use super::twin::COUNT;
+use super::double_double_series::COUNT;
 use crate::motion::loads::OnOrbit;
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;

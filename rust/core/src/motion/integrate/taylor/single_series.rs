@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use super::directions::{Mix, ROOTS, axis, from_squares};
-use super::pack::Pack;
+use super::batch::Pack;
 use super::series::{COUNT, Coefficient, RECIPROCALS, Series};
 use crate::numerics::lane::Lane;
 

@@ -1,6 +1,6 @@
 //! The series of one motion in numbers of twice the precision, the lanes over its components.
 
-use super::pack::Pack;
+use super::batch::Pack;
 use super::series::{Coefficient, Series};
 use super::step::increment;
 use crate::numerics::double_double::two_sum;

@@ -1,7 +1,7 @@
 //! The series of an orbit about its attractor, in the frame that the orbit has at the start of a step.
 
-use super::pack::Pack;
-use super::twin::COUNT;
+use super::batch::Pack;
+use super::double_double_series::COUNT;
 use crate::numerics::number::Number;
 
 /// A Kepler orbit in its plane, lengths over the distance at the start of the step, time in the unit of rates.

@@ -1,11 +1,11 @@
 //! The states that a load has of its own: wheels and slugs.
 
-use super::frame::Precision;
+use super::principal_frame::Precision;
 use super::pace::Pace;
-use super::pack::{Lined, Pack, cross_term, plus};
+use super::batch::{Lined, Pack, cross_term, plus};
 use super::series::Series;
 use super::step::{compensate, exp2, limit};
-use super::twin::COUNT;
+use super::double_double_series::COUNT;
 use crate::motion::loads::Own;
 use crate::motion::loads::variables::WIDTH;
 use crate::numerics::dispatch::{Kernel, dispatch};

@@ -1,7 +1,7 @@
 //! Several motions, the lanes over the motions.
 
 use super::directions::{add_squares, axis, from_squares, halved, roots};
-use super::pack::{Lined, Pack};
+use super::batch::{Lined, Pack};
 use super::series::{COUNT, Coefficient, RECIPROCALS, Series};
 use super::step::increment;
 use crate::numerics::dispatch::{Kernel, dispatch};

@@ -1,8 +1,8 @@
 //! What rows have of orbits, looked up and put down.
 
 use super::*;
-use crate::motion::integrate::taylor::almanac::PAGES;
-use crate::motion::integrate::taylor::gradient::AT_START;
+use crate::motion::integrate::taylor::orbit_cache::PAGES;
+use crate::motion::integrate::taylor::gravity_gradient::AT_START;
 use crate::numerics::lane::Double;
 
 type Pair = Pack<Double<false>, 2>;

@@ -2,12 +2,12 @@
 
 use nalgebra::Vector3;
 
-use super::almanac::{Almanac, Place, rounded};
-use super::field::Field;
+use super::orbit_cache::{Almanac, Place, rounded};
+use super::linear_terms::Field;
 use super::formulas::Formulas;
-use super::frame::Precision;
-use super::gradient::Gradient;
-use super::pack::{Pack, plus};
+use super::principal_frame::Precision;
+use super::gravity_gradient::Gradient;
+use super::batch::{Pack, plus};
 use super::series::Series;
 use super::terms::{Analytic, Forced};
 use crate::motion::loads::{Forcing, OnOrbit, Parts};
