@@ -9,16 +9,16 @@ use crate::numerics::number::Number;
 /// What holds many of them is aligned to a line of the cache: a register of the widest lanes that lies in two lines takes twice as
 /// long to load.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pack<L, const R: usize>(pub(super) [L; R]);
+pub(super) struct Batch<L, const R: usize>(pub(super) [L; R]);
 
 /// Packs that a function gives, aligned like what holds many of them.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-pub(super) struct Lined<T>(pub(super) T);
+pub(super) struct CacheAligned<T>(pub(super) T);
 
 macro_rules! each {
     ($operator:ident, $method:ident, $symbol:tt) => {
-        impl<L: Number, const R: usize> $operator for Pack<L, R> {
+        impl<L: Number, const R: usize> $operator for Batch<L, R> {
             type Output = Self;
             #[inline(always)]
             fn $method(mut self, other: Self) -> Self {
@@ -34,7 +34,7 @@ each!(Add, add, +);
 each!(Sub, sub, -);
 each!(Mul, mul, *);
 
-impl<L: Number, const R: usize> Neg for Pack<L, R> {
+impl<L: Number, const R: usize> Neg for Batch<L, R> {
     type Output = Self;
 
     #[inline(always)]
@@ -43,7 +43,7 @@ impl<L: Number, const R: usize> Neg for Pack<L, R> {
     }
 }
 
-impl<L: Number, const R: usize> Pack<L, R> {
+impl<L: Number, const R: usize> Batch<L, R> {
     /// The number `x` in every row.
     #[inline(always)]
     pub(super) fn new(x: f64) -> Self {
@@ -102,10 +102,10 @@ impl<L: Number, const R: usize> Pack<L, R> {
 /// `sum + a × b`.
 #[inline(always)]
 pub(super) fn cross_term<L: Number, const R: usize>(
-    a: &[Pack<L, R>; 3],
-    b: &[Pack<L, R>; 3],
-    sum: [Pack<L, R>; 3],
-) -> [Pack<L, R>; 3] {
+    a: &[Batch<L, R>; 3],
+    b: &[Batch<L, R>; 3],
+    sum: [Batch<L, R>; 3],
+) -> [Batch<L, R>; 3] {
     [
         a[1].mul_add(b[2], (-a[2]).mul_add(b[1], sum[0])),
         a[2].mul_add(b[0], (-a[0]).mul_add(b[2], sum[1])),
@@ -116,8 +116,8 @@ pub(super) fn cross_term<L: Number, const R: usize>(
 /// `a + b`.
 #[inline(always)]
 pub(super) fn plus<L: Number, const R: usize>(
-    a: [Pack<L, R>; 3],
-    b: [Pack<L, R>; 3],
-) -> [Pack<L, R>; 3] {
+    a: [Batch<L, R>; 3],
+    b: [Batch<L, R>; 3],
+) -> [Batch<L, R>; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }

@@ -1,7 +1,7 @@
 //! Several motions, the lanes over the motions.
 
+use super::batch::{Batch, CacheAligned};
 use super::directions::{add_squares, axis, from_squares, halved, roots};
-use super::batch::{Lined, Pack};
 use super::series::{COUNT, Coefficient, RECIPROCALS, Series};
 use super::step::increment;
 use crate::numerics::dispatch::{Kernel, dispatch};
@@ -9,24 +9,24 @@ use crate::numerics::lane::Lane;
 
 /// `R` motions, the lanes over the motions.
 #[derive(Clone, Debug)]
-#[repr(align(64))] // see Pack
-pub(super) struct Abreast<L, const B: usize, const R: usize> {
-    orders: [Order<Pack<L, R>>; COUNT],
-    directions: [[[Pack<L, R>; 3]; B]; COUNT],
+#[repr(align(64))] // see Batch
+pub(super) struct BatchSeries<L, const B: usize, const R: usize> {
+    orders: [Order<Batch<L, R>>; COUNT],
+    directions: [[[Batch<L, R>; 3]; B]; COUNT],
     /// The component of ω that is constant in all motions, or [`NONE`].
-    still: usize,
+    constant: usize,
 }
 
 /// No component of ω.
 const NONE: usize = 3;
 
-/// The sums of products of [`Abreast`]: ω₂ω₃, ω₃ω₁, ω₁ω₂ and q∘ω.
-pub(super) struct AbreastSums<T> {
+/// The sums of products of [`BatchSeries`]: ω₂ω₃, ω₃ω₁, ω₁ω₂ and q∘ω.
+pub(super) struct BatchSums<T> {
     spins: [T; 3],
     turned: [T; 4],
 }
 
-/// The real products that [`AbreastSums`] are made of: those of ω's components, of α and β with ω₁ + iω₂, of q with ω₃. See
+/// The real products that [`BatchSums`] are made of: those of ω's components, of α and β with ω₁ + iω₂, of q with ω₃. See
 /// [`series`](super::series).
 struct Products<T> {
     spins: [T; 3],
@@ -42,10 +42,10 @@ struct Order<T> {
     q: [T; 4],
 }
 
-impl<L: Lane, const R: usize> Products<Pack<L, R>> {
+impl<L: Lane, const R: usize> Products<Batch<L, R>> {
     #[inline(always)]
     fn new() -> Self {
-        let zero = Pack::new(0.0);
+        let zero = Batch::new(0.0);
         Self {
             spins: [zero; 3],
             alpha: [zero; 3],
@@ -54,20 +54,20 @@ impl<L: Lane, const R: usize> Products<Pack<L, R>> {
         }
     }
 
-    /// Adds the products of `a` with ω of `b`; but not those with component `STILL` of ω, which are zero. The sums in the products are
+    /// Adds the products of `a` with ω of `b`; but not those with component `CONSTANT` of ω, which are zero. The sums in the products are
     /// made anew: the processor adds while it multiplies, and they need not be loaded.
     #[inline(always)]
-    fn add<const STILL: usize>(&mut self, a: &Order<Pack<L, R>>, b: &Order<Pack<L, R>>) {
+    fn add<const CONSTANT: usize>(&mut self, a: &Order<Batch<L, R>>, b: &Order<Batch<L, R>>) {
         // Written out, since a loop would keep the sums in memory.
         let ([_, a1, a2], [x, y, z, w]) = (a.w, a.q);
         let [b0, b1, b2] = b.w;
         let (sum, difference) = (b0 + b1, b1 - b0);
-        if STILL == NONE {
+        if CONSTANT == NONE {
             self.spins[0] = a1.mul_add(b2, self.spins[0]);
             self.spins[1] = a2.mul_add(b0, self.spins[1]);
             self.spins[2] = a1.mul_add(b0, self.spins[2]);
         }
-        if STILL != 0 {
+        if CONSTANT != 0 {
             self.alpha[0] = (w + z).mul_add(b0, self.alpha[0]);
             self.beta[0] = (x + y).mul_add(b0, self.beta[0]);
         }
@@ -75,7 +75,7 @@ impl<L: Lane, const R: usize> Products<Pack<L, R>> {
         self.alpha[2] = z.mul_add(sum, self.alpha[2]);
         self.beta[1] = x.mul_add(sum, self.beta[1]);
         self.beta[2] = y.mul_add(difference, self.beta[2]);
-        if STILL != 2 {
+        if CONSTANT != 2 {
             self.third[0] = x.mul_add(b2, self.third[0]);
             self.third[1] = y.mul_add(b2, self.third[1]);
             self.third[2] = z.mul_add(b2, self.third[2]);
@@ -84,32 +84,32 @@ impl<L: Lane, const R: usize> Products<Pack<L, R>> {
     }
 
     #[inline(always)]
-    fn sums(self) -> AbreastSums<Pack<L, R>> {
+    fn sums(self) -> BatchSums<Batch<L, R>> {
         let ([a0, a1, a2], [b0, b1, b2]) = (self.alpha, self.beta);
         let [x, y, z, w] = self.third;
-        AbreastSums {
+        BatchSums {
             spins: self.spins,
             turned: [a0 - a2 + y, a0 + a1 - x, b1 - b0 + w, -b0 - b2 - z],
         }
     }
 }
 
-impl<L: Lane, const B: usize, const R: usize> Series<Pack<L, R>, B> for Abreast<L, B, R> {
+impl<L: Lane, const B: usize, const R: usize> Series<Batch<L, R>, B> for BatchSeries<L, B, R> {
     #[inline(always)]
     fn new() -> Self {
-        let zero = Pack::new(0.0);
+        let zero = Batch::new(0.0);
         Self {
             orders: [Order {
                 w: [zero; 3],
                 q: [zero; 4],
             }; COUNT],
             directions: [[[zero; 3]; B]; COUNT],
-            still: NONE,
+            constant: NONE,
         }
     }
 
     #[inline(always)]
-    fn start(&mut self, state: &Coefficient<Pack<L, R>, B>) {
+    fn start(&mut self, state: &Coefficient<Batch<L, R>, B>) {
         self.orders[0] = Order {
             w: state.w,
             q: state.q,
@@ -117,12 +117,12 @@ impl<L: Lane, const B: usize, const R: usize> Series<Pack<L, R>, B> for Abreast<
         self.directions[0] = state.g;
     }
 
-    fn hold(&mut self, still: Option<usize>) {
-        self.still = still.unwrap_or(NONE);
+    fn set_constant_component(&mut self, constant: Option<usize>) {
+        self.constant = constant.unwrap_or(NONE);
     }
 
     #[inline(always)]
-    fn get(&self, k: usize) -> Coefficient<Pack<L, R>, B> {
+    fn get(&self, k: usize) -> Coefficient<Batch<L, R>, B> {
         let Order { w, q } = self.orders[k];
         Coefficient {
             w,
@@ -132,15 +132,15 @@ impl<L: Lane, const B: usize, const R: usize> Series<Pack<L, R>, B> for Abreast<
     }
 
     #[inline(always)]
-    fn increment(&self, order: usize, h: Pack<L, R>) -> [Pack<L, R>; 7] {
+    fn increment(&self, order: usize, h: Batch<L, R>) -> [Batch<L, R>; 7] {
         increment(self, order, h)
     }
 
-    type Sums = AbreastSums<Pack<L, R>>;
+    type Sums = BatchSums<Batch<L, R>>;
 
     #[inline(always)]
     fn sums(&mut self, k: usize) -> Self::Sums {
-        match self.still {
+        match self.constant {
             0 => dispatch(Sum::<_, B, R, 0>(self, k)).0,
             2 => dispatch(Sum::<_, B, R, 2>(self, k)).0,
             _ => dispatch(Sum::<_, B, R, NONE>(self, k)).0,
@@ -148,14 +148,14 @@ impl<L: Lane, const B: usize, const R: usize> Series<Pack<L, R>, B> for Abreast<
     }
 
     #[inline(always)]
-    fn spins(sums: &Self::Sums) -> [Pack<L, R>; 3] {
+    fn spins(sums: &Self::Sums) -> [Batch<L, R>; 3] {
         sums.spins
     }
 
     #[inline(always)]
-    fn extend(&mut self, k: usize, sums: &Self::Sums, acceleration: &[Pack<L, R>; 3]) {
-        let reciprocal = Pack::new(RECIPROCALS[k + 1]);
-        let half = Pack::new(0.5 * RECIPROCALS[k + 1]);
+    fn extend(&mut self, k: usize, sums: &Self::Sums, acceleration: &[Batch<L, R>; 3]) {
+        let reciprocal = Batch::new(RECIPROCALS[k + 1]);
+        let half = Batch::new(0.5 * RECIPROCALS[k + 1]);
         let [x, y, z] = *acceleration;
         let [a, b, c, d] = sums.turned;
         self.orders[k + 1] = Order {
@@ -165,10 +165,10 @@ impl<L: Lane, const B: usize, const R: usize> Series<Pack<L, R>, B> for Abreast<
     }
 }
 
-impl<L: Lane, const B: usize, const R: usize> Abreast<L, B, R> {
-    /// The sums of order `k`; without the products of orders above zero with component `STILL` of ω, which is constant.
+impl<L: Lane, const B: usize, const R: usize> BatchSeries<L, B, R> {
+    /// The sums of order `k`; without the products of orders above zero with component `CONSTANT` of ω, which is constant.
     #[inline(always)]
-    fn products<const STILL: usize>(&mut self, k: usize) -> AbreastSums<Pack<L, R>> {
+    fn products<const CONSTANT: usize>(&mut self, k: usize) -> BatchSums<Batch<L, R>> {
         let mut products = Products::new();
         let orders = &self.orders[..=k];
         if k == 0 {
@@ -177,17 +177,17 @@ impl<L: Lane, const B: usize, const R: usize> Abreast<L, B, R> {
         }
         let mut squares = Squares::new();
         if k.is_multiple_of(2) {
-            products.add::<STILL>(&orders[k / 2], &orders[k / 2]);
+            products.add::<CONSTANT>(&orders[k / 2], &orders[k / 2]);
             squares.add_middle(&orders[k / 2]);
         }
-        let inner = usize::from(STILL != NONE);
+        let inner = usize::from(CONSTANT != NONE);
         let early = orders[inner..k.div_ceil(2)].iter().rev();
         for (early, late) in early.zip(&orders[k / 2 + 1..=k - inner]) {
-            products.add::<STILL>(early, late);
-            products.add::<STILL>(late, early);
+            products.add::<CONSTANT>(early, late);
+            products.add::<CONSTANT>(late, early);
             squares.add(early, late);
         }
-        if STILL != NONE {
+        if CONSTANT != NONE {
             products.add::<NONE>(&orders[0], &orders[k]);
             products.add::<NONE>(&orders[k], &orders[0]);
             squares.add(&orders[0], &orders[k]);
@@ -198,42 +198,42 @@ impl<L: Lane, const B: usize, const R: usize> Abreast<L, B, R> {
 }
 
 /// The sums of one order: a function of its own, since within a larger one they are not kept in registers.
-struct Sum<'a, L, const B: usize, const R: usize, const STILL: usize>(
-    &'a mut Abreast<L, B, R>,
+struct Sum<'a, L, const B: usize, const R: usize, const CONSTANT: usize>(
+    &'a mut BatchSeries<L, B, R>,
     usize,
 );
 
-impl<N: Lane, const B: usize, const R: usize, const STILL: usize> Kernel
-    for Sum<'_, N, B, R, STILL>
+impl<N: Lane, const B: usize, const R: usize, const CONSTANT: usize> Kernel
+    for Sum<'_, N, B, R, CONSTANT>
 {
-    type Output = Lined<AbreastSums<Pack<N, R>>>;
+    type Output = CacheAligned<BatchSums<Batch<N, R>>>;
 
     #[inline(always)]
     fn run<L: Lane>(self) -> Self::Output {
-        Lined(self.0.products::<STILL>(self.1))
+        CacheAligned(self.0.products::<CONSTANT>(self.1))
     }
 }
 
 /// The sums of the squares that make [directions](super::directions).
 struct Squares<T, const B: usize>([[T; 6]; B]);
 
-impl<L: Lane, const R: usize, const B: usize> Squares<Pack<L, R>, B> {
+impl<L: Lane, const R: usize, const B: usize> Squares<Batch<L, R>, B> {
     #[inline(always)]
     fn new() -> Self {
-        Self([[Pack::new(0.0); 6]; B])
+        Self([[Batch::new(0.0); 6]; B])
     }
 
     // One axis after the other, written out: a loop would keep the sums in memory.
 
     #[inline(always)]
-    fn add(&mut self, one: &Order<Pack<L, R>>, other: &Order<Pack<L, R>>) {
+    fn add(&mut self, one: &Order<Batch<L, R>>, other: &Order<Batch<L, R>>) {
         self.add_along(0, one, other);
         self.add_along(1, one, other);
         self.add_along(2, one, other);
     }
 
     #[inline(always)]
-    fn add_along(&mut self, b: usize, one: &Order<Pack<L, R>>, other: &Order<Pack<L, R>>) {
+    fn add_along(&mut self, b: usize, one: &Order<Batch<L, R>>, other: &Order<Batch<L, R>>) {
         if let Some(sums) = self.0.get_mut(b) {
             let n = axis::<B>(b);
             *sums = add_squares(*sums, &roots(n, &one.q), &roots(n, &other.q));
@@ -241,14 +241,14 @@ impl<L: Lane, const R: usize, const B: usize> Squares<Pack<L, R>, B> {
     }
 
     #[inline(always)]
-    fn add_middle(&mut self, middle: &Order<Pack<L, R>>) {
+    fn add_middle(&mut self, middle: &Order<Batch<L, R>>) {
         self.add_middle_along(0, middle);
         self.add_middle_along(1, middle);
         self.add_middle_along(2, middle);
     }
 
     #[inline(always)]
-    fn add_middle_along(&mut self, b: usize, middle: &Order<Pack<L, R>>) {
+    fn add_middle_along(&mut self, b: usize, middle: &Order<Batch<L, R>>) {
         if let Some(sums) = self.0.get_mut(b) {
             let roots = roots(axis::<B>(b), &middle.q);
             *sums = add_squares(*sums, &halved(&roots), &roots);
@@ -256,8 +256,8 @@ impl<L: Lane, const R: usize, const B: usize> Squares<Pack<L, R>, B> {
     }
 
     #[inline(always)]
-    fn directions(&self) -> [[Pack<L, R>; 3]; B] {
-        let mut directions = [[Pack::new(0.0); 3]; B];
+    fn directions(&self) -> [[Batch<L, R>; 3]; B] {
+        let mut directions = [[Batch::new(0.0); 3]; B];
         self.put_direction(0, &mut directions);
         self.put_direction(1, &mut directions);
         self.put_direction(2, &mut directions);
@@ -265,7 +265,7 @@ impl<L: Lane, const R: usize, const B: usize> Squares<Pack<L, R>, B> {
     }
 
     #[inline(always)]
-    fn put_direction(&self, b: usize, directions: &mut [[Pack<L, R>; 3]; B]) {
+    fn put_direction(&self, b: usize, directions: &mut [[Batch<L, R>; 3]; B]) {
         if let (Some(&[s, t, u, v, w, x]), Some(direction)) = (self.0.get(b), directions.get_mut(b))
         {
             *direction = from_squares(axis::<B>(b), [s + t, u + v, w + x]);

@@ -11,7 +11,7 @@
 //! The coefficient of order k of u² is twice the sum of `u_j u_{k−j}` over j < k/2, and for even k the square in the middle.
 //! The sums begin in the middle, so that the newest coefficients are last.
 
-use super::batch::{Pack, cross_term};
+use super::batch::{Batch, cross_term};
 use crate::numerics::lane::Lane;
 use crate::numerics::number::Number;
 
@@ -21,18 +21,18 @@ pub(super) const fn axis<const B: usize>(b: usize) -> usize {
 }
 
 /// The numbers u for each axis n, and two that are not used.
-pub(super) const ROOTS: [Mix; 3] = [roots_of(0), roots_of(1), roots_of(2)];
+pub(super) const ROOTS: [PairSums; 3] = [roots_of(0), roots_of(1), roots_of(2)];
 
 /// Eight numbers made of four: each is `x[first] + sign x[second]`.
-pub(super) struct Mix {
+pub(super) struct PairSums {
     pub(super) first: [usize; 8],
     pub(super) second: [usize; 8],
     pub(super) signs: [f64; 8],
 }
 
-const fn roots_of(n: usize) -> Mix {
+const fn roots_of(n: usize) -> PairSums {
     let (a, b, w) = ((n + 1) % 3, (n + 2) % 3, 3);
-    Mix {
+    PairSums {
         first: [a, b, n, w, n, w, n, n],
         second: [n, n, a, b, b, a, n, n],
         signs: [0.0, 0.0, 1.0, -1.0, 1.0, 1.0, 0.0, 0.0],
@@ -41,7 +41,7 @@ const fn roots_of(n: usize) -> Mix {
 
 /// The numbers u of the axis n.
 #[inline(always)]
-pub(super) fn roots<L: Lane, const R: usize>(n: usize, q: &[Pack<L, R>; 4]) -> [Pack<L, R>; 6] {
+pub(super) fn roots<L: Lane, const R: usize>(n: usize, q: &[Batch<L, R>; 4]) -> [Batch<L, R>; 6] {
     let (a, b, n, w) = (q[(n + 1) % 3], q[(n + 2) % 3], q[n], q[3]);
     [a, b, n + a, w - b, n + b, w + a]
 }
@@ -50,9 +50,9 @@ pub(super) fn roots<L: Lane, const R: usize>(n: usize, q: &[Pack<L, R>; 4]) -> [
 #[inline(always)]
 pub(super) fn from_squares<L: Lane, const R: usize>(
     n: usize,
-    halves: [Pack<L, R>; 3],
-) -> [Pack<L, R>; 3] {
-    let (two, four) = (Pack::new(2.0), Pack::new(-4.0));
+    halves: [Batch<L, R>; 3],
+) -> [Batch<L, R>; 3] {
+    let (two, four) = (Batch::new(2.0), Batch::new(-4.0));
     let [along, a, b] = halves;
     let mut direction = [along * four; 3];
     direction[(n + 1) % 3] = a * two;
@@ -63,10 +63,10 @@ pub(super) fn from_squares<L: Lane, const R: usize>(
 /// Adds the products of two orders.
 #[inline(always)]
 pub(super) fn add_squares<L: Lane, const R: usize>(
-    sums: [Pack<L, R>; 6],
-    one: &[Pack<L, R>; 6],
-    other: &[Pack<L, R>; 6],
-) -> [Pack<L, R>; 6] {
+    sums: [Batch<L, R>; 6],
+    one: &[Batch<L, R>; 6],
+    other: &[Batch<L, R>; 6],
+) -> [Batch<L, R>; 6] {
     [
         one[0].mul_add(other[0], sums[0]),
         one[1].mul_add(other[1], sums[1]),
@@ -78,36 +78,36 @@ pub(super) fn add_squares<L: Lane, const R: usize>(
 }
 
 #[inline(always)]
-pub(super) fn halved<L: Lane, const R: usize>(roots: &[Pack<L, R>; 6]) -> [Pack<L, R>; 6] {
-    let half = Pack::new(0.5);
+pub(super) fn halved<L: Lane, const R: usize>(roots: &[Batch<L, R>; 6]) -> [Batch<L, R>; 6] {
+    let half = Batch::new(0.5);
     let [a, b, c, d, e, f] = *roots;
     [a * half, b * half, c * half, d * half, e * half, f * half]
 }
 
 /// A direction fixed in space as seen from the body: `Rᵀ e` for the attitude (x, y, z, w).
 #[inline(always)]
-pub(super) fn seen<L: Number, const R: usize>(
-    q: &[Pack<L, R>; 4],
-    e: &[Pack<L, R>; 3],
-) -> [Pack<L, R>; 3] {
+pub(super) fn direction_in_body<L: Number, const R: usize>(
+    q: &[Batch<L, R>; 4],
+    e: &[Batch<L, R>; 3],
+) -> [Batch<L, R>; 3] {
     let [x, y, z, w] = *q;
-    let (u, zero) = ([x, y, z], [Pack::new(0.0); 3]);
+    let (u, zero) = ([x, y, z], [Batch::new(0.0); 3]);
     let t = cross_term(&u, e, zero);
     let t = [t[0] + t[0], t[1] + t[1], t[2] + t[2]];
-    let mut seen = cross_term(&u, &t, zero);
+    let mut direction = cross_term(&u, &t, zero);
     for i in 0..3 {
-        seen[i] = (-w).mul_add(t[i], e[i]) + seen[i];
+        direction[i] = (-w).mul_add(t[i], e[i]) + direction[i];
     }
-    seen
+    direction
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::batch::Pack;
+    use super::super::batch::Batch;
     use super::{add_squares, axis, from_squares, halved, roots};
     use crate::numerics::lane::{Double, Lane};
 
-    type One = Pack<Double<false>, 1>;
+    type One = Batch<Double<false>, 1>;
 
     /// The coefficient of order k of row n of q's matrix, from products.
     fn plain(n: usize, q: &[[i32; 4]], k: usize) -> [i32; 3] {

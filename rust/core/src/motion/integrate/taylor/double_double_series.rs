@@ -1,6 +1,6 @@
 //! The series of one motion in numbers of twice the precision, the lanes over its components.
 
-use super::batch::Pack;
+use super::batch::Batch;
 use super::series::{Coefficient, Series};
 use super::step::increment;
 use crate::numerics::double_double::two_sum;
@@ -11,7 +11,7 @@ use crate::numerics::twofold::Twofold;
 pub(super) const HIGHEST_ORDER: usize = 40;
 pub(super) const COUNT: usize = HIGHEST_ORDER + 1;
 
-type Double<L> = Pack<Twofold<L>, 1>;
+type Double<L> = Batch<Twofold<L>, 1>;
 
 /// `W` numbers of twice the precision: their values and their rests.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +38,7 @@ impl<L: Lane, const W: usize> Components<L, W> {
     /// One of them; sums of products are brought to the form of a number here.
     #[inline(always)]
     fn get(&self, i: usize) -> Double<L> {
-        Pack([Twofold::renormalized(self.high[i], self.low[i])])
+        Batch([Twofold::renormalized(self.high[i], self.low[i])])
     }
 
     /// `self + a b`: the rests pile up beside the values.
@@ -105,21 +105,21 @@ impl<L: Lane, const W: usize> Order<L, W> {
 
 /// One motion: `W` ≥ 4 + 3 `B`.
 #[derive(Clone, Debug)]
-pub(super) struct Twin<L, const B: usize, const W: usize> {
+pub(super) struct DoubleDoubleSeries<L, const B: usize, const W: usize> {
     orders: [Order<L, W>; COUNT],
     plain: [Coefficient<Double<L>, B>; COUNT],
 }
 
-/// The sums of products of [`Twin`]: ω₂ω₃, ω₃ω₁, ω₁ω₂; q∘ω and γ×ω.
-pub(super) struct TwinSums<L, const W: usize> {
+/// The sums of products of [`DoubleDoubleSeries`]: ω₂ω₃, ω₃ω₁, ω₁ω₂; q∘ω and γ×ω.
+pub(super) struct DoubleDoubleSums<L, const W: usize> {
     spins: Components<L, 4>,
     turned: Components<L, W>,
 }
 
-impl<L: Lane, const B: usize, const W: usize> Series<Double<L>, B> for Twin<L, B, W> {
+impl<L: Lane, const B: usize, const W: usize> Series<Double<L>, B> for DoubleDoubleSeries<L, B, W> {
     #[inline(always)]
     fn new() -> Self {
-        let zero = Pack::new(0.0);
+        let zero = Batch::new(0.0);
         let none = Coefficient {
             w: [zero; 3],
             q: [zero; 4],
@@ -147,7 +147,7 @@ impl<L: Lane, const B: usize, const W: usize> Series<Double<L>, B> for Twin<L, B
         increment(self, order, h)
     }
 
-    type Sums = TwinSums<L, W>;
+    type Sums = DoubleDoubleSums<L, W>;
 
     #[inline(always)]
     fn sums(&mut self, k: usize) -> Self::Sums {
@@ -160,7 +160,7 @@ impl<L: Lane, const B: usize, const W: usize> Series<Double<L>, B> for Twin<L, B
                 turned = turned.plus_multiple(b.w[n], &a.turned[n]);
             }
         }
-        TwinSums { spins, turned }
+        DoubleDoubleSums { spins, turned }
     }
 
     #[inline(always)]
@@ -170,8 +170,8 @@ impl<L: Lane, const B: usize, const W: usize> Series<Double<L>, B> for Twin<L, B
 
     #[inline(always)]
     fn extend(&mut self, k: usize, sums: &Self::Sums, acceleration: &[Double<L>; 3]) {
-        let reciprocal = Pack::over(k + 1);
-        let half = Pack::over(2 * (k + 1));
+        let reciprocal = Batch::over(k + 1);
+        let half = Batch::over(2 * (k + 1));
         // Loops, since closures would be compiled without the instructions of the level.
         let mut next = Coefficient {
             w: *acceleration,

@@ -1,9 +1,9 @@
 //! Torques that are not linear in ω, by the formulas that their laws state.
 
-use super::principal_frame::Precision;
-use super::batch::{Lined, Pack};
-use super::series::Series;
+use super::batch::{Batch, CacheAligned};
 use super::double_double_series::COUNT;
+use super::principal_frame::Precision;
+use super::series::Series;
 use crate::motion::loads::{Formula, Step};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
@@ -11,18 +11,18 @@ use crate::numerics::number::{Number, Real};
 
 /// The coefficients of a scalar.
 #[derive(Clone, Debug)]
-#[repr(align(64))] // see Pack
+#[repr(align(64))] // see Batch
 struct Scalar<T>([T; COUNT]);
 
 /// The coefficients of a vector.
 #[derive(Clone, Debug)]
-#[repr(align(64))] // see Pack
+#[repr(align(64))] // see Batch
 struct Vector<T>([[T; 3]; COUNT]);
 
 /// A formula, and the coefficients of its scalars and vectors.
 #[derive(Clone, Debug)]
-#[repr(align(64))] // see Pack
-struct Worked<T> {
+#[repr(align(64))] // see Batch
+struct FormulaSeries<T> {
     steps: Vec<Step>,
     vector: usize,
     /// The matrix over the moments: zero in a row in which the formula does not act.
@@ -48,22 +48,22 @@ struct Worked<T> {
 ///
 /// Rounding in s grows as `1/s(t)` does, so a step does not go as far as ω would take to zero at its present rate. Where ω
 /// passes through zero all the same the step ends, and at ω = 0 there is no series, and of |ω| ω no second derivative: below
-/// [`STILL`](Precision::STILL) of the fastest ω, or the same [beside torques](Precision::STILL_BESIDE_TORQUES), the speed counts as
+/// [`REST_SPEED`](Precision::REST_SPEED) of the fastest ω, or the same [beside torques](Precision::REST_SPEED_BESIDE_TORQUES), the speed counts as
 /// zero, in steps over which what it does stays below rounding.
 #[derive(Clone, Debug)]
-#[repr(align(64))] // see Pack
+#[repr(align(64))] // see Batch
 pub(super) struct Formulas<T> {
-    worked: Vec<Worked<T>>,
+    formulas: Vec<FormulaSeries<T>>,
     /// The speed below which a row is still.
-    still: T,
+    rest_speed: T,
 }
 
-impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
+impl<L: Number<Real: Precision>, const R: usize> Formulas<Batch<L, R>> {
     pub(super) fn new() -> Self {
-        let zero = Pack::new(0.0);
+        let zero = Batch::new(0.0);
         Self {
-            worked: Vec::new(),
-            still: zero,
+            formulas: Vec::new(),
+            rest_speed: zero,
         }
     }
 
@@ -73,30 +73,30 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
         row: usize,
         formulas: impl Iterator<Item = (&'a Formula<L::Real>, [[L::Real; 3]; 3])>,
     ) {
-        self.vacate(row);
-        let mut taken = vec![false; self.worked.len()];
+        self.clear(row);
+        let mut taken = vec![false; self.formulas.len()];
         for (formula, matrix) in formulas {
-            let fits = |(i, worked): (usize, &Worked<_>)| {
-                !taken[i] && worked.steps == formula.steps && worked.vector == formula.vector
+            let fits = |(i, known): (usize, &FormulaSeries<_>)| {
+                !taken[i] && known.steps == formula.steps && known.vector == formula.vector
             };
-            let place = (self.worked.iter().enumerate().position(fits)).unwrap_or_else(|| {
-                self.worked.push(Worked::new(formula));
+            let place = (self.formulas.iter().enumerate().position(fits)).unwrap_or_else(|| {
+                self.formulas.push(FormulaSeries::new(formula));
                 taken.push(false);
                 taken.len() - 1
             });
             taken[place] = true;
-            for (packs, numbers) in self.worked[place].matrix.iter_mut().zip(matrix) {
-                for (pack, number) in packs.iter_mut().zip(numbers) {
-                    pack.put(row, number);
+            for (batches, numbers) in self.formulas[place].matrix.iter_mut().zip(matrix) {
+                for (batch, number) in batches.iter_mut().zip(numbers) {
+                    batch.put(row, number);
                 }
             }
         }
     }
 
     /// Leaves one row without formulas.
-    pub(super) fn vacate(&mut self, row: usize) {
-        for worked in &mut self.worked {
-            for x in worked.matrix.as_flattened_mut() {
+    pub(super) fn clear(&mut self, row: usize) {
+        for formula in &mut self.formulas {
+            for x in formula.matrix.as_flattened_mut() {
                 x.set(row, 0.0);
             }
         }
@@ -105,20 +105,26 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
     #[inline(always)]
     pub(super) fn start(&mut self, fastest: &[f64; R]) {
         for row in 0..R {
-            self.still.set(row, L::Real::STILL * fastest[row]);
+            self.rest_speed.set(row, L::Real::REST_SPEED * fastest[row]);
         }
     }
 
     /// Counts speeds as zero that are too small a part of this acceleration, the one by all else.
     #[inline(always)]
-    fn beside(&mut self, acceleration: &[Pack<L, R>; 3]) {
+    fn raise_rest_speed(&mut self, acceleration: &[Batch<L, R>; 3]) {
         for row in 0..R {
-            let (still, least) = (
-                self.still.get(row),
-                L::Real::STILL_BESIDE_TORQUES * size(acceleration, row),
+            let (rest_speed, least) = (
+                self.rest_speed.get(row),
+                L::Real::REST_SPEED_BESIDE_TORQUES * size(acceleration, row),
             );
-            self.still
-                .set(row, if least > still { least } else { still });
+            self.rest_speed.set(
+                row,
+                if least > rest_speed {
+                    least
+                } else {
+                    rest_speed
+                },
+            );
         }
     }
 
@@ -127,22 +133,22 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
     pub(super) fn plus_coefficients<const B: usize>(
         &mut self,
         k: usize,
-        series: &impl Series<Pack<L, R>, B>,
-        mut sum: [Pack<L, R>; 3],
-    ) -> [Pack<L, R>; 3] {
-        if k == 0 && !self.worked.is_empty() {
-            self.beside(&sum);
+        series: &impl Series<Batch<L, R>, B>,
+        mut sum: [Batch<L, R>; 3],
+    ) -> [Batch<L, R>; 3] {
+        if k == 0 && !self.formulas.is_empty() {
+            self.raise_rest_speed(&sum);
         }
-        let still = self.still;
-        for worked in &mut self.worked {
+        let rest_speed = self.rest_speed;
+        for formula in &mut self.formulas {
             let [x, y, z] = if R == 1 {
-                worked.coefficient(k, series, still)
+                formula.coefficient(k, series, rest_speed)
             } else {
                 dispatch(Next {
-                    worked,
+                    formula,
                     k,
                     series,
-                    still,
+                    rest_speed,
                 })
                 .0
             };
@@ -152,8 +158,8 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
     }
 
     /// Those with |ω| that act in one row.
-    fn with_speed(&self, row: usize) -> impl Iterator<Item = &Scalar<Pack<L, R>>> {
-        let acting = self.worked.iter().filter(move |it| it.acts(row));
+    fn with_speed(&self, row: usize) -> impl Iterator<Item = &Scalar<Batch<L, R>>> {
+        let acting = self.formulas.iter().filter(move |it| it.acts(row));
         acting.filter_map(|it| Some(&it.scalars[it.speed?]))
     }
 
@@ -175,10 +181,10 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
     #[inline(always)]
     pub(super) fn limit<const B: usize>(
         &self,
-        series: &impl Series<Pack<L, R>, B>,
+        series: &impl Series<Batch<L, R>, B>,
         h: &mut [f64; R],
     ) {
-        if self.worked.is_empty() {
+        if self.formulas.is_empty() {
             return;
         }
         let (w, change) = (series.get(0).w, series.get(1).w);
@@ -186,9 +192,10 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
             if self.with_speed(row).next().is_none() {
                 continue;
             }
-            let (still, speed, rate) = (self.still.get(row), size(&w, row), size(&change, row));
-            let most = if speed <= still {
-                2.0 * still / rate
+            let (rest_speed, speed, rate) =
+                (self.rest_speed.get(row), size(&w, row), size(&change, row));
+            let most = if speed <= rest_speed {
+                2.0 * rest_speed / rate
             } else {
                 0.8 * speed / rate
             };
@@ -198,7 +205,7 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
 }
 
 #[inline(always)]
-fn size<L: Number, const R: usize>(w: &[Pack<L, R>; 3], row: usize) -> f64 {
+fn size<L: Number, const R: usize>(w: &[Batch<L, R>; 3], row: usize) -> f64 {
     let (x, y, z) = (w[0].get(row), w[1].get(row), w[2].get(row));
     (x * x + y * y + z * z).sqrt()
 }
@@ -206,26 +213,29 @@ fn size<L: Number, const R: usize>(w: &[Pack<L, R>; 3], row: usize) -> f64 {
 /// The coefficient of order `k` of several rows: a function of its own, since loops within that of the steps keep its sums out of
 /// registers. One row is slower with it, since what another function may read must stand in memory.
 struct Next<'a, L, S, const R: usize, const B: usize> {
-    worked: &'a mut Worked<Pack<L, R>>,
+    formula: &'a mut FormulaSeries<Batch<L, R>>,
     k: usize,
     series: &'a S,
-    still: Pack<L, R>,
+    rest_speed: Batch<L, R>,
 }
 
-impl<N: Number<Real: Precision>, S: Series<Pack<N, R>, B>, const R: usize, const B: usize> Kernel
+impl<N: Number<Real: Precision>, S: Series<Batch<N, R>, B>, const R: usize, const B: usize> Kernel
     for Next<'_, N, S, R, B>
 {
-    type Output = Lined<[Pack<N, R>; 3]>;
+    type Output = CacheAligned<[Batch<N, R>; 3]>;
 
     #[inline(always)]
     fn run<L: Lane>(self) -> Self::Output {
-        Lined(self.worked.coefficient(self.k, self.series, self.still))
+        CacheAligned(
+            self.formula
+                .coefficient(self.k, self.series, self.rest_speed),
+        )
     }
 }
 
-impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
+impl<L: Number<Real: Precision>, const R: usize> FormulaSeries<Batch<L, R>> {
     fn new(formula: &Formula<L::Real>) -> Self {
-        let zero = Pack::new(0.0);
+        let zero = Batch::new(0.0);
         let (mut scalars, mut vectors, mut speed) = (Vec::new(), Vec::new(), None);
         for step in &formula.steps {
             match step {
@@ -262,17 +272,17 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
     fn coefficient<const B: usize>(
         &mut self,
         k: usize,
-        series: &impl Series<Pack<L, R>, B>,
-        still: Pack<L, R>,
-    ) -> [Pack<L, R>; 3] {
+        series: &impl Series<Batch<L, R>, B>,
+        rest_speed: Batch<L, R>,
+    ) -> [Batch<L, R>; 3] {
         let vector = if self.is_quadratic {
             // In one piece: what a step gives to the next one stays in registers.
-            let speeds = self.set_speed(k, 1, square(k, series), still);
+            let speeds = self.set_speed(k, 1, square(k, series), rest_speed);
             times(k, speeds, |j| series.get(j).w)
         } else {
-            self.step_by_step(k, series, still)
+            self.step_by_step(k, series, rest_speed)
         };
-        let mut sum = [Pack::new(0.0); 3];
+        let mut sum = [Batch::new(0.0); 3];
         for n in 0..3 {
             for i in 0..3 {
                 sum[n] = self.matrix[n][i].mul_add(vector[i], sum[n]);
@@ -286,9 +296,9 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
     fn step_by_step<const B: usize>(
         &mut self,
         k: usize,
-        series: &impl Series<Pack<L, R>, B>,
-        still: Pack<L, R>,
-    ) -> [Pack<L, R>; 3] {
+        series: &impl Series<Batch<L, R>, B>,
+        rest_speed: Batch<L, R>,
+    ) -> [Batch<L, R>; 3] {
         let (mut scalars, mut vectors) = (0, 0);
         for i in 0..self.steps.len() {
             match self.steps[i] {
@@ -298,7 +308,7 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
                 }
                 Step::Speed(of) => {
                     let square = self.scalars[of].0[k];
-                    let _speeds = self.set_speed(k, scalars, square, still);
+                    let _speeds = self.set_speed(k, scalars, square, rest_speed);
                     scalars += 1;
                 }
                 Step::Times(factor, vector) => {
@@ -326,15 +336,15 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
         &mut self,
         k: usize,
         number: usize,
-        square: Pack<L, R>,
-        still: Pack<L, R>,
-    ) -> &[Pack<L, R>; COUNT] {
+        square: Batch<L, R>,
+        rest_speed: Batch<L, R>,
+    ) -> &[Batch<L, R>; COUNT] {
         let speeds = &mut self.scalars[number].0;
-        speeds[k] = Pack::new(0.0);
+        speeds[k] = Batch::new(0.0);
         if k == 0 {
             for row in 0..R {
                 let speed = square.real(row).root();
-                let moves = speed.rounded() > still.get(row);
+                let moves = speed.rounded() > rest_speed.get(row);
                 speeds[0].set(row, 0.0);
                 self.half_over_speed.set(row, 0.0);
                 if moves {
@@ -357,9 +367,9 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
 #[inline(always)]
 fn square<L: Number, const R: usize, const B: usize>(
     k: usize,
-    series: &impl Series<Pack<L, R>, B>,
-) -> Pack<L, R> {
-    let mut square = Pack::new(0.0);
+    series: &impl Series<Batch<L, R>, B>,
+) -> Batch<L, R> {
+    let mut square = Batch::new(0.0);
     for j in 0..=k {
         let (a, b) = (series.get(j).w, series.get(k - j).w);
         for i in 0..3 {
@@ -373,10 +383,10 @@ fn square<L: Number, const R: usize, const B: usize>(
 #[inline(always)]
 fn times<L: Number, const R: usize>(
     k: usize,
-    factor: &[Pack<L, R>; COUNT],
-    vector: impl Fn(usize) -> [Pack<L, R>; 3],
-) -> [Pack<L, R>; 3] {
-    let mut product = [Pack::new(0.0); 3];
+    factor: &[Batch<L, R>; COUNT],
+    vector: impl Fn(usize) -> [Batch<L, R>; 3],
+) -> [Batch<L, R>; 3] {
+    let mut product = [Batch::new(0.0); 3];
     for j in 0..=k {
         let w = vector(k - j);
         for i in 0..3 {

@@ -2,13 +2,15 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::orbit_series::Circuit;
-use super::linear_terms::Field;
-use super::principal_frame::of_matrix;
-use super::batch::{Lined, Pack, plus};
-use super::pulled::{Attitudes, Paired, Turned, pointed, square_terms};
-use super::series::Series;
+use super::batch::{Batch, CacheAligned, plus};
 use super::double_double_series::COUNT;
+use super::linear_terms::LinearTerms;
+use super::orbit_series::OrbitSeries;
+use super::principal_frame::quaternion_of_matrix;
+use super::pulled::{
+    HalfTurnProduct, PairedSums, SeriesAttitudes, pointing_from_squares, square_terms,
+};
+use super::series::Series;
 use crate::motion::loads::OnOrbit;
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
@@ -16,18 +18,18 @@ use crate::numerics::number::{Number, Real};
 use crate::numerics::quaternion::{normalized, product};
 
 /// The gravity gradient on a Kepler orbit. The attitude as seen from the frame that the orbit has at the start of the step, turned
-/// back by the orbit's half turn since then and scaled (see [`Circuit`]), is a quaternion `Q = c̄ q` of length `r^{−3/4}`: the first row
+/// back by the orbit's half turn since then and scaled (see [`OrbitSeries`]), is a quaternion `Q = c̄ q` of length `r^{−3/4}`: the first row
 /// of its matrix is `m = r^{−3/2} n`, n from the attractor to C as seen from the body, and
 ///
 /// ```text
 /// I⁻¹ (3μ/r³) n×I n = −3μ κ (m₂m₃, m₃m₁, m₁m₂)
 /// ```
 ///
-/// with κ of the body, its wheels locked; what is off the diagonal of that tensor is added by [`Field::tilt`].
+/// with κ of the body, its wheels locked; what is off the diagonal of that tensor is added by [`LinearTerms::off_diagonal_torque`].
 #[derive(Clone, Debug)]
-#[repr(align(64))] // see Pack
-pub(super) struct Gradient<T> {
-    orbit: Circuit<T>,
+#[repr(align(64))] // see Batch
+pub(super) struct GravityGradientSeries<T> {
+    orbit: OrbitSeries<T>,
     /// The rotation from the orbit's frame at the start of the step to N.
     frame: [T; 4],
     /// The attitude from that frame, where the series are not of it already, and with the half turn.
@@ -39,31 +41,31 @@ pub(super) struct Gradient<T> {
     /// −3μκ of the step.
     on_products: [T; 3],
     /// The coefficient of the angular acceleration that was found last.
-    ahead: [T; 3],
+    coefficient: [T; 3],
     /// Whether the tensor that is pulled has elements off the diagonal.
-    is_aside: bool,
+    has_off_diagonal: bool,
 }
 
 /// The slowest orbit, in units of rates, of which the pole is found: the square of this is still a number.
 const SLOWEST: f64 = 1e-140;
 
-/// How many numbers [`Gradient::at_start`] has.
-pub(super) const AT_START: usize = 8;
+/// How many numbers [`GravityGradientSeries::initial_numbers`] has.
+pub(super) const INITIAL_NUMBERS: usize = 8;
 
-impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
+impl<L: Number, const R: usize> GravityGradientSeries<Batch<L, R>> {
     #[inline(always)]
     pub(super) fn new() -> Self {
-        let zero = Pack::new(0.0);
+        let zero = Batch::new(0.0);
         Self {
-            orbit: Circuit::new(),
+            orbit: OrbitSeries::new(),
             frame: [zero; 4],
             attitude: [[zero; 4]; COUNT],
             turned: [[zero; 4]; COUNT],
             pointing: [[zero; 3]; COUNT],
             strength: zero,
             on_products: [zero; 3],
-            ahead: [zero; 3],
-            is_aside: false,
+            coefficient: [zero; 3],
+            has_off_diagonal: false,
         }
     }
 
@@ -82,7 +84,7 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
             ));
             aside / aside.dot(&aside).root()
         };
-        let frame = of_matrix(&Matrix3::from_columns(&[n, pole.cross(&n), pole]));
+        let frame = quaternion_of_matrix(&Matrix3::from_columns(&[n, pole.cross(&n), pole]));
         self.put(row, frame, [n.dot(&v), around, at.pull], at.strength);
     }
 
@@ -95,14 +97,14 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
     }
 
     /// What [`Self::set`] has made of the orbit in one row.
-    pub(super) fn at_start(&self, row: usize) -> [L::Real; AT_START] {
+    pub(super) fn initial_numbers(&self, row: usize) -> [L::Real; INITIAL_NUMBERS] {
         let [x, y, z, w] = [0, 1, 2, 3].map(|i| self.frame[i].real(row));
         let [radial, around, pull] = self.orbit.rates(row);
         [x, y, z, w, radial, around, pull, self.strength.real(row)]
     }
 
     /// Takes that of another step for one row.
-    pub(super) fn start_at(&mut self, row: usize, known: [L::Real; AT_START]) {
+    pub(super) fn restore(&mut self, row: usize, known: [L::Real; INITIAL_NUMBERS]) {
         let [x, y, z, w, radial, around, pull, strength] = known;
         self.put(row, [x, y, z, w], [radial, around, pull], strength);
     }
@@ -110,30 +112,31 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
     /// Takes for each row those numbers of another step, and after them the half turns in it from order 1 on, which were found in a
     /// unit of rates that is `ratio` of the row's.
     #[inline(always)]
-    pub(super) fn start_all(&mut self, known: &[&[f64]; R], ratio: Pack<L, R>) {
-        let mut at_start = [Pack::new(0.0); AT_START];
-        for (i, number) in at_start.iter_mut().enumerate() {
+    pub(super) fn restore_all(&mut self, known: &[&[f64]; R], ratio: Batch<L, R>) {
+        let mut initial_numbers = [Batch::new(0.0); INITIAL_NUMBERS];
+        for (i, number) in initial_numbers.iter_mut().enumerate() {
             for row in 0..R {
                 number.set(row, known[row][i]);
             }
         }
-        let ([x, y, z, w, radial, around, pull, strength], twice) = (at_start, ratio * ratio);
+        let ([x, y, z, w, radial, around, pull, strength], twice) =
+            (initial_numbers, ratio * ratio);
         self.frame = [x, y, z, w];
         (self.orbit).set_all([radial * ratio, around * ratio, pull * twice]);
         self.strength = strength * twice;
-        self.orbit.put_half_turns(known, AT_START, ratio);
+        self.orbit.put_half_turns(known, INITIAL_NUMBERS, ratio);
     }
 
     #[inline(always)]
-    pub(super) fn orbit(&mut self) -> &mut Circuit<Pack<L, R>> {
+    pub(super) fn orbit(&mut self) -> &mut OrbitSeries<Batch<L, R>> {
         &mut self.orbit
     }
 
     /// At the start of a step.
     #[inline(always)]
-    pub(super) fn start<const B: usize>(&mut self, field: &Field<Pack<L, R>, B>) {
-        self.is_aside = field.is_pulled_aside();
-        let ([a, b, c], pull) = (field.pull.0, -self.strength);
+    pub(super) fn start<const B: usize>(&mut self, linear_terms: &LinearTerms<Batch<L, R>, B>) {
+        self.has_off_diagonal = linear_terms.pull_has_off_diagonal();
+        let ([a, b, c], pull) = (linear_terms.pull.0, -self.strength);
         self.on_products = [pull * a, pull * b, pull * c];
     }
 
@@ -149,7 +152,7 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
 
     /// Goes on to the end of a step of length `h`, where the orbit has come by its own series.
     #[inline(always)]
-    pub(super) fn advance(&mut self, order: usize, h: Pack<L, R>) {
+    pub(super) fn advance(&mut self, order: usize, h: Batch<L, R>) {
         let after = self.orbit.after(order, h);
         for row in 0..R {
             let [radial, around, pull, a, b] = [0, 1, 2, 3, 4].map(|i| after[i].real(row));
@@ -167,7 +170,7 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
 
     /// An attitude in N as seen from the orbit's frame at the start of the step.
     #[inline(always)]
-    pub(super) fn seen_from_frame(&self, [x, y, z, w]: [Pack<L, R>; 4]) -> [Pack<L, R>; 4] {
+    pub(super) fn to_orbit_frame(&self, [x, y, z, w]: [Batch<L, R>; 4]) -> [Batch<L, R>; 4] {
         let [a, b, c, d] = self.frame;
         [
             d.mul_add(x, c * y) - b.mul_add(z, a * w),
@@ -179,38 +182,38 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
 
     /// The attitude in N of one as seen from that frame.
     #[inline(always)]
-    pub(super) fn in_space(&self, attitude: [Pack<L, R>; 4]) -> [Pack<L, R>; 4] {
-        dispatch(InSpace(self.frame, attitude)).0
+    pub(super) fn to_space(&self, attitude: [Batch<L, R>; 4]) -> [Batch<L, R>; 4] {
+        dispatch(ToSpace(self.frame, attitude)).0
     }
 
     /// Finds the coefficient of order `k` of the angular acceleration, which needs that of the attitude: of one that is seen from the
     /// orbit's frame, or else in N.
     #[inline(always)]
-    pub(super) fn look_ahead<S: Series<Pack<L, R>, B>, const B: usize>(
+    pub(super) fn look_ahead<S: Series<Batch<L, R>, B>, const B: usize>(
         &mut self,
         k: usize,
         series: &S,
-        field: &Field<Pack<L, R>, B>,
-        is_from_orbit: bool,
+        linear_terms: &LinearTerms<Batch<L, R>, B>,
+        in_orbit_frame: bool,
     ) {
-        if !is_from_orbit {
-            // What goes in and out stands in lines of the cache: see Pack.
-            self.attitude[k] = self.seen_from_frame(series.get(k).q);
+        if !in_orbit_frame {
+            // What goes in and out stands in lines of the cache: see Batch.
+            self.attitude[k] = self.to_orbit_frame(series.get(k).q);
         }
         // A function of its own: within a larger one the sums are not kept in registers, and the caller of numbers with
         // derivatives is not compiled for the widest lanes.
         dispatch(Next {
             gradient: self,
             k,
-            series: is_from_orbit.then_some(series),
-            field,
+            series: in_orbit_frame.then_some(series),
+            linear_terms,
         });
     }
 
     /// The coefficient that [`Self::look_ahead`] has found.
     #[inline(always)]
-    pub(super) fn ahead(&self) -> [Pack<L, R>; 3] {
-        self.ahead
+    pub(super) fn coefficient(&self) -> [Batch<L, R>; 3] {
+        self.coefficient
     }
 
     /// Comes to another unit of rates in one row: `ratio` of the old one to the new one.
@@ -223,40 +226,44 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
 }
 
 /// What the elements off the diagonal of the tensor add to a coefficient, from those of m up to it and of the products of m.
-struct Tilt<'a, T, const B: usize> {
+struct OffDiagonalTorque<'a, T, const B: usize> {
     pointing: &'a [[T; 3]],
     products: [T; 3],
-    field: &'a Field<T, B>,
+    linear_terms: &'a LinearTerms<T, B>,
     strength: T,
 }
 
-impl<N: Number, const R: usize, const B: usize> Kernel for Tilt<'_, Pack<N, R>, B> {
-    type Output = Lined<[Pack<N, R>; 3]>;
+impl<N: Number, const R: usize, const B: usize> Kernel for OffDiagonalTorque<'_, Batch<N, R>, B> {
+    type Output = CacheAligned<[Batch<N, R>; 3]>;
 
     #[inline(always)]
     fn run<L: Lane>(self) -> Self::Output {
-        let mut squares = [Pack::new(0.0); 3];
+        let mut squares = [Batch::new(0.0); 3];
         for (a, b) in self.pointing.iter().zip(self.pointing.iter().rev()) {
             for i in 0..3 {
                 squares[i] = a[i].mul_add(b[i], squares[i]);
             }
         }
-        let [x, y, z] = (self.field).tilt(&self.field.pull.1, &self.products, &squares);
+        let [x, y, z] = (self.linear_terms).off_diagonal_torque(
+            &self.linear_terms.pull.1,
+            &self.products,
+            &squares,
+        );
         let pull = -self.strength;
-        Lined([pull * x, pull * y, pull * z])
+        CacheAligned([pull * x, pull * y, pull * z])
     }
 }
 
 /// A frame, and an attitude as seen from it.
-struct InSpace<T>([T; 4], [T; 4]);
+struct ToSpace<T>([T; 4], [T; 4]);
 
-impl<N: Number, const R: usize> Kernel for InSpace<Pack<N, R>> {
-    type Output = Lined<[Pack<N, R>; 4]>;
+impl<N: Number, const R: usize> Kernel for ToSpace<Batch<N, R>> {
+    type Output = CacheAligned<[Batch<N, R>; 4]>;
 
     #[inline(always)]
     fn run<L: Lane>(self) -> Self::Output {
         let Self([a, b, c, d], [x, y, z, w]) = self;
-        Lined([
+        CacheAligned([
             d.mul_add(x, a * w) + b.mul_add(z, (-c) * y),
             d.mul_add(y, b * w) + c.mul_add(x, (-a) * z),
             d.mul_add(z, c * w) + a.mul_add(y, (-b) * x),
@@ -267,11 +274,11 @@ impl<N: Number, const R: usize> Kernel for InSpace<Pack<N, R>> {
 
 /// The series of an orbit.
 struct Expand<'a, T> {
-    orbit: &'a mut Circuit<T>,
+    orbit: &'a mut OrbitSeries<T>,
     order: usize,
 }
 
-impl<N: Number, const R: usize> Kernel for Expand<'_, Pack<N, R>> {
+impl<N: Number, const R: usize> Kernel for Expand<'_, Batch<N, R>> {
     type Output = ();
 
     #[inline(always)]
@@ -282,13 +289,13 @@ impl<N: Number, const R: usize> Kernel for Expand<'_, Pack<N, R>> {
 
 /// The next coefficient of a gradient, whose attitude is that of the series or its own.
 struct Next<'a, L, S, const R: usize, const B: usize> {
-    gradient: &'a mut Gradient<Pack<L, R>>,
+    gradient: &'a mut GravityGradientSeries<Batch<L, R>>,
     k: usize,
     series: Option<&'a S>,
-    field: &'a Field<Pack<L, R>, B>,
+    linear_terms: &'a LinearTerms<Batch<L, R>, B>,
 }
 
-impl<N: Number, S: Series<Pack<N, R>, B>, const R: usize, const B: usize> Kernel
+impl<N: Number, S: Series<Batch<N, R>, B>, const R: usize, const B: usize> Kernel
     for Next<'_, N, S, R, B>
 {
     type Output = ();
@@ -301,19 +308,25 @@ impl<N: Number, S: Series<Pack<N, R>, B>, const R: usize, const B: usize> Kernel
             gradient: it,
             k,
             series,
-            field,
+            linear_terms,
         } = self;
         let pointing = it.pointing[..k].get(1..).unwrap_or(&[]);
         let turned = it.turned[..k].get(1..).unwrap_or(&[]);
-        let Lined([first, second, third, along, aside, above]) =
-            dispatch(Paired { pointing, turned });
+        let CacheAligned([first, second, third, along, aside, above]) =
+            dispatch(PairedSums { pointing, turned });
         let half_turn = &it.orbit.half_turn()[1..=k];
-        let (Lined([e, f, g, h]), attitude) = match series {
+        let (CacheAligned([e, f, g, h]), attitude) = match series {
             Some(series) => (
-                dispatch(Turned(half_turn, Attitudes::<_, _, B>::new(series))),
+                dispatch(HalfTurnProduct(
+                    half_turn,
+                    SeriesAttitudes::<_, _, B>::new(series),
+                )),
                 series.get(k).q,
             ),
-            None => (dispatch(Turned(half_turn, &it.attitude)), it.attitude[k]),
+            None => (
+                dispatch(HalfTurnProduct(half_turn, &it.attitude)),
+                it.attitude[k],
+            ),
         };
         // Written out, since a closure of `map` would be compiled without the instructions of the level.
         let [x, y, z, w] = attitude;
@@ -325,7 +338,8 @@ impl<N: Number, S: Series<Pack<N, R>, B>, const R: usize, const B: usize> Kernel
         it.turned[k] = turned;
         let [x, y, z, w] = turned;
         let (pointing, products) = if k == 0 {
-            let pointing = pointed(square_terms(&turned, &turned, [Pack::new(0.0); 8]));
+            let pointing =
+                pointing_from_squares(square_terms(&turned, &turned, [Batch::new(0.0); 8]));
             let [a, b, c] = pointing;
             (pointing, [b * c, c * a, a * b])
         } else {
@@ -345,15 +359,15 @@ impl<N: Number, S: Series<Pack<N, R>, B>, const R: usize, const B: usize> Kernel
         };
         it.pointing[k] = pointing;
         let ([a, b, c], [p, q, r]) = (it.on_products, products);
-        it.ahead = [a * p, b * q, c * r];
-        if it.is_aside {
-            let Lined(aside) = dispatch(Tilt {
+        it.coefficient = [a * p, b * q, c * r];
+        if it.has_off_diagonal {
+            let CacheAligned(aside) = dispatch(OffDiagonalTorque {
                 pointing: &it.pointing[..=k],
                 products,
-                field,
+                linear_terms,
                 strength: it.strength,
             });
-            it.ahead = plus(it.ahead, aside);
+            it.coefficient = plus(it.coefficient, aside);
         }
     }
 }

@@ -1,11 +1,11 @@
 //! The states that a load has of its own: wheels and slugs.
 
-use super::principal_frame::Precision;
-use super::pace::Pace;
-use super::batch::{Lined, Pack, cross_term, plus};
-use super::series::Series;
-use super::step::{compensate, exp2, limit};
+use super::batch::{Batch, CacheAligned, cross_term, plus};
 use super::double_double_series::COUNT;
+use super::pace::ConvergenceRadius;
+use super::principal_frame::Precision;
+use super::series::Series;
+use super::step::{compensate, exp2, log2_step};
 use crate::motion::loads::Own;
 use crate::motion::loads::variables::WIDTH;
 use crate::numerics::dispatch::{Kernel, dispatch};
@@ -20,9 +20,9 @@ use crate::numerics::number::Number;
 ///
 /// where a vector s among them has the rate `−ω × s` besides.
 #[derive(Clone, Debug)]
-#[repr(align(64))] // see Pack
-pub(super) struct Carried<T> {
-    states: Vec<State<T>>,
+#[repr(align(64))] // see Batch
+pub(super) struct InternalStates<T> {
+    states: Vec<InternalState<T>>,
     /// Σ z g.
     momentum: [[T; 3]; COUNT],
     inverse_moments: [T; 3],
@@ -30,8 +30,8 @@ pub(super) struct Carried<T> {
 
 /// One of them.
 #[derive(Clone, Debug)]
-#[repr(align(64))] // see Pack
-struct State<T> {
+#[repr(align(64))] // see Batch
+struct InternalState<T> {
     value: T,
     rest: T,
     series: [T; COUNT],
@@ -46,14 +46,14 @@ struct State<T> {
     size: T,
     largest: T,
     /// With derivatives the same of each, for the whole vector in its first component.
-    pace: Pace,
+    radius: ConvergenceRadius,
 }
 
-impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
+impl<L: Number<Real: Precision>, const R: usize> InternalStates<Batch<L, R>> {
     /// So many, all zero.
     pub(super) fn new(count: usize) -> Self {
-        let zero = Pack::new(0.0);
-        let none = State {
+        let zero = Batch::new(0.0);
+        let none = InternalState {
             value: zero,
             rest: zero,
             series: [zero; COUNT],
@@ -64,9 +64,9 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
             on_omega: [zero; 3],
             on_attitude: [zero; 4],
             turned: None,
-            size: Pack::new(1.0),
+            size: Batch::new(1.0),
             largest: zero,
-            pace: Pace::default(),
+            radius: ConvergenceRadius::default(),
         };
         Self {
             states: vec![none; count],
@@ -92,7 +92,7 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
     }
 
     /// Sets what the states of one row do, in units of the unit of rates.
-    pub(super) fn enter(
+    pub(super) fn set_rates(
         &mut self,
         row: usize,
         own: &[Own<L::Real>],
@@ -121,11 +121,11 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
     }
 
     /// Leaves one row without effect.
-    pub(super) fn vacate(&mut self, row: usize) {
+    pub(super) fn clear(&mut self, row: usize) {
         let none = Own::default();
         let count = self.states.len();
         self.set(row, &vec![L::Real::default(); count]);
-        self.enter(row, &vec![none; count], [L::Real::default(); 3], 1.0);
+        self.set_rates(row, &vec![none; count], [L::Real::default(); 3], 1.0);
     }
 
     #[inline(always)]
@@ -140,14 +140,14 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
     pub(super) fn plus_coefficients<const B: usize>(
         &mut self,
         k: usize,
-        series: &impl Series<Pack<L, R>, B>,
-        sum: [Pack<L, R>; 3],
-    ) -> [Pack<L, R>; 3] {
+        series: &impl Series<Batch<L, R>, B>,
+        sum: [Batch<L, R>; 3],
+    ) -> [Batch<L, R>; 3] {
         let by_states = if R == 1 {
             self.coefficient(k, series)
         } else {
-            let carried = self;
-            dispatch(Next { carried, k, series }).0
+            let states = self;
+            dispatch(Next { states, k, series }).0
         };
         plus(sum, by_states)
     }
@@ -156,9 +156,9 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
     fn coefficient<const B: usize>(
         &mut self,
         k: usize,
-        series: &impl Series<Pack<L, R>, B>,
-    ) -> [Pack<L, R>; 3] {
-        let zero = Pack::new(0.0);
+        series: &impl Series<Batch<L, R>, B>,
+    ) -> [Batch<L, R>; 3] {
+        let zero = Batch::new(0.0);
         let (mut momentum, mut torque) = ([zero; 3], [zero; 3]);
         for state in &self.states {
             let value = state.series[k];
@@ -179,9 +179,9 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
 
     /// The coefficients of order k + 1 of the states.
     #[inline(always)]
-    fn extend<const B: usize>(&mut self, k: usize, series: &impl Series<Pack<L, R>, B>) {
+    fn extend<const B: usize>(&mut self, k: usize, series: &impl Series<Batch<L, R>, B>) {
         let at = series.get(k);
-        let reciprocal = Pack::over(k + 1);
+        let reciprocal = Batch::over(k + 1);
         for number in 0..self.states.len() {
             let state = &self.states[number];
             let mut rate = state.on_itself * state.series[k];
@@ -218,7 +218,7 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
         steps: &mut [f64; R],
     ) {
         if L::VARIES {
-            return self.keep_pace(steps);
+            return self.limit_with_derivatives(steps);
         }
         for row in 0..R {
             let (mut last, mut last_but_one) = (0.0, 0.0);
@@ -239,8 +239,8 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
                 sum += one + other;
             }
             let (a, b) = (
-                limit(last, order, tolerance),
-                limit(last_but_one, order - 1, tolerance),
+                log2_step(last, order, tolerance),
+                log2_step(last_but_one, order - 1, tolerance),
             );
             let most = exp2(if a < b { a } else { b });
             let h = steps[row];
@@ -250,7 +250,7 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
 
     /// The same with derivatives, of which each is as good.
     #[inline(never)]
-    fn keep_pace(&mut self, steps: &mut [f64; R]) {
+    fn limit_with_derivatives(&mut self, steps: &mut [f64; R]) {
         let mut first = 0;
         while first < self.states.len() {
             let count = if self.states[first].turned.is_some() {
@@ -258,7 +258,7 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
             } else {
                 1
             };
-            let mut pace = self.states[first].pace;
+            let mut radius = self.states[first].radius;
             for (row, h) in steps.iter_mut().enumerate() {
                 let sizes = |k: usize| {
                     let mut sum = [0.0; WIDTH + 1];
@@ -270,18 +270,18 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
                     }
                     sum
                 };
-                let most = pace.longest_of(&sizes);
+                let most = radius.longest_step_of(&sizes);
                 // Not a number wherever one of them is not.
                 *h = if most >= *h { *h } else { most };
             }
-            self.states[first].pace = pace;
+            self.states[first].radius = radius;
             first += count;
         }
     }
 
     /// The states of one row after the time `h`.
     #[inline(always)]
-    pub(super) fn within(&self, row: usize, order: usize, h: Pack<L, R>) -> Vec<L::Real> {
+    pub(super) fn within(&self, row: usize, order: usize, h: Batch<L, R>) -> Vec<L::Real> {
         let mut moved = Vec::with_capacity(self.states.len());
         // No `map`: its closure would be compiled without the instructions of the level.
         for state in &self.states {
@@ -293,7 +293,7 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
 
     /// Goes on by the time `h`.
     #[inline(always)]
-    pub(super) fn advance(&mut self, order: usize, h: Pack<L, R>) {
+    pub(super) fn advance(&mut self, order: usize, h: Batch<L, R>) {
         for state in &mut self.states {
             let change = state.increment(order, h);
             compensate(&mut state.value, &mut state.rest, change);
@@ -321,28 +321,28 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
 
 /// The coefficients of one order of several rows: a function of its own, as that of [formulas](super::formulas).
 struct Next<'a, L, S, const R: usize, const B: usize> {
-    carried: &'a mut Carried<Pack<L, R>>,
+    states: &'a mut InternalStates<Batch<L, R>>,
     k: usize,
     series: &'a S,
 }
 
-impl<N: Number<Real: Precision>, S: Series<Pack<N, R>, B>, const R: usize, const B: usize> Kernel
+impl<N: Number<Real: Precision>, S: Series<Batch<N, R>, B>, const R: usize, const B: usize> Kernel
     for Next<'_, N, S, R, B>
 {
-    type Output = Lined<[Pack<N, R>; 3]>;
+    type Output = CacheAligned<[Batch<N, R>; 3]>;
 
     #[inline(always)]
     fn run<L: Lane>(self) -> Self::Output {
-        Lined(self.carried.coefficient(self.k, self.series))
+        CacheAligned(self.states.coefficient(self.k, self.series))
     }
 }
 
-impl<L: Number, const R: usize> State<Pack<L, R>> {
+impl<L: Number, const R: usize> InternalState<Batch<L, R>> {
     /// As [`increment`](super::step::increment).
     #[inline(always)]
-    fn increment(&self, order: usize, h: Pack<L, R>) -> Pack<L, R> {
+    fn increment(&self, order: usize, h: Batch<L, R>) -> Batch<L, R> {
         let square = h * h;
-        let [mut odd, mut even] = [Pack::new(0.0); 2];
+        let [mut odd, mut even] = [Batch::new(0.0); 2];
         for half in (1..=order / 2).rev() {
             odd = odd.mul_add(square, self.series[2 * half - 1]);
             even = even.mul_add(square, self.series[2 * half]);

@@ -1,6 +1,6 @@
 //! What there is to do of a task, and how: settings and jobs.
 
-use super::course::Course;
+use super::course::PiecewiseEquations;
 use super::drive::{Job, Settings};
 use super::principal_frame::Precision;
 use super::{double_double_series, series};
@@ -9,7 +9,7 @@ use crate::motion::loads::variables::Fixed;
 use crate::motion::loads::{Parts, Term};
 use crate::motion::problem::{End, Run, Task, check_times};
 
-pub(super) fn settings(task: &Task<'_>, parts: Parts) -> Settings {
+pub(super) fn choose_settings(task: &Task<'_>, parts: Parts) -> Settings {
     let tolerance = task.tolerance;
     let highest = if tolerance.is_beyond_doubles() {
         double_double_series::HIGHEST_ORDER
@@ -20,7 +20,7 @@ pub(super) fn settings(task: &Task<'_>, parts: Parts) -> Settings {
 }
 
 /// The job of a motion, if there is anything to do and nothing against it.
-pub(super) fn job<'a, X: Precision<Variables = Fixed>>(
+pub(super) fn prepare_job<'a, X: Precision<Variables = Fixed>>(
     task: &Task<'a>,
     terms: &'a [Term],
     run: &'a mut Run<Error>,
@@ -33,17 +33,17 @@ pub(super) fn job<'a, X: Precision<Variables = Fixed>>(
         run.end = End::Complete;
         return None;
     }
-    let course = (task.clone())
+    let equations = (task.clone())
         .carrying(terms.iter().filter_map(Term::carried))
         .and_then(|task| {
             (run.samples[0].own).clone_from(&task.initial.own);
-            Course::new(&task, terms, Fixed)
+            PiecewiseEquations::new(&task, terms, Fixed)
         });
-    match course {
-        Ok(course) => Some(Job {
-            course,
+    match equations {
+        Ok(equations) => Some(Job {
+            equations,
             run,
-            tell: None,
+            sink: None,
         }),
         Err(error) => {
             run.end = End::Failed(error);
@@ -53,13 +53,13 @@ pub(super) fn job<'a, X: Precision<Variables = Fixed>>(
 }
 
 /// The jobs of `runs`, the first of which is of the task `first`.
-pub(super) fn rows<'a, X: Precision<Variables = Fixed>>(
+pub(super) fn prepare_jobs<'a, X: Precision<Variables = Fixed>>(
     first: usize,
     runs: &'a mut [Option<Run<Error>>],
     begin: &impl Fn(usize) -> (Task<'a>, &'a [Term]),
 ) -> impl Iterator<Item = Job<'a, X>> {
     (first..).zip(runs).filter_map(|(row, run)| {
         let (task, terms) = begin(row);
-        job(&task, terms, run.insert(Run::at_start(&task, End::Stopped)))
+        prepare_job(&task, terms, run.insert(Run::at_start(&task, End::Stopped)))
     })
 }

@@ -2,11 +2,11 @@
 
 use std::ops::ControlFlow;
 
-use super::batch_series::Abreast;
-use super::orbit_cache::Almanac;
-use super::single_series::Alone;
-use super::drive::{Job, See, Settings, drive};
-use super::double_double_series::Twin;
+use super::batch_series::BatchSeries;
+use super::double_double_series::DoubleDoubleSeries;
+use super::drive::{Job, Observer, Settings, drive};
+use super::orbit_cache::OrbitSeriesCache;
+use super::single_series::SingleMotionSeries;
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lane::Lane;
@@ -16,14 +16,14 @@ use crate::numerics::twofold::Twofold;
 pub(super) const ROWS: usize = 8;
 
 /// Motions one after the other in numbers of twice the precision.
-pub(super) struct Precisely<'a, 'b> {
+pub(super) struct InDoubleDouble<'a, 'b> {
     pub(super) settings: Settings,
     pub(super) jobs: &'b mut dyn Iterator<Item = Job<'a, DoubleDouble>>,
     pub(super) watch: &'b mut dyn FnMut(f64) -> ControlFlow<()>,
-    pub(super) see: Option<See<'b>>,
+    pub(super) observer: Option<Observer<'b>>,
 }
 
-impl Kernel for Precisely<'_, '_> {
+impl Kernel for InDoubleDouble<'_, '_> {
     type Output = ControlFlow<()>;
 
     #[inline(always)]
@@ -32,13 +32,19 @@ impl Kernel for Precisely<'_, '_> {
             settings,
             jobs,
             watch,
-            see,
+            observer,
         } = self;
-        let almanac = &mut Almanac::default();
+        let cache = &mut OrbitSeriesCache::default();
         match settings.parts.directions {
-            0 => drive::<Twofold<L>, Twin<L, 0, 4>, 0, 1>(settings, jobs, watch, see, almanac),
-            1 => drive::<Twofold<L>, Twin<L, 1, 8>, 1, 1>(settings, jobs, watch, see, almanac),
-            _ => drive::<Twofold<L>, Twin<L, 3, 16>, 3, 1>(settings, jobs, watch, see, almanac),
+            0 => drive::<Twofold<L>, DoubleDoubleSeries<L, 0, 4>, 0, 1>(
+                settings, jobs, watch, observer, cache,
+            ),
+            1 => drive::<Twofold<L>, DoubleDoubleSeries<L, 1, 8>, 1, 1>(
+                settings, jobs, watch, observer, cache,
+            ),
+            _ => drive::<Twofold<L>, DoubleDoubleSeries<L, 3, 16>, 3, 1>(
+                settings, jobs, watch, observer, cache,
+            ),
         }
     }
 }
@@ -48,7 +54,7 @@ pub(super) struct OneByOne<'a, 'b> {
     pub(super) settings: Settings,
     pub(super) jobs: &'b mut dyn Iterator<Item = Job<'a, f64>>,
     pub(super) watch: &'b mut dyn FnMut(f64) -> ControlFlow<()>,
-    pub(super) see: Option<See<'b>>,
+    pub(super) observer: Option<Observer<'b>>,
 }
 
 impl Kernel for OneByOne<'_, '_> {
@@ -60,13 +66,13 @@ impl Kernel for OneByOne<'_, '_> {
             settings,
             jobs,
             watch,
-            see,
+            observer,
         } = self;
-        let almanac = &mut Almanac::default();
+        let cache = &mut OrbitSeriesCache::default();
         match settings.parts.directions {
-            0 => drive::<L, Alone<L, 0>, 0, 1>(settings, jobs, watch, see, almanac),
-            1 => drive::<L, Alone<L, 1>, 1, 1>(settings, jobs, watch, see, almanac),
-            _ => drive::<L, Alone<L, 3>, 3, 1>(settings, jobs, watch, see, almanac),
+            0 => drive::<L, SingleMotionSeries<L, 0>, 0, 1>(settings, jobs, watch, observer, cache),
+            1 => drive::<L, SingleMotionSeries<L, 1>, 1, 1>(settings, jobs, watch, observer, cache),
+            _ => drive::<L, SingleMotionSeries<L, 3>, 3, 1>(settings, jobs, watch, observer, cache),
         }
     }
 }
@@ -76,7 +82,7 @@ pub(super) struct SideBySide<'a, 'b> {
     pub(super) settings: Settings,
     pub(super) jobs: &'b mut dyn Iterator<Item = Job<'a, f64>>,
     pub(super) watch: &'b mut dyn FnMut(f64) -> ControlFlow<()>,
-    pub(super) almanac: &'b mut Almanac,
+    pub(super) cache: &'b mut OrbitSeriesCache,
 }
 
 impl SideBySide<'_, '_> {
@@ -103,8 +109,8 @@ impl<const B: usize> Kernel for Directed<'_, '_, B> {
             settings,
             jobs,
             watch,
-            almanac,
+            cache,
         } = self.0;
-        drive::<L, Abreast<L, B, ROWS>, B, ROWS>(settings, jobs, watch, None, almanac)
+        drive::<L, BatchSeries<L, B, ROWS>, B, ROWS>(settings, jobs, watch, None, cache)
     }
 }

@@ -1,6 +1,6 @@
 //! The equations of a motion between two breaks of its load, as far as they are linear in the coefficients of one order.
 
-use super::batch::Pack;
+use super::batch::Batch;
 use super::series::Coefficient;
 use crate::motion::loads::Parts;
 use crate::numerics::number::Number;
@@ -12,7 +12,7 @@ type Square<T> = [[T; 3]; 3];
 /// κ₁ = (I₂ − I₃)/I₁ and cyclic; c a torque constant in the body, A damping, Q feedback, `G_b` torques of what is fixed in
 /// space, each divided by the moments.
 #[derive(Clone, Debug)]
-pub(super) struct Field<T, const B: usize> {
+pub(super) struct LinearTerms<T, const B: usize> {
     pub(super) kappa: [T; 3],
     /// One over the moments, and the elements 23, 31, 12 of the tensor, which are zero where nothing is varied.
     pub(super) inverse_moments: [T; 3],
@@ -28,7 +28,7 @@ pub(super) struct Field<T, const B: usize> {
     pub(super) thrust: [T; 3],
 }
 
-impl<T: Copy, const B: usize> Field<T, B> {
+impl<T: Copy, const B: usize> LinearTerms<T, B> {
     /// Nothing turns.
     #[inline(always)]
     pub(super) fn none(zero: T) -> Self {
@@ -47,10 +47,10 @@ impl<T: Copy, const B: usize> Field<T, B> {
     }
 }
 
-impl<X: Copy + Default + PartialEq, const B: usize> Field<X, B> {
+impl<X: Copy + Default + PartialEq, const B: usize> LinearTerms<X, B> {
     /// Whether nothing turns about each of the axes, so that its component of ω is constant: that of a symmetric body,
     /// when no torque acts about it.
-    pub(super) fn stillness(&self) -> [bool; 3] {
+    pub(super) fn constant_components(&self) -> [bool; 3] {
         let zero = X::default();
         [0, 1, 2].map(|n| {
             let on_space = self.on_space.iter().flat_map(|matrix| &matrix[n]);
@@ -66,30 +66,30 @@ impl<X: Copy + Default + PartialEq, const B: usize> Field<X, B> {
     }
 }
 
-impl<L: Number, const R: usize, const B: usize> Field<Pack<L, R>, B> {
+impl<L: Number, const R: usize, const B: usize> LinearTerms<Batch<L, R>, B> {
     /// Sets the field of one row.
     #[inline(always)]
-    pub(super) fn set(&mut self, row: usize, field: &Field<L::Real, B>) {
+    pub(super) fn set(&mut self, row: usize, linear_terms: &LinearTerms<L::Real, B>) {
         for n in 0..3 {
-            self.kappa[n].put(row, field.kappa[n]);
-            (self.inverse_moments[n]).put(row, field.inverse_moments[n]);
-            self.pull.0[n].put(row, field.pull.0[n]);
-            self.pull.1[n].put(row, field.pull.1[n]);
+            self.kappa[n].put(row, linear_terms.kappa[n]);
+            (self.inverse_moments[n]).put(row, linear_terms.inverse_moments[n]);
+            self.pull.0[n].put(row, linear_terms.pull.0[n]);
+            self.pull.1[n].put(row, linear_terms.pull.1[n]);
             if L::VARIES {
-                self.products[n].put(row, field.products[n]);
+                self.products[n].put(row, linear_terms.products[n]);
             }
-            self.constant[n].put(row, field.constant[n]);
-            self.force[n].put(row, field.force[n]);
-            self.thrust[n].put(row, field.thrust[n]);
+            self.constant[n].put(row, linear_terms.constant[n]);
+            self.force[n].put(row, linear_terms.force[n]);
+            self.thrust[n].put(row, linear_terms.thrust[n]);
             for i in 0..3 {
-                self.on_omega[n][i].put(row, field.on_omega[n][i]);
+                self.on_omega[n][i].put(row, linear_terms.on_omega[n][i]);
             }
             for i in 0..4 {
-                self.on_attitude[n][i].put(row, field.on_attitude[n][i]);
+                self.on_attitude[n][i].put(row, linear_terms.on_attitude[n][i]);
             }
             for b in 0..B {
                 for i in 0..3 {
-                    self.on_space[b][n][i].put(row, field.on_space[b][n][i]);
+                    self.on_space[b][n][i].put(row, linear_terms.on_space[b][n][i]);
                 }
             }
         }
@@ -101,11 +101,11 @@ impl<L: Number, const R: usize, const B: usize> Field<Pack<L, R>, B> {
         &self,
         parts: Parts,
         k: usize,
-        products: [Pack<L, R>; 3],
-        at: &Coefficient<Pack<L, R>, B>,
-    ) -> [Pack<L, R>; 3] {
+        products: [Batch<L, R>; 3],
+        at: &Coefficient<Batch<L, R>, B>,
+    ) -> [Batch<L, R>; 3] {
         // Written out, since a loop would keep the sums in memory.
-        let [mut x, mut y, mut z] = [Pack::new(0.0); 3];
+        let [mut x, mut y, mut z] = [Batch::new(0.0); 3];
         if k == 0 {
             let [a, b, c] = self.constant;
             [x, y, z] = [x + a, y + b, z + c];
@@ -132,14 +132,14 @@ impl<L: Number, const R: usize, const B: usize> Field<Pack<L, R>, B> {
     }
 }
 
-impl<L: Number, const R: usize, const B: usize> Field<Pack<L, R>, B> {
+impl<L: Number, const R: usize, const B: usize> LinearTerms<Batch<L, R>, B> {
     /// Whether elements off the diagonal of the tensor are varied.
-    pub(super) fn is_tilted(&self) -> bool {
+    pub(super) fn has_off_diagonal(&self) -> bool {
         !are_zero(&self.products)
     }
 
     /// Whether the tensor that a gravity gradient pulls has elements off the diagonal.
-    pub(super) fn is_pulled_aside(&self) -> bool {
+    pub(super) fn pull_has_off_diagonal(&self) -> bool {
         !are_zero(&self.pull.1)
     }
 
@@ -150,13 +150,13 @@ impl<L: Number, const R: usize, const B: usize> Field<Pack<L, R>, B> {
     /// −I_ki x_i x_j + I_ij x_k x_i + I_jk (x_k² − x_j²)
     /// ```
     #[inline(always)]
-    pub(super) fn tilt(
+    pub(super) fn off_diagonal_torque(
         &self,
-        p: &[Pack<L, R>; 3],
-        mixed: &[Pack<L, R>; 3],
-        squares: &[Pack<L, R>; 3],
-    ) -> [Pack<L, R>; 3] {
-        let mut sum = [Pack::new(0.0); 3];
+        p: &[Batch<L, R>; 3],
+        mixed: &[Batch<L, R>; 3],
+        squares: &[Batch<L, R>; 3],
+    ) -> [Batch<L, R>; 3] {
+        let mut sum = [Batch::new(0.0); 3];
         for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
             let torque = p[k] * mixed[j] - p[j] * mixed[k] + p[i] * (squares[k] - squares[j]);
             sum[i] = torque * self.inverse_moments[i];
@@ -165,25 +165,25 @@ impl<L: Number, const R: usize, const B: usize> Field<Pack<L, R>, B> {
     }
 
     /// `I⁻¹ N` to first order in these elements, from N over the moments.
-    pub(super) fn tilted(&self, quotient: &[Pack<L, R>; 3]) -> [Pack<L, R>; 3] {
+    pub(super) fn divide_by_off_diagonal(&self, quotient: &[Batch<L, R>; 3]) -> [Batch<L, R>; 3] {
         let (p, a) = (&self.products, quotient);
         [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
             .map(|(i, j, k)| a[i] - (p[k] * a[j] + p[j] * a[k]) * self.inverse_moments[i])
     }
 }
 
-fn are_zero<L: Number, const R: usize>(numbers: &[Pack<L, R>; 3]) -> bool {
-    let is_zero = |x: &Pack<L, R>| (0..R).all(|row| x.real(row) == L::Real::default());
+fn are_zero<L: Number, const R: usize>(numbers: &[Batch<L, R>; 3]) -> bool {
+    let is_zero = |x: &Batch<L, R>| (0..R).all(|row| x.real(row) == L::Real::default());
     numbers.iter().all(is_zero)
 }
 
 /// `sum + a·b`.
 #[inline(always)]
 fn plus_product<L: Number, const R: usize, const N: usize>(
-    a: &[Pack<L, R>; N],
-    b: &[Pack<L, R>; N],
-    mut sum: Pack<L, R>,
-) -> Pack<L, R> {
+    a: &[Batch<L, R>; N],
+    b: &[Batch<L, R>; N],
+    mut sum: Batch<L, R>,
+) -> Batch<L, R> {
     for i in 0..N {
         sum = a[i].mul_add(b[i], sum);
     }

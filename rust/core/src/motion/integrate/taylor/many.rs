@@ -4,10 +4,10 @@ use std::ops::{ControlFlow, Range};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use super::orbit_cache::Almanac;
 use super::course::parts;
-use super::job::{rows, settings};
-use super::kernels::{OneByOne, Precisely, ROWS, SideBySide};
+use super::job::{choose_settings, prepare_jobs};
+use super::kernels::{InDoubleDouble, OneByOne, ROWS, SideBySide};
+use super::orbit_cache::OrbitSeriesCache;
 use crate::error::Error;
 use crate::motion::loads::variables::Fixed;
 use crate::motion::loads::{Parts, Term};
@@ -70,18 +70,22 @@ pub fn solve_many<'a, E: From<Error> + Send>(
             watch(begun.load(Ordering::Relaxed) as f64 / all)
         }
     };
-    let is_precise = !runs.is_empty() && task(0).tolerance.is_beyond_doubles();
-    let block = if is_precise { 1 } else { block(runs.len()) };
+    let in_double_double = !runs.is_empty() && task(0).tolerance.is_beyond_doubles();
+    let block = if in_double_double {
+        1
+    } else {
+        block(runs.len())
+    };
     let tasks = Tasks {
         task,
         terms,
         begun: &begun,
         ask: &ask,
-        almanacs: &Mutex::default(),
+        caches: &Mutex::default(),
     };
     // Where a run is stopped, what was done by then is kept.
     let _ended = fill_blocks(runs, block, &mut |_| ask(), |first, slots| {
-        let (runs, flow) = tasks.solve(first..first + slots.len(), is_precise);
+        let (runs, flow) = tasks.solve(first..first + slots.len(), in_double_double);
         for (slot, run) in slots.iter_mut().zip(runs) {
             *slot = run.map(|run| run.with_error(E::from));
         }
@@ -100,7 +104,7 @@ struct Tasks<'a, 'b> {
     begun: &'b AtomicUsize,
     ask: &'b (dyn Fn() -> ControlFlow<()> + Sync),
     /// Those that no thread has in hand.
-    almanacs: &'b Mutex<Vec<Almanac>>,
+    caches: &'b Mutex<Vec<OrbitSeriesCache>>,
 }
 
 impl Tasks<'_, '_> {
@@ -108,7 +112,7 @@ impl Tasks<'_, '_> {
     fn solve(
         &self,
         some: Range<usize>,
-        is_precise: bool,
+        in_double_double: bool,
     ) -> (Vec<Option<Run<Error>>>, ControlFlow<()>) {
         let (first, count, example) = (some.start, some.len(), (self.task)(some.start));
         let mut runs = vec![None; count];
@@ -117,39 +121,39 @@ impl Tasks<'_, '_> {
             let (terms, subject) = ((self.terms)(row), &example.subject);
             common = common.of_both(parts::<f64>(terms, subject, Fixed, !subject.pivoted));
         }
-        let settings = settings(&example, common);
+        let settings = choose_settings(&example, common);
         let begin = |row: usize| {
             self.begun.fetch_add(1, Ordering::Relaxed);
             ((self.task)(row), (self.terms)(row))
         };
         let watch = &mut |_| (self.ask)();
-        let flow = if is_precise {
-            let jobs = &mut rows(first, &mut runs, &begin);
-            dispatch(Precisely {
+        let flow = if in_double_double {
+            let jobs = &mut prepare_jobs(first, &mut runs, &begin);
+            dispatch(InDoubleDouble {
                 settings,
                 jobs,
                 watch,
-                see: None,
+                observer: None,
             })
         } else {
-            let jobs = &mut rows(first, &mut runs, &begin);
+            let jobs = &mut prepare_jobs(first, &mut runs, &begin);
             if count < FEW {
                 dispatch(OneByOne {
                     settings,
                     jobs,
                     watch,
-                    see: None,
+                    observer: None,
                 })
             } else {
-                let mut almanac = locked(self.almanacs).pop().unwrap_or_default();
+                let mut cache = locked(self.caches).pop().unwrap_or_default();
                 let side_by_side = SideBySide {
                     settings,
                     jobs,
                     watch,
-                    almanac: &mut almanac,
+                    cache: &mut cache,
                 };
                 let flow = side_by_side.run();
-                locked(self.almanacs).push(almanac);
+                locked(self.caches).push(cache);
                 flow
             }
         };

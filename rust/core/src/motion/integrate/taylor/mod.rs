@@ -3,7 +3,7 @@
 //! | file | what it knows |
 //! |---|---|
 //! | `principal_frame` | the principal axes, in doubles or in numbers of twice the precision |
-//! | `course` | one motion: its load in principal axes, from break to break, in a unit of its own |
+//! | `equations` | one motion: its load in principal axes, from break to break, in a unit of its own |
 //! | `linear_terms` | the equations that are linear in the coefficients of one order |
 //! | `formulas`, `terms`, `gravity_gradient`, `pulled`, `nonlinear` | the recurrences of terms that are not |
 //! | `orbit_series`, `orbit_cache` | the series of an orbit, and where motions look them up |
@@ -61,5 +61,5 @@ mod varied;
 pub(crate) use drive::Step;
 pub use many::solve_many;
 pub use one::solve_one;
-pub(crate) use one::solve_seen;
-pub(super) use varied::run_varied;
+pub(crate) use one::solve_with_observer;
+pub(super) use varied::solve_variational;

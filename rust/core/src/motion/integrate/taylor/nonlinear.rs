@@ -2,96 +2,96 @@
 
 use nalgebra::Vector3;
 
-use super::orbit_cache::{Almanac, Place, rounded};
-use super::linear_terms::Field;
+use super::batch::{Batch, plus};
 use super::formulas::Formulas;
+use super::gravity_gradient::GravityGradientSeries;
+use super::linear_terms::LinearTerms;
+use super::orbit_cache::{CacheKey, OrbitSeriesCache, round_step_end};
 use super::principal_frame::Precision;
-use super::gravity_gradient::Gradient;
-use super::batch::{Pack, plus};
 use super::series::Series;
-use super::terms::{Analytic, Forced};
+use super::terms::ForcedTorques;
 use crate::motion::loads::{Forcing, OnOrbit, Parts};
 use crate::numerics::number::Number;
 
 /// Those that the load has; most loads have none.
 #[derive(Clone, Debug)]
-pub(super) struct Extras<T> {
+pub(super) struct NonlinearTerms<T> {
     is_empty: bool,
     pub(super) formulas: Formulas<T>,
-    forced: Option<Box<Forced<T>>>,
-    gradients: Vec<Gradient<T>>,
+    forced: Option<Box<ForcedTorques<T>>>,
+    gradients: Vec<GravityGradientSeries<T>>,
     /// The rows whose orbits have come from the step before.
-    are_carried: Vec<bool>,
+    are_continued: Vec<bool>,
     /// What the almanac has of the rows, and what motions that were there before have put down.
-    orbits: Vec<Orbits>,
-    pub(super) almanac: Almanac,
+    sources: Vec<OrbitSource>,
+    pub(super) cache: OrbitSeriesCache,
     /// Whether the series are of the attitude as seen from the orbit's frame at the start of the step.
-    is_from_orbit: bool,
+    in_orbit_frame: bool,
 }
 
 /// Where the orbits of a row come from in a step, in which unit of rates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Orbits {
+enum OrbitSource {
     /// Not from the almanac.
-    Own,
+    Uncached,
     /// From the page of this number.
-    Known(usize, f64),
+    Cached(usize, f64),
     /// Their series are to be found, and put down for this place.
-    Sought(Place, f64),
+    Missing(CacheKey, f64),
 }
 
-impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
+impl<L: Number<Real: Precision>, const R: usize> NonlinearTerms<Batch<L, R>> {
     #[inline(always)]
     pub(super) fn new(parts: &Parts) -> Self {
         let mut gradients = Vec::new();
         for _ in 0..parts.gradients {
-            gradients.push(Gradient::new());
+            gradients.push(GravityGradientSeries::new());
         }
         Self {
             is_empty: !parts.is_timed && parts.gradients == 0,
             formulas: Formulas::new(),
             forced: if parts.is_timed {
-                Some(Box::new(Forced::new()))
+                Some(Box::new(ForcedTorques::new()))
             } else {
                 None
             },
             gradients,
-            are_carried: vec![false; R],
-            orbits: vec![Orbits::Own; R],
-            almanac: Almanac::default(),
-            is_from_orbit: Self::FINDS && is_of_orbit_alone(parts),
+            are_continued: vec![false; R],
+            sources: vec![OrbitSource::Uncached; R],
+            cache: OrbitSeriesCache::default(),
+            in_orbit_frame: Self::RECOMPUTES_ORBITS && is_of_orbit_alone(parts),
         }
     }
 
     /// The attitude that the series begin with, from that in N.
     #[inline(always)]
-    pub(super) fn begun(&self, attitude: [Pack<L, R>; 4]) -> [Pack<L, R>; 4] {
+    pub(super) fn initial_attitude(&self, attitude: [Batch<L, R>; 4]) -> [Batch<L, R>; 4] {
         match &self.gradients[..] {
-            [gradient] if self.is_from_orbit => gradient.seen_from_frame(attitude),
+            [gradient] if self.in_orbit_frame => gradient.to_orbit_frame(attitude),
             _ => attitude,
         }
     }
 
     /// A sum or a coefficient of the attitude's series, in N.
     #[inline(always)]
-    pub(super) fn in_space(&self, attitude: [Pack<L, R>; 4]) -> [Pack<L, R>; 4] {
+    pub(super) fn to_space(&self, attitude: [Batch<L, R>; 4]) -> [Batch<L, R>; 4] {
         match &self.gradients[..] {
-            [gradient] if self.is_from_orbit => gradient.in_space(attitude),
+            [gradient] if self.in_orbit_frame => gradient.to_space(attitude),
             _ => attitude,
         }
     }
 
     /// What a step adds to the state, its attitude in N.
     #[inline(always)]
-    pub(super) fn change_in_space(&self, change: [Pack<L, R>; 7]) -> [Pack<L, R>; 7] {
+    pub(super) fn change_in_space(&self, change: [Batch<L, R>; 7]) -> [Batch<L, R>; 7] {
         let [a, b, c, x, y, z, w] = change;
-        let [x, y, z, w] = self.in_space([x, y, z, w]);
+        let [x, y, z, w] = self.to_space([x, y, z, w]);
         [a, b, c, x, y, z, w]
     }
 
     /// Whether nothing but orbits goes with the time.
     #[inline(always)]
-    pub(super) fn has_orbits_alone(&self) -> bool {
+    pub(super) fn has_only_orbits(&self) -> bool {
         self.forced.is_none()
     }
 
@@ -120,20 +120,20 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
     }
 
     /// Whether orbits are found anew in every step, in doubles: then motions side by side look them up.
-    const FINDS: bool = !L::VARIES && !L::Real::CARRIES_ORBITS;
-    const LOOKS_UP: bool = R > 1 && Self::FINDS;
+    const RECOMPUTES_ORBITS: bool = !L::VARIES && !L::Real::CARRIES_ORBITS;
+    const USES_CACHE: bool = R > 1 && Self::RECOMPUTES_ORBITS;
 
     /// Whether the orbits of one row, where a step begins, are known already.
     #[inline(always)]
-    pub(super) fn recall(&mut self, row: usize, place: impl FnOnce() -> (Place, f64)) -> bool {
-        if !Self::LOOKS_UP || self.gradients.is_empty() {
-            return L::Real::CARRIES_ORBITS && self.are_carried[row];
+    pub(super) fn look_up(&mut self, row: usize, key: impl FnOnce() -> (CacheKey, f64)) -> bool {
+        if !Self::USES_CACHE || self.gradients.is_empty() {
+            return L::Real::CARRIES_ORBITS && self.are_continued[row];
         }
-        let (place, unit) = place();
-        let known = self.almanac.find(&place, unit);
-        self.orbits[row] = match known {
-            Some(number) => Orbits::Known(number, unit),
-            None => Orbits::Sought(place, unit),
+        let (key, unit) = key();
+        let known = self.cache.find(&key, unit);
+        self.sources[row] = match known {
+            Some(number) => OrbitSource::Cached(number, unit),
+            None => OrbitSource::Missing(key, unit),
         };
         known.is_some()
     }
@@ -142,37 +142,37 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
     /// after one is put down, which may take the place of another.
     #[inline(always)]
     pub(super) fn expand(&mut self, order: usize) {
-        if Self::LOOKS_UP && self.reads_all(order) {
+        if Self::USES_CACHE && self.restore_all(order) {
             return;
         }
-        for row in 0..self.orbits.len() {
-            if let Orbits::Known(number, unit) = self.orbits[row] {
-                let page = self.almanac.page(number);
-                page.begin(unit, &mut self.gradients, row, order);
+        for row in 0..self.sources.len() {
+            if let OrbitSource::Cached(number, unit) = self.sources[row] {
+                let entry = self.cache.entry(number);
+                entry.restore(unit, &mut self.gradients, row, order);
             }
         }
         for gradient in &mut self.gradients {
             gradient.expand(order);
         }
-        for row in 0..self.orbits.len() {
-            if let Orbits::Sought(place, unit) = self.orbits[row] {
-                (self.almanac).put(place, unit, &mut self.gradients, row, order);
+        for row in 0..self.sources.len() {
+            if let OrbitSource::Missing(key, unit) = self.sources[row] {
+                (self.cache).insert(key, unit, &mut self.gradients, row, order);
             }
         }
     }
 
     /// Gives all rows their orbits at once, if they are all known; a row without motion gets those of another.
     #[inline(always)]
-    fn reads_all(&mut self, order: usize) -> bool {
-        let (mut pages, mut any) = ([None; R], None);
+    fn restore_all(&mut self, order: usize) -> bool {
+        let (mut entries, mut any) = ([None; R], None);
         for row in 0..R {
-            match self.orbits[row] {
-                Orbits::Own => {}
-                Orbits::Known(number, unit) => {
-                    pages[row] = Some((number, unit));
-                    any = pages[row];
+            match self.sources[row] {
+                OrbitSource::Uncached => {}
+                OrbitSource::Cached(number, unit) => {
+                    entries[row] = Some((number, unit));
+                    any = entries[row];
                 }
-                Orbits::Sought(..) => return false,
+                OrbitSource::Missing(..) => return false,
             }
         }
         let Some(any) = any else {
@@ -180,30 +180,30 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
         };
         let mut known = [any; R];
         for row in 0..R {
-            known[row] = pages[row].unwrap_or(any);
+            known[row] = entries[row].unwrap_or(any);
         }
-        self.almanac.give_all(&known, &mut self.gradients, order);
+        self.cache.restore_all(&known, &mut self.gradients, order);
         true
     }
 
     /// A step from `now`, as long ago as that is, shortened so that orbits may be looked up at its end.
     #[inline(always)]
-    pub(super) fn shortened(&self, now: (f64, f64), h: f64) -> f64 {
+    pub(super) fn shorten_step(&self, now: (f64, f64), h: f64) -> f64 {
         if self.gradients.is_empty() || L::VARIES || L::Real::CARRIES_ORBITS {
             h
         } else {
-            rounded(now, h)
+            round_step_end(now, h)
         }
     }
 
     /// Goes on to the end of a step of length `h`.
     #[inline(always)]
-    pub(super) fn advance(&mut self, order: usize, h: Pack<L, R>) {
+    pub(super) fn advance(&mut self, order: usize, h: Batch<L, R>) {
         if L::Real::CARRIES_ORBITS {
             for gradient in &mut self.gradients {
                 gradient.advance(order, h);
             }
-            self.are_carried.fill(true);
+            self.are_continued.fill(true);
         }
     }
 
@@ -216,14 +216,14 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
 
     /// Has the orbits of one row found anew.
     pub(super) fn restart(&mut self, row: usize) {
-        self.are_carried[row] = false;
+        self.are_continued[row] = false;
     }
 
     /// Leaves one row without such terms.
-    pub(super) fn vacate(&mut self, row: usize) {
+    pub(super) fn clear(&mut self, row: usize) {
         self.restart(row);
-        self.orbits[row] = Orbits::Own;
-        self.formulas.vacate(row);
+        self.sources[row] = OrbitSource::Uncached;
+        self.formulas.clear(row);
         self.set(row, &Forcing::default(), &Vector3::zeros());
     }
 
@@ -231,10 +231,10 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
     pub(super) fn start<const B: usize>(
         &mut self,
         fastest: &[f64; R],
-        field: &Field<Pack<L, R>, B>,
+        linear_terms: &LinearTerms<Batch<L, R>, B>,
     ) {
         for gradient in &mut self.gradients {
-            gradient.start(field);
+            gradient.start(linear_terms);
         }
         self.formulas.start(fastest);
     }
@@ -245,11 +245,11 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
     pub(super) fn look_ahead<const B: usize>(
         &mut self,
         k: usize,
-        series: &impl Series<Pack<L, R>, B>,
-        field: &Field<Pack<L, R>, B>,
+        series: &impl Series<Batch<L, R>, B>,
+        linear_terms: &LinearTerms<Batch<L, R>, B>,
     ) {
         for gradient in &mut self.gradients {
-            gradient.look_ahead(k, series, field, self.is_from_orbit);
+            gradient.look_ahead(k, series, linear_terms, self.in_orbit_frame);
         }
     }
 
@@ -258,19 +258,18 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
     pub(super) fn plus_coefficients<const B: usize>(
         &mut self,
         k: usize,
-        series: &impl Series<Pack<L, R>, B>,
-        field: &Field<Pack<L, R>, B>,
-        mut sum: [Pack<L, R>; 3],
-    ) -> [Pack<L, R>; 3] {
+        series: &impl Series<Batch<L, R>, B>,
+        mut sum: [Batch<L, R>; 3],
+    ) -> [Batch<L, R>; 3] {
         sum = self.formulas.plus_coefficients(k, series, sum);
         if self.is_empty {
             return sum;
         }
         if let Some(forced) = &mut self.forced {
-            sum = plus(sum, forced.coefficient(k, series, field));
+            sum = plus(sum, forced.coefficient(k, series));
         }
         for gradient in &self.gradients {
-            sum = plus(sum, gradient.ahead());
+            sum = plus(sum, gradient.coefficient());
         }
         sum
     }

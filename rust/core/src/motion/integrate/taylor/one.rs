@@ -3,9 +3,9 @@
 use std::ops::ControlFlow;
 
 use super::course::parts;
-use super::drive::{See, Step};
-use super::job::{job, settings};
-use super::kernels::{OneByOne, Precisely};
+use super::drive::{Observer, Step};
+use super::job::{choose_settings, prepare_job};
+use super::kernels::{InDoubleDouble, OneByOne};
 use crate::error::Error;
 use crate::motion::loads::Term;
 use crate::motion::loads::variables::Fixed;
@@ -22,48 +22,48 @@ pub fn solve_one(
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Run<Error> {
     let mut run = Run::at_start(task, End::Stopped);
-    go(task, terms, &mut run, watch, None);
+    solve(task, terms, &mut run, watch, None);
     run
 }
 
 /// One motion, in the numbers that its tolerance needs.
-fn go(
+fn solve(
     task: &Task<'_>,
     terms: &[Term],
     run: &mut Run<Error>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
-    see: Option<See>,
+    observer: Option<Observer>,
 ) {
     let subject = &task.subject;
     let parts = parts::<f64>(terms, subject, Fixed, !subject.pivoted);
-    let settings = settings(task, parts);
+    let settings = choose_settings(task, parts);
     // How the run ended stands in it.
     if task.tolerance.is_beyond_doubles() {
-        let jobs = &mut job(task, terms, run).into_iter();
-        let see = see.map(|see| see as See);
-        let _flow = dispatch(Precisely {
+        let jobs = &mut prepare_job(task, terms, run).into_iter();
+        let observer = observer.map(|observer| observer as Observer);
+        let _flow = dispatch(InDoubleDouble {
             settings,
             jobs,
             watch,
-            see,
+            observer,
         });
     } else {
-        let jobs = &mut job(task, terms, run).into_iter();
-        let see = see.map(|see| see as See);
+        let jobs = &mut prepare_job(task, terms, run).into_iter();
+        let observer = observer.map(|observer| observer as Observer);
         let _flow = dispatch(OneByOne {
             settings,
             jobs,
             watch,
-            see,
+            observer,
         });
     }
 }
 
-/// As [`solve_one`], with every step shown to `see`, which may stop the run, as soon as it is made.
-pub(crate) fn solve_seen(
+/// As [`solve_one`], with every step shown to `observer`, which may stop the run, as soon as it is made.
+pub(crate) fn solve_with_observer(
     task: &Task<'_>,
     terms: &[Term],
-    see: &mut dyn FnMut(&Step) -> ControlFlow<()>,
+    observer: &mut dyn FnMut(&Step) -> ControlFlow<()>,
 ) -> Run<Error> {
     let mut run = Run::at_start(task, End::Stopped);
     let watch = &mut |_| ControlFlow::Continue(());
@@ -73,13 +73,13 @@ pub(crate) fn solve_seen(
             last = Some(step);
             return ControlFlow::Continue(());
         }
-        see(&step)
+        observer(&step)
     };
-    go(task, terms, &mut run, watch, Some(&mut each));
+    solve(task, terms, &mut run, watch, Some(&mut each));
     if let Some(last) = last
         && run.end == End::Complete
     {
-        let _over = see(&last);
+        let _over = observer(&last);
     }
     run
 }

@@ -3,151 +3,148 @@
 use std::array::from_fn;
 use std::mem::take;
 
-use super::gravity_gradient::{AT_START, Gradient};
-use super::batch::Pack;
+use super::batch::Batch;
+use super::gravity_gradient::{GravityGradientSeries, INITIAL_NUMBERS};
 use crate::numerics::number::Number;
 
 /// How many shelves there are, as a power of two, and pages on each.
-const SHELVES: u32 = 10;
-pub(super) const PAGES: usize = 4;
+const LOG2_BUCKETS: u32 = 10;
+pub(super) const ENTRIES: usize = 4;
 /// Of two to the power of 64, the golden section.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 /// How far units of rates may lie apart for numbers of one to be used in the other: no power of their ratio leaves the range of
 /// float64.
-const APART: f64 = 1_048_576.0;
+const MAX_UNIT_RATIO: f64 = 1_048_576.0;
 
 /// A part of a step's length below which its end is rounded.
 const GRAIN: f64 = 1.0 / 16.0;
 
 /// What tells one start of a step from another: what acts, and when.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Place {
+pub(super) struct CacheKey {
     /// The bits of the time since the start of the motion and of what rounding leaves out of it, and of that start.
     pub(super) when: [u64; 3],
     /// The address of the terms of the load, which outlive the almanac, and how many they are.
     pub(super) terms: (usize, usize),
 }
 
-/// The orbits of a load at starts of steps, as numbers of [`Gradient`]: found once for all motions on the same orbits.
+/// The orbits of a load at starts of steps, as numbers of [`GravityGradientSeries`]: found once for all motions on the same orbits.
 ///
 /// They depend on the place alone, and on the unit of rates, which is a power of two, to the bit: so a motion is the same whether or
 /// not another one has been there before.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Almanac {
+pub(super) struct OrbitSeriesCache {
     /// The marks of the pages' places, a shelf in a line of the cache; no shelves before the first page is put down.
-    marks: Vec<[u64; PAGES]>,
-    pages: Vec<Page>,
+    hashes: Vec<[u64; ENTRIES]>,
+    entries: Vec<CacheEntry>,
     /// How many there have been.
-    put: usize,
+    inserted: usize,
 }
 
 /// Numbers in a unit of rates.
 #[derive(Clone, Debug)]
-pub(super) struct Page {
-    place: Place,
+pub(super) struct CacheEntry {
+    key: CacheKey,
     unit: f64,
     numbers: Vec<f64>,
 }
 
-impl Place {
+impl CacheKey {
     /// A number that other places hardly have, and the shelf.
     #[inline(always)]
-    pub(super) fn mark(&self) -> (u64, usize) {
+    pub(super) fn hash(&self) -> (u64, usize) {
         let mixed = self.when.iter().fold(self.terms.0 as u64, |sum, bits| {
             (sum.rotate_left(5) ^ bits).wrapping_mul(GOLDEN)
         });
-        (mixed, (mixed >> (64 - SHELVES)) as usize)
+        (mixed, (mixed >> (64 - LOG2_BUCKETS)) as usize)
     }
 }
 
-impl Almanac {
+impl OrbitSeriesCache {
     /// The number of the page of a place, if there is one.
     #[inline(always)]
-    pub(super) fn find(&self, place: &Place, unit: f64) -> Option<usize> {
-        let (mark, shelf) = place.mark();
-        let found = self.marks.get(shelf)?.iter().position(|it| *it == mark)?;
-        let number = PAGES * shelf + found;
-        let page = &self.pages[number];
-        let ratio = page.unit / unit;
-        let serves = page.place == *place && ratio <= APART && 1.0 <= ratio * APART;
+    pub(super) fn find(&self, key: &CacheKey, unit: f64) -> Option<usize> {
+        let (hash, bucket) = key.hash();
+        let found = self.hashes.get(bucket)?.iter().position(|it| *it == hash)?;
+        let number = ENTRIES * bucket + found;
+        let entry = &self.entries[number];
+        let ratio = entry.unit / unit;
+        let serves = entry.key == *key && ratio <= MAX_UNIT_RATIO && 1.0 <= ratio * MAX_UNIT_RATIO;
         serves.then_some(number)
     }
 
     /// The page of a number that was found.
     #[inline(always)]
-    pub(super) fn page(&self, number: usize) -> &Page {
-        &self.pages[number]
+    pub(super) fn entry(&self, number: usize) -> &CacheEntry {
+        &self.entries[number]
     }
 
     /// Gives each row the orbits of a page that was found, in its unit of rates.
     #[inline(always)]
-    pub(super) fn give_all<L: Number, const R: usize>(
+    pub(super) fn restore_all<L: Number, const R: usize>(
         &self,
         known: &[(usize, f64); R],
-        gradients: &mut [Gradient<Pack<L, R>>],
+        gradients: &mut [GravityGradientSeries<Batch<L, R>>],
         order: usize,
     ) {
-        let mut ratio = Pack::new(1.0);
+        let mut ratio = Batch::new(1.0);
         for row in 0..R {
             let (number, unit) = known[row];
-            ratio.set(row, self.pages[number].unit / unit);
+            ratio.set(row, self.entries[number].unit / unit);
         }
-        let size = numbers(order);
+        let size = entry_length(order);
         for (which, gradient) in gradients.iter_mut().enumerate() {
-            let mut sheets: [&[f64]; R] = [&[]; R];
+            let mut numbers_of: [&[f64]; R] = [&[]; R];
             for row in 0..R {
                 let (number, _) = known[row];
-                sheets[row] = &self.pages[number].numbers[which * size..][..size];
+                numbers_of[row] = &self.entries[number].numbers[which * size..][..size];
             }
-            gradient.start_all(&sheets, ratio);
+            gradient.restore_all(&numbers_of, ratio);
         }
     }
 
     /// Puts down the orbits of one row.
     #[inline(never)]
-    pub(super) fn put<L: Number, const R: usize>(
+    pub(super) fn insert<L: Number, const R: usize>(
         &mut self,
-        place: Place,
+        key: CacheKey,
         unit: f64,
-        gradients: &mut [Gradient<Pack<L, R>>],
+        gradients: &mut [GravityGradientSeries<Batch<L, R>>],
         row: usize,
         order: usize,
     ) {
-        if self.marks.is_empty() {
-            self.marks.resize(1 << SHELVES, [0; PAGES]);
-            self.pages.resize(PAGES << SHELVES, Page::none());
+        if self.hashes.is_empty() {
+            self.hashes.resize(1 << LOG2_BUCKETS, [0; ENTRIES]);
+            self.entries
+                .resize(ENTRIES << LOG2_BUCKETS, CacheEntry::none());
         }
-        let (mark, shelf) = place.mark();
-        let is_free = |it: &u64| *it == mark || *it == 0;
-        let free = self.marks[shelf].iter().position(is_free);
-        let slot = free.unwrap_or(self.put % PAGES);
-        self.put += 1;
-        self.marks[shelf][slot] = mark;
-        let page = &mut self.pages[PAGES * shelf + slot];
-        let mut numbers = take(&mut page.numbers);
+        let (hash, bucket) = key.hash();
+        let is_free = |it: &u64| *it == hash || *it == 0;
+        let free = self.hashes[bucket].iter().position(is_free);
+        let slot = free.unwrap_or(self.inserted % ENTRIES);
+        self.inserted += 1;
+        self.hashes[bucket][slot] = hash;
+        let entry = &mut self.entries[ENTRIES * bucket + slot];
+        let mut numbers = take(&mut entry.numbers);
         numbers.clear();
         for gradient in gradients {
-            numbers.extend(gradient.at_start(row).map(|x| L::of(x).get()));
+            numbers.extend(gradient.initial_numbers(row).map(|x| L::of(x).get()));
             let half_turn = &gradient.orbit().half_turn()[1..order];
             numbers.extend(half_turn.iter().flatten().map(|x| x.get(row)));
         }
-        *page = Page {
-            place,
-            unit,
-            numbers,
-        };
+        *entry = CacheEntry { key, unit, numbers };
     }
 }
 
-impl Page {
+impl CacheEntry {
     /// Of no place.
     fn none() -> Self {
-        let place = Place {
+        let key = CacheKey {
             when: [u64::MAX; 3],
             terms: (0, 0),
         };
         Self {
-            place,
+            key,
             unit: 1.0,
             numbers: Vec::new(),
         }
@@ -155,16 +152,16 @@ impl Page {
 
     /// Gives one row the orbits at the start of the step, in a unit of rates.
     #[inline(never)]
-    pub(super) fn begin<L: Number, const R: usize>(
+    pub(super) fn restore<L: Number, const R: usize>(
         &self,
         unit: f64,
-        gradients: &mut [Gradient<Pack<L, R>>],
+        gradients: &mut [GravityGradientSeries<Batch<L, R>>],
         row: usize,
         order: usize,
     ) {
-        let sheets = self.numbers.chunks_exact(numbers(order));
-        for (gradient, sheet) in gradients.iter_mut().zip(sheets) {
-            gradient.start_at(row, from_fn(|i| sheet[i].into()));
+        let numbers_of = self.numbers.chunks_exact(entry_length(order));
+        for (gradient, numbers) in gradients.iter_mut().zip(numbers_of) {
+            gradient.restore(row, from_fn(|i| numbers[i].into()));
             gradient.rescale(row, self.unit / unit);
         }
     }
@@ -172,14 +169,14 @@ impl Page {
 
 /// How many numbers a page has of one orbit.
 #[inline(always)]
-fn numbers(order: usize) -> usize {
-    AT_START + 2 * order - 2
+fn entry_length(order: usize) -> usize {
+    INITIAL_NUMBERS + 2 * order - 2
 }
 
 /// A step from `now` (as long ago as that is) made shorter by a sixteenth at most, so that it ends at a rounder time: motions on the
 /// same orbit meet there.
 #[inline(always)]
-pub(super) fn rounded(now: (f64, f64), h: f64) -> f64 {
+pub(super) fn round_step_end(now: (f64, f64), h: f64) -> f64 {
     let power = f64::from_bits(h.to_bits() & (0x7ff << 52));
     let grain = power * GRAIN;
     if grain > 0.0 && grain < f64::INFINITY {
@@ -200,10 +197,10 @@ mod tests {
     use super::*;
     use crate::numerics::lane::Double;
 
-    type Pair = Pack<Double<false>, 2>;
+    type Pair = Batch<Double<false>, 2>;
 
-    fn place(time: f64) -> Place {
-        Place {
+    fn key(time: f64) -> CacheKey {
+        CacheKey {
             when: [time.to_bits(), 0, 0],
             terms: (4096, 1),
         }
@@ -218,7 +215,7 @@ mod tests {
             (3.25, 1e-9),
             (1e-9, 64.0),
         ] {
-            let shorter = rounded((now, 0.0), h);
+            let shorter = round_step_end((now, 0.0), h);
             assert!(shorter <= h && shorter > 0.93 * h, "{now} {h}: {shorter}");
             let end: f64 = now + shorter;
             // The sixteenth of the power of two at or below h.
@@ -226,51 +223,54 @@ mod tests {
             assert_eq!((end / grain).fract(), 0.0, "{now} {h}");
         }
         // From either side of a round time.
-        assert_eq!(rounded((0.0, 0.0), 1.0), 1.0);
-        assert_eq!(rounded((0.0, 0.0), 1.0_f64.next_down()), 1.0 - 1.0 / 32.0);
+        assert_eq!(round_step_end((0.0, 0.0), 1.0), 1.0);
+        assert_eq!(
+            round_step_end((0.0, 0.0), 1.0_f64.next_down()),
+            1.0 - 1.0 / 32.0
+        );
         // No step is lost where there is nothing to round.
         for h in [0.0, f64::INFINITY, f64::MIN_POSITIVE / 8.0] {
-            assert_eq!(rounded((1.0, 0.0), h), h);
+            assert_eq!(round_step_end((1.0, 0.0), h), h);
         }
-        assert!(rounded((1.0, 0.0), f64::NAN).is_nan());
+        assert!(round_step_end((1.0, 0.0), f64::NAN).is_nan());
     }
 
     #[test]
     fn another_unit_gets_the_bits_that_it_would_find() {
         let rates = [0.3, 0.7, 0.4];
-        let begun = |unit: f64| {
-            let mut gradient = Gradient::<Pair>::new();
+        let at_order_8 = |unit: f64| {
+            let mut gradient = GravityGradientSeries::<Pair>::new();
             let [a, b, c] = [rates[0] / unit, rates[1] / unit, rates[2] / unit / unit];
-            gradient.start_at(1, [0.1, 0.2, 0.3, 0.9, a, b, c, 3.0 * c]);
+            gradient.restore(1, [0.1, 0.2, 0.3, 0.9, a, b, c, 3.0 * c]);
             gradient.expand(8);
             [gradient]
         };
-        let mut almanac = Almanac::default();
-        assert!(almanac.find(&place(1.0), 1.0).is_none());
-        almanac.put(place(1.0), 1.0, &mut begun(1.0), 1, 8);
+        let mut cache = OrbitSeriesCache::default();
+        assert!(cache.find(&key(1.0), 1.0).is_none());
+        cache.insert(key(1.0), 1.0, &mut at_order_8(1.0), 1, 8);
         for unit in [1.0, 0.25, 64.0] {
-            let number = almanac.find(&place(1.0), unit).expect("a page");
-            let mut own = begun(unit);
-            let mut begins = [Gradient::<Pair>::new()];
-            almanac.page(number).begin(unit, &mut begins, 1, 8);
-            assert_eq!(begins[0].at_start(1), own[0].at_start(1));
+            let number = cache.find(&key(1.0), unit).expect("an entry");
+            let mut own = at_order_8(unit);
+            let mut begins = [GravityGradientSeries::<Pair>::new()];
+            cache.entry(number).restore(unit, &mut begins, 1, 8);
+            assert_eq!(begins[0].initial_numbers(1), own[0].initial_numbers(1));
             // The row beside it in another unit.
-            let mut taken = [Gradient::<Pair>::new()];
-            almanac.give_all(&[(number, 8.0), (number, unit)], &mut taken, 8);
-            assert_eq!(taken[0].at_start(1), own[0].at_start(1));
+            let mut taken = [GravityGradientSeries::<Pair>::new()];
+            cache.restore_all(&[(number, 8.0), (number, unit)], &mut taken, 8);
+            assert_eq!(taken[0].initial_numbers(1), own[0].initial_numbers(1));
             for k in 0..8 {
                 let [taken, own] = [&mut taken, &mut own].map(|it| it[0].orbit().half_turn()[k]);
                 assert_eq!(taken.map(|x| x.get(1)), own.map(|x| x.get(1)), "{unit} {k}");
             }
         }
-        assert!(almanac.find(&place(1.0), APART).is_some());
-        assert!(almanac.find(&place(1.0), 2.0 * APART).is_none());
-        assert!(almanac.find(&place(2.0), 1.0).is_none());
+        assert!(cache.find(&key(1.0), MAX_UNIT_RATIO).is_some());
+        assert!(cache.find(&key(1.0), 2.0 * MAX_UNIT_RATIO).is_none());
+        assert!(cache.find(&key(2.0), 1.0).is_none());
         // More than there is room for: what was put last is there.
-        for k in 0..3 * (PAGES << SHELVES) {
-            almanac.put(place(k as f64), 1.0, &mut begun(1.0), 1, 2);
-            assert!(almanac.find(&place(k as f64), 1.0).is_some());
+        for k in 0..3 * (ENTRIES << LOG2_BUCKETS) {
+            cache.insert(key(k as f64), 1.0, &mut at_order_8(1.0), 1, 2);
+            assert!(cache.find(&key(k as f64), 1.0).is_some());
         }
-        assert_eq!(almanac.pages.len(), PAGES << SHELVES);
+        assert_eq!(cache.entries.len(), ENTRIES << LOG2_BUCKETS);
     }
 }

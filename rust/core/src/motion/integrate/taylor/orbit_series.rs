@@ -1,6 +1,6 @@
 //! The series of an orbit about its attractor, in the frame that the orbit has at the start of a step.
 
-use super::batch::Pack;
+use super::batch::Batch;
 use super::double_double_series::COUNT;
 use crate::numerics::number::Number;
 
@@ -15,8 +15,8 @@ use crate::numerics::number::Number;
 /// and half the turn with a power of the distance, `c = r^{−3/4} e^{iθ/2} = a + ib`, obeys `ċ = (−¾ λ + ½ i η) c`. None of it
 /// depends on the body.
 #[derive(Clone, Debug)]
-#[repr(align(64))] // see Pack
-pub(super) struct Circuit<T> {
+#[repr(align(64))] // see Batch
+pub(super) struct OrbitSeries<T> {
     radial: [T; COUNT],
     around: [T; COUNT],
     pull: [T; COUNT],
@@ -24,12 +24,12 @@ pub(super) struct Circuit<T> {
     half: [[T; 2]; COUNT],
 }
 
-impl<L: Number, const R: usize> Circuit<Pack<L, R>> {
+impl<L: Number, const R: usize> OrbitSeries<Batch<L, R>> {
     #[inline(always)]
     pub(super) fn new() -> Self {
-        let zero = Pack::new(0.0);
+        let zero = Batch::new(0.0);
         let mut half = [[zero; 2]; COUNT];
-        half[0] = [Pack::new(1.0), zero];
+        half[0] = [Batch::new(1.0), zero];
         Self {
             radial: [zero; COUNT],
             around: [zero; COUNT],
@@ -47,7 +47,7 @@ impl<L: Number, const R: usize> Circuit<Pack<L, R>> {
 
     /// The same for all rows.
     #[inline(always)]
-    pub(super) fn set_all(&mut self, [radial, around, pull]: [Pack<L, R>; 3]) {
+    pub(super) fn set_all(&mut self, [radial, around, pull]: [Batch<L, R>; 3]) {
         (self.radial[0], self.around[0], self.pull[0]) = (radial, around, pull);
     }
 
@@ -58,21 +58,21 @@ impl<L: Number, const R: usize> Circuit<Pack<L, R>> {
 
     /// The coefficients of c from order 0 on.
     #[inline(always)]
-    pub(super) fn half_turn(&self) -> &[[Pack<L, R>; 2]; COUNT] {
+    pub(super) fn half_turn(&self) -> &[[Batch<L, R>; 2]; COUNT] {
         &self.half
     }
 
     /// Takes the coefficients of c from order 1 on that other steps have found, of each row in a unit of rates that is `ratio` of its
     /// own: pairs from a place in a slice to its end. Row beside row, since a register is stored in one go.
     #[inline(always)]
-    pub(super) fn put_half_turns(&mut self, known: &[&[f64]; R], from: usize, ratio: Pack<L, R>) {
+    pub(super) fn put_half_turns(&mut self, known: &[&[f64]; R], from: usize, ratio: Batch<L, R>) {
         let mut power = ratio;
         let (mut at, end) = (from, known[0].len());
         for half in &mut self.half[1..] {
             if at + 1 >= end {
                 break;
             }
-            let [mut a, mut b] = [Pack::new(0.0); 2];
+            let [mut a, mut b] = [Batch::new(0.0); 2];
             for row in 0..R {
                 a.set(row, known[row][at]);
                 b.set(row, known[row][at + 1]);
@@ -86,8 +86,8 @@ impl<L: Number, const R: usize> Circuit<Pack<L, R>> {
     #[inline(always)]
     pub(super) fn expand(&mut self, order: usize) {
         for k in 0..order {
-            let [mut outward, mut sideways, mut swept, mut falling] = [Pack::new(0.0); 4];
-            let [mut ar, mut br, mut at, mut bt] = [Pack::new(0.0); 4];
+            let [mut outward, mut sideways, mut swept, mut falling] = [Batch::new(0.0); 4];
+            let [mut ar, mut br, mut at, mut bt] = [Batch::new(0.0); 4];
             let rates = self.radial[..=k].iter().zip(&self.around[..=k]);
             let turns = (self.around[..=k].iter().rev()).zip(self.half[..=k].iter().rev());
             let others = (self.radial[..=k].iter().rev()).zip(self.pull[..=k].iter().rev());
@@ -102,11 +102,11 @@ impl<L: Number, const R: usize> Circuit<Pack<L, R>> {
                 at = around.mul_add(*a, at);
                 bt = around.mul_add(*b, bt);
             }
-            let over = Pack::over(k + 1);
-            let (half, three_quarters) = (Pack::new(0.5) * over, Pack::new(-0.75) * over);
+            let over = Batch::over(k + 1);
+            let (half, three_quarters) = (Batch::new(0.5) * over, Batch::new(-0.75) * over);
             self.radial[k + 1] = (sideways - outward - self.pull[k]) * over;
-            self.around[k + 1] = swept * over * Pack::new(-2.0);
-            self.pull[k + 1] = falling * over * Pack::new(-3.0);
+            self.around[k + 1] = swept * over * Batch::new(-2.0);
+            self.pull[k + 1] = falling * over * Batch::new(-3.0);
             self.half[k + 1] = [
                 three_quarters * ar - half * bt,
                 half.mul_add(at, three_quarters * br),
@@ -116,8 +116,8 @@ impl<L: Number, const R: usize> Circuit<Pack<L, R>> {
 
     /// The rates λ, η, ε and c at a time after the start of the step.
     #[inline(always)]
-    pub(super) fn after(&self, order: usize, h: Pack<L, R>) -> [Pack<L, R>; 5] {
-        let mut sums = [Pack::new(0.0); 5];
+    pub(super) fn after(&self, order: usize, h: Batch<L, R>) -> [Batch<L, R>; 5] {
+        let mut sums = [Batch::new(0.0); 5];
         for k in (0..=order).rev() {
             let [a, b] = self.half[k];
             let at = [self.radial[k], self.around[k], self.pull[k], a, b];
@@ -147,14 +147,14 @@ mod tests {
             for begin in [0.0, 0.2, -0.7, 3.0] {
                 let (r, v) = orbit.at(begin);
                 let (distance, h) = (r.norm(), 0.1 * (1.0 + begin * begin).sqrt() / speed);
-                let mut circuit = Circuit::<Pack<Double<false>, 1>>::new();
+                let mut orbit_series = OrbitSeries::<Batch<Double<false>, 1>>::new();
                 let around = r.cross(&v).norm() / distance / distance;
-                circuit.set(
+                orbit_series.set(
                     0,
                     [r.dot(&v) / distance / distance, around, distance.powi(-3)],
                 );
-                circuit.expand(22);
-                let after = circuit.after(22, Pack::new(h)).map(|x| x.get(0));
+                orbit_series.expand(22);
+                let after = orbit_series.after(22, Batch::new(h)).map(|x| x.get(0));
                 let (there, then) = orbit.at(begin + h);
                 let [radial, around, pull, a, b] = after;
                 let longer = (a * a + b * b).powf(-2.0 / 3.0);

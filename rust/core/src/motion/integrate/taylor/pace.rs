@@ -1,6 +1,6 @@
 //! The length of a step with derivatives: as long as the series of the state and of each of its derivatives allow.
 
-use super::row::{ORDER, Row};
+use super::row::{ORDER, VariedCoefficients};
 use crate::motion::loads::variables::WIDTH;
 
 /// The last terms of a series, relative to the largest that the series has been.
@@ -12,11 +12,11 @@ const ROUNDS: usize = 4;
 
 /// How large some numbers and their derivatives by each variable have been so far.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Pace {
+pub(super) struct ConvergenceRadius {
     sizes: [f64; WIDTH + 1],
 }
 
-impl Pace {
+impl ConvergenceRadius {
     /// Comes to another unit: `ratio` of the old one to the new one.
     pub(super) fn rescale(&mut self, ratio: f64) {
         self.sizes = self.sizes.map(|size| size * ratio);
@@ -27,12 +27,12 @@ impl Pace {
     ///
     /// What counts as large is what has been so far, or will be within the step: so that is found in a few rounds.
     /// Source: Jorba & Zou, Experimental Mathematics 14 (2005) 99.
-    pub(super) fn longest(&mut self, rows: &[Row]) -> f64 {
-        self.longest_of(&|k| sizes(rows, k))
+    pub(super) fn longest_step(&mut self, rows: &[VariedCoefficients]) -> f64 {
+        self.longest_step_of(&|k| sizes(rows, k))
     }
 
     /// The same, from the sums of magnitudes of the coefficients of each order.
-    pub(super) fn longest_of(&mut self, sizes: &dyn Fn(usize) -> [f64; WIDTH + 1]) -> f64 {
+    pub(super) fn longest_step_of(&mut self, sizes: &dyn Fn(usize) -> [f64; WIDTH + 1]) -> f64 {
         let first: [_; FIRST] = std::array::from_fn(sizes);
         for (most, size) in self.sizes.iter_mut().zip(first[0]) {
             *most = most.max(size);
@@ -69,7 +69,7 @@ impl Pace {
 }
 
 /// The sums of magnitudes of the coefficients of order `k`: of the values, and of each derivative.
-fn sizes(rows: &[Row], k: usize) -> [f64; WIDTH + 1] {
+fn sizes(rows: &[VariedCoefficients], k: usize) -> [f64; WIDTH + 1] {
     let mut sizes = [0.0; WIDTH + 1];
     for number in rows.iter().map(|row| row.get(k)) {
         let (values, slopes) = sizes.split_at_mut(1);

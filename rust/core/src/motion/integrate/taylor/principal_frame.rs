@@ -14,7 +14,7 @@ use crate::numerics::quaternion::normalized;
 
 /// Moments and axes about the reference point.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Principal<X> {
+pub(super) struct PrincipalFrame<X> {
     /// I₁ ≤ I₂ ≤ I₃.
     pub(super) moments: [X; 3],
     /// I₂ − I₃, I₃ − I₁, I₁ − I₂.
@@ -33,18 +33,18 @@ pub(super) trait Precision: Exact {
     const CARRIES_ORBITS: bool;
     /// The part of the fastest ω below which quadratic damping is left out: with it the error of ω, relative to the fastest, is
     /// its cube, that of derivatives its square.
-    const STILL: f64;
+    const REST_SPEED: f64;
     /// The same, as a part of ω̇ in units of rates: the powers of its reciprocal in a series are numbers. Quadratic damping is then
     /// as small beside the other torques as its square.
-    const STILL_BESIDE_TORQUES: f64;
+    const REST_SPEED_BESIDE_TORQUES: f64;
     /// The principal frame of what is simulated.
-    fn principal(task: &Task<'_>, variables: Self::Variables) -> Principal<Self>;
+    fn principal(task: &Task<'_>, variables: Self::Variables) -> PrincipalFrame<Self>;
 
     /// The frame where derivatives of the tensor of what turns freely, in these axes, take part.
-    fn less(
-        principal: Principal<Self>,
-        _turning: impl FnOnce(&Principal<Self>) -> Matrix3<Self>,
-    ) -> Principal<Self> {
+    fn subtract_wheels(
+        principal: PrincipalFrame<Self>,
+        _turning: impl FnOnce(&PrincipalFrame<Self>) -> Matrix3<Self>,
+    ) -> PrincipalFrame<Self> {
         principal
     }
 
@@ -58,12 +58,12 @@ pub(super) trait Precision: Exact {
 
 impl Precision for f64 {
     const CARRIES_ORBITS: bool = false;
-    const STILL: f64 = 2e-6;
-    const STILL_BESIDE_TORQUES: f64 = 1e-10;
+    const REST_SPEED: f64 = 2e-6;
+    const REST_SPEED_BESIDE_TORQUES: f64 = 1e-10;
 
-    fn principal(task: &Task<'_>, _: Fixed) -> Principal<Self> {
+    fn principal(task: &Task<'_>, _: Fixed) -> PrincipalFrame<Self> {
         let axes = *task.euler.axes();
-        Principal {
+        PrincipalFrame {
             moments: task.euler.moments(),
             differences: task.euler.differences(),
             products: [0.0; 3],
@@ -76,22 +76,22 @@ impl Precision for f64 {
 /// What defines body and start is taken as exact: moments and axes, or the tensor; the direction of a quaternion.
 impl Precision for DoubleDouble {
     const CARRIES_ORBITS: bool = true;
-    const STILL: f64 = 2e-6;
-    const STILL_BESIDE_TORQUES: f64 = 1e-7;
+    const REST_SPEED: f64 = 2e-6;
+    const REST_SPEED_BESIDE_TORQUES: f64 = 1e-7;
 
-    fn principal(task: &Task<'_>, _: Fixed) -> Principal<Self> {
+    fn principal(task: &Task<'_>, _: Fixed) -> PrincipalFrame<Self> {
         let refined = match &task.casing {
             Some(casing) => **casing,
             None => RefinedPrincipal::about(task.body, &task.subject.point),
         };
         let [i1, i2, i3] = refined.moments;
         let axes = refined.axes();
-        Principal {
+        PrincipalFrame {
             moments: refined.moments,
             differences: [i2 - i3, i3 - i1, i1 - i2],
             products: [Self::default(); 3],
             axes,
-            q_bp: of_matrix(&axes),
+            q_bp: quaternion_of_matrix(&axes),
         }
     }
 }
@@ -99,10 +99,10 @@ impl Precision for DoubleDouble {
 /// Of a body with a zero moment, which has no neighbours on one side, nothing about the tensor is varied.
 impl Precision for Varied {
     const CARRIES_ORBITS: bool = false;
-    const STILL: f64 = 1e-8;
-    const STILL_BESIDE_TORQUES: f64 = 1e-10;
+    const REST_SPEED: f64 = 1e-8;
+    const REST_SPEED_BESIDE_TORQUES: f64 = 1e-10;
 
-    fn principal(task: &Task<'_>, block: Block) -> Principal<Self> {
+    fn principal(task: &Task<'_>, block: Block) -> PrincipalFrame<Self> {
         let plain = <f64 as Precision>::principal(task, Fixed);
         let is_massless = plain.moments.contains(&0.0);
         let variable = |value: f64, column: usize| {
@@ -112,7 +112,7 @@ impl Precision for Varied {
                 block.number(value, column)
             }
         };
-        let mut principal = Principal {
+        let mut principal = PrincipalFrame {
             moments: plain.moments.map(Self::constant),
             differences: plain.differences.map(Self::constant),
             products: [Self::constant(0.0); 3],
@@ -134,10 +134,10 @@ impl Precision for Varied {
         principal
     }
 
-    fn less(
-        mut principal: Principal<Self>,
-        turning: impl FnOnce(&Principal<Self>) -> Matrix3<Self>,
-    ) -> Principal<Self> {
+    fn subtract_wheels(
+        mut principal: PrincipalFrame<Self>,
+        turning: impl FnOnce(&PrincipalFrame<Self>) -> Matrix3<Self>,
+    ) -> PrincipalFrame<Self> {
         let turning = turning(&principal);
         principal.add(&(-turning));
         principal
@@ -152,7 +152,7 @@ impl Precision for Varied {
     }
 }
 
-impl Principal<Varied> {
+impl PrincipalFrame<Varied> {
     /// Adds the derivatives of a tensor in these axes.
     fn add(&mut self, tensor: &Matrix3<Varied>) {
         let slopes = |x: Varied| Varied { value: 0.0, ..x };
@@ -169,7 +169,7 @@ impl Principal<Varied> {
 /// (x, y, z, w) of a rotation matrix, from the largest of the four.
 ///
 /// Source: Shepperd, Journal of Guidance and Control 1 (1978) 223.
-pub(super) fn of_matrix<X: Real>(m: &Matrix3<X>) -> [X; 4] {
+pub(super) fn quaternion_of_matrix<X: Real>(m: &Matrix3<X>) -> [X; 4] {
     let [x, y, z] = [0, 1, 2].map(|i| m[(i, i)]);
     let one = X::one();
     let squares = [
@@ -227,7 +227,7 @@ mod tests {
                 Vector3::new(x, y, z)
             };
             let matrix = Matrix3::from_columns(&[turned(0), turned(1), turned(2)]);
-            let again = of_matrix(&matrix);
+            let again = quaternion_of_matrix(&matrix);
             let sign = if q[3].rounded() < 0.0 { -1.0 } else { 1.0 };
             for (a, b) in again.iter().zip(q) {
                 assert!((*a - b * sign.into()).rounded().abs() < 1e-31);

@@ -1,8 +1,8 @@
-//! The sums of products of series that the torque of a gravity gradient is made of: see [`Gradient`](super::gravity_gradient::Gradient).
+//! The sums of products of series that the torque of a gravity gradient is made of: see [`GravityGradientSeries`](super::gravity_gradient::GravityGradientSeries).
 
 use std::marker::PhantomData;
 
-use super::batch::{Lined, Pack};
+use super::batch::{Batch, CacheAligned};
 use super::series::Series;
 use crate::numerics::dispatch::Kernel;
 use crate::numerics::lane::Lane;
@@ -15,10 +15,10 @@ use crate::numerics::number::Number;
 /// third, Im the first less the second.
 #[inline(always)]
 fn turn_terms<L: Number, const R: usize>(
-    [a, b]: &[Pack<L, R>; 2],
-    [x, y, z, w]: &[Pack<L, R>; 4],
-    [beta, alpha]: [[Pack<L, R>; 3]; 2],
-) -> [[Pack<L, R>; 3]; 2] {
+    [a, b]: &[Batch<L, R>; 2],
+    [x, y, z, w]: &[Batch<L, R>; 4],
+    [beta, alpha]: [[Batch<L, R>; 3]; 2],
+) -> [[Batch<L, R>; 3]; 2] {
     let (sum, difference) = (*a + *b, *a - *b);
     [
         [
@@ -40,10 +40,10 @@ type Squares<T> = [T; 8];
 /// `sums` and the products of two orders, each once.
 #[inline(always)]
 pub(super) fn square_terms<L: Number, const R: usize>(
-    [x, y, z, w]: &[Pack<L, R>; 4],
-    [p, q, r, s]: &[Pack<L, R>; 4],
-    sums: Squares<Pack<L, R>>,
-) -> Squares<Pack<L, R>> {
+    [x, y, z, w]: &[Batch<L, R>; 4],
+    [p, q, r, s]: &[Batch<L, R>; 4],
+    sums: Squares<Batch<L, R>>,
+) -> Squares<Batch<L, R>> {
     [
         x.mul_add(*p, sums[0]),
         y.mul_add(*q, sums[1]),
@@ -59,10 +59,10 @@ pub(super) fn square_terms<L: Number, const R: usize>(
 /// `sums` and the products of two orders of m, each once.
 #[inline(always)]
 fn crossed_terms<L: Number, const R: usize>(
-    [a, b, c]: &[Pack<L, R>; 3],
-    [p, q, r]: &[Pack<L, R>; 3],
-    [first, second, third]: [[Pack<L, R>; 2]; 3],
-) -> [[Pack<L, R>; 2]; 3] {
+    [a, b, c]: &[Batch<L, R>; 3],
+    [p, q, r]: &[Batch<L, R>; 3],
+    [first, second, third]: [[Batch<L, R>; 2]; 3],
+) -> [[Batch<L, R>; 2]; 3] {
     [
         [b.mul_add(*r, first[0]), c.mul_add(*q, first[1])],
         [c.mul_add(*p, second[0]), a.mul_add(*r, second[1])],
@@ -73,9 +73,9 @@ fn crossed_terms<L: Number, const R: usize>(
 /// Half of the coefficient of m = (x² + w² − y² − z², 2 (xy − zw), 2 (xz + yw)) from the products of two orders, each once; the
 /// coefficient from those of one order with itself.
 #[inline(always)]
-pub(super) fn pointed<L: Number, const R: usize>(
-    [x, y, z, w, xy, zw, xz, yw]: Squares<Pack<L, R>>,
-) -> [Pack<L, R>; 3] {
+pub(super) fn pointing_from_squares<L: Number, const R: usize>(
+    [x, y, z, w, xy, zw, xz, yw]: Squares<Batch<L, R>>,
+) -> [Batch<L, R>; 3] {
     let (first, last) = (x + y, z + w);
     [
         (x - y) + (w - z),
@@ -88,22 +88,22 @@ pub(super) fn pointed<L: Number, const R: usize>(
 
 /// The sums over slices of coefficients of m and of Q, the first with the last and so on: what they give to a coefficient of
 /// (m₂m₃, m₃m₁, m₁m₂), and to one of m.
-pub(super) struct Paired<'a, T> {
+pub(super) struct PairedSums<'a, T> {
     pub(super) pointing: &'a [[T; 3]],
     /// As many.
     pub(super) turned: &'a [[T; 4]],
 }
 
-impl<N: Number, const R: usize> Kernel for Paired<'_, Pack<N, R>> {
-    type Output = Lined<[Pack<N, R>; 6]>;
+impl<N: Number, const R: usize> Kernel for PairedSums<'_, Batch<N, R>> {
+    type Output = CacheAligned<[Batch<N, R>; 6]>;
 
     #[inline(always)]
     fn run<L: Lane>(self) -> Self::Output {
         let Self { pointing, turned } = self;
         let count = pointing.len();
         let half = count / 2;
-        let mut crossed = [[Pack::new(0.0); 2]; 3];
-        let mut squared = [Pack::new(0.0); 8];
+        let mut crossed = [[Batch::new(0.0); 2]; 3];
+        let mut squared = [Batch::new(0.0); 8];
         let early = pointing[..half].iter().zip(&turned[..half]).rev();
         let late = pointing[count - half..].iter().zip(&turned[count - half..]);
         for ((m, q), (n, p)) in early.zip(late) {
@@ -113,14 +113,14 @@ impl<N: Number, const R: usize> Kernel for Paired<'_, Pack<N, R>> {
         let [first, second, third] = crossed;
         let (x, y) = (first[0] + first[1], second[0] + second[1]);
         let z = third[0] + third[1];
-        let [s, t, u] = pointed(squared);
+        let [s, t, u] = pointing_from_squares(squared);
         let [s, t, u] = [s + s, t + t, u + u];
         if count.is_multiple_of(2) {
-            return Lined([x, y, z, s, t, u]);
+            return CacheAligned([x, y, z, s, t, u]);
         }
         let ([a, b, c], middle) = (pointing[half], &turned[half]);
-        let [d, e, f] = pointed(square_terms(middle, middle, [Pack::new(0.0); 8]));
-        Lined([
+        let [d, e, f] = pointing_from_squares(square_terms(middle, middle, [Batch::new(0.0); 8]));
+        CacheAligned([
             b.mul_add(c, x),
             c.mul_add(a, y),
             a.mul_add(b, z),
@@ -132,11 +132,11 @@ impl<N: Number, const R: usize> Kernel for Paired<'_, Pack<N, R>> {
 }
 
 /// Coefficients of an attitude.
-pub(super) trait Coefficients<T> {
+pub(super) trait AttitudeCoefficients<T> {
     fn at(&self, order: usize) -> [T; 4];
 }
 
-impl<T: Copy, const COUNT: usize> Coefficients<T> for &[[T; 4]; COUNT] {
+impl<T: Copy, const COUNT: usize> AttitudeCoefficients<T> for &[[T; 4]; COUNT] {
     #[inline(always)]
     fn at(&self, order: usize) -> [T; 4] {
         self[order]
@@ -144,16 +144,18 @@ impl<T: Copy, const COUNT: usize> Coefficients<T> for &[[T; 4]; COUNT] {
 }
 
 /// Those of the series of a motion.
-pub(super) struct Attitudes<'a, S, T, const B: usize>(&'a S, PhantomData<T>);
+pub(super) struct SeriesAttitudes<'a, S, T, const B: usize>(&'a S, PhantomData<T>);
 
-impl<'a, S, T, const B: usize> Attitudes<'a, S, T, B> {
+impl<'a, S, T, const B: usize> SeriesAttitudes<'a, S, T, B> {
     #[inline(always)]
     pub(super) fn new(series: &'a S) -> Self {
         Self(series, PhantomData)
     }
 }
 
-impl<T: Copy, S: Series<T, B>, const B: usize> Coefficients<T> for Attitudes<'_, S, T, B> {
+impl<T: Copy, S: Series<T, B>, const B: usize> AttitudeCoefficients<T>
+    for SeriesAttitudes<'_, S, T, B>
+{
     #[inline(always)]
     fn at(&self, order: usize) -> [T; 4] {
         self.0.get(order).q
@@ -161,18 +163,20 @@ impl<T: Copy, S: Series<T, B>, const B: usize> Coefficients<T> for Attitudes<'_,
 }
 
 /// The sum of the products of the slice backward with the coefficients from order 0 on: what they give to a coefficient of `c̄ q`.
-pub(super) struct Turned<'a, T, Q>(pub(super) &'a [[T; 2]], pub(super) Q);
+pub(super) struct HalfTurnProduct<'a, T, Q>(pub(super) &'a [[T; 2]], pub(super) Q);
 
-impl<N: Number, Q: Coefficients<Pack<N, R>>, const R: usize> Kernel for Turned<'_, Pack<N, R>, Q> {
-    type Output = Lined<[Pack<N, R>; 4]>;
+impl<N: Number, Q: AttitudeCoefficients<Batch<N, R>>, const R: usize> Kernel
+    for HalfTurnProduct<'_, Batch<N, R>, Q>
+{
+    type Output = CacheAligned<[Batch<N, R>; 4]>;
 
     #[inline(always)]
     fn run<L: Lane>(self) -> Self::Output {
-        let mut sums = [[Pack::new(0.0); 3]; 2];
+        let mut sums = [[Batch::new(0.0); 3]; 2];
         for (order, half) in self.0.iter().rev().enumerate() {
             sums = turn_terms(half, &self.1.at(order), sums);
         }
         let [[p, q, r], [s, t, u]] = sums;
-        Lined([p - r, p - q, s - t, s - u])
+        CacheAligned([p - r, p - q, s - t, s - u])
     }
 }

@@ -12,12 +12,12 @@ pub(super) struct Slopes(pub(super) [f64; WIDTH]);
 
 /// The coefficients of one number of the motion.
 #[derive(Clone, Debug)]
-pub(super) struct Row {
+pub(super) struct VariedCoefficients {
     pub(super) values: [f64; ORDER + 1],
     pub(super) slopes: [Slopes; ORDER + 1],
 }
 
-impl Row {
+impl VariedCoefficients {
     /// All zero.
     pub(super) fn new() -> Self {
         Self {

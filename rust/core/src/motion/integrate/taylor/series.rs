@@ -18,9 +18,9 @@
 //! its parts are the first less the second, and the first plus the third.
 //! (Gauss's way; Knuth, The Art of Computer Programming 2, §4.6.4.)
 //!
-//! There are two ways through the sums in doubles: [`Alone`](super::single_series::Alone) puts the components of one motion in the
-//! lanes, [`Abreast`](super::batch_series::Abreast) the same component of several. They add the same products in the same order,
-//! so a motion has the same bits either way. In numbers of twice the precision there is [`Twin`](super::double_double_series::Twin), which
+//! There are two ways through the sums in doubles: [`SingleMotionSeries`](super::single_series::SingleMotionSeries) puts the components of one motion in the
+//! lanes, [`BatchSeries`](super::batch_series::BatchSeries) the same component of several. They add the same products in the same order,
+//! so a motion has the same bits either way. In numbers of twice the precision there is [`DoubleDoubleSeries`](super::double_double_series::DoubleDoubleSeries), which
 //! has all twelve.
 //!
 //! That order takes the newest coefficients, on which the processor may still be busy, last: from the middle outward, first
@@ -28,7 +28,7 @@
 //! [`directions`](super::directions).
 
 /// The highest order of a series in doubles, and the number of its coefficients. Even, since
-/// [`Alone`](super::single_series::Alone) sums two orders at a time.
+/// [`SingleMotionSeries`](super::single_series::SingleMotionSeries) sums two orders at a time.
 pub(super) const HIGHEST_ORDER: usize = 26;
 pub(super) const COUNT: usize = HIGHEST_ORDER + 1;
 
@@ -60,7 +60,7 @@ pub(super) trait Series<T, const B: usize> {
     fn start(&mut self, state: &Coefficient<T, B>);
     /// Says which component of ω is constant in all motions, if it is the first or the third: its products of orders above
     /// zero, which are zero, may be left out.
-    fn hold(&mut self, _still: Option<usize>) {}
+    fn set_constant_component(&mut self, _component: Option<usize>) {}
     /// Keeps each step so short that derivatives too are as good as the series of the motion.
     fn limit(&mut self, _steps: &mut [f64]) {}
     /// Comes to another unit of rates: `ratio` of the old one to the new one.

@@ -2,8 +2,8 @@
 
 use std::hint::black_box;
 
-use super::directions::{Mix, ROOTS, axis, from_squares};
-use super::batch::Pack;
+use super::batch::Batch;
+use super::directions::{PairSums, ROOTS, axis, from_squares};
 use super::series::{COUNT, Coefficient, RECIPROCALS, Series};
 use crate::numerics::lane::Lane;
 
@@ -48,7 +48,7 @@ impl<L: Lane, const W: usize> Components<L, W> {
 impl<L: Lane> Components<L, 4> {
     /// What `mix` makes of these; its signs as [`Signs`] has them.
     #[inline(always)]
-    fn mixed(&self, mix: &Mix, signs: &Components<L, 8>) -> Components<L, 8> {
+    fn mixed(&self, mix: &PairSums, signs: &Components<L, 8>) -> Components<L, 8> {
         let mut row = Components::new();
         for i in 0..8 {
             row.0[i] = signs.0[i].mul_add(self.0[mix.second[i]], self.0[mix.first[i]]);
@@ -58,13 +58,13 @@ impl<L: Lane> Components<L, 4> {
 }
 
 /// (Re α + Im α) twice, (Re β + Im β) twice, then (z, w, x, y): of (x, y, z, w).
-const LEFT: Mix = Mix {
+const LEFT: PairSums = PairSums {
     first: [3, 3, 0, 0, 2, 3, 0, 1],
     second: [2, 2, 1, 1, 2, 3, 0, 1],
     signs: [1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
 };
 /// What they are multiplied with: ω₁ four times, then (ω₁ + ω₂, ω₂ − ω₁) twice.
-const RIGHT: Mix = Mix {
+const RIGHT: PairSums = PairSums {
     first: [0, 0, 0, 0, 0, 1, 0, 1],
     second: [0, 0, 0, 0, 1, 0, 1, 0],
     signs: [0.0, 0.0, 0.0, 0.0, 1.0, -1.0, 1.0, -1.0],
@@ -76,7 +76,7 @@ const TURNED: [[f64; 4]; 3] = [
     [1.0, -1.0, 1.0, -1.0],
 ];
 
-/// The signs of every [`Mix`], and [`TURNED`].
+/// The signs of every [`PairSums`], and [`TURNED`].
 #[derive(Clone, Copy, Debug)]
 struct Signs<L, const B: usize> {
     turned: [Components<L, 4>; 3],
@@ -112,7 +112,7 @@ impl<L: Lane, const B: usize> Signs<L, B> {
     }
 }
 
-/// One order of [`Alone`]: two rows of factors, so that products of two orders are a row of one by the other of the other,
+/// One order of [`SingleMotionSeries`]: two rows of factors, so that products of two orders are a row of one by the other of the other,
 /// each in the place where q∘ω has it; then a square that is not used, and those of ω₂ω₃, ω₃ω₁ and ω₁ω₂. The last two are loaded
 /// together: what lies across two places that were stored apart would have to wait until both are in the cache.
 #[derive(Clone, Copy, Debug)]
@@ -161,21 +161,21 @@ impl<L: Lane, const B: usize> Order<L, B> {
 
 /// One motion, the lanes over its components.
 #[derive(Clone, Debug)]
-pub(super) struct Alone<L, const B: usize> {
+pub(super) struct SingleMotionSeries<L, const B: usize> {
     orders: [Order<L, B>; COUNT],
     /// The sums of an even order and of the odd one after it, as far as they go before its forerunner is known.
-    begun: [LaneSums<L, B>; 2],
+    partial: [SingleMotionSums<L, B>; 2],
     signs: Signs<L, B>,
 }
 
-/// The sums of products of [`Alone`]: of the rows of each [`Order`], and of the [`ROOTS`].
+/// The sums of products of [`SingleMotionSeries`]: of the rows of each [`Order`], and of the [`ROOTS`].
 #[derive(Clone, Copy, Debug)]
-pub(super) struct LaneSums<L, const B: usize> {
+pub(super) struct SingleMotionSums<L, const B: usize> {
     products: Components<L, 16>,
     squares: [Components<L, 8>; B],
 }
 
-impl<L: Lane, const B: usize> LaneSums<L, B> {
+impl<L: Lane, const B: usize> SingleMotionSums<L, B> {
     #[inline(always)]
     fn new() -> Self {
         Self {
@@ -208,18 +208,18 @@ impl<L: Lane, const B: usize> LaneSums<L, B> {
     }
 }
 
-impl<L: Lane, const B: usize> Series<Pack<L, 1>, B> for Alone<L, B> {
+impl<L: Lane, const B: usize> Series<Batch<L, 1>, B> for SingleMotionSeries<L, B> {
     #[inline(always)]
     fn new() -> Self {
         Self {
             orders: [Order::none(); COUNT],
             signs: Signs::new(),
-            begun: [LaneSums::new(); 2],
+            partial: [SingleMotionSums::new(); 2],
         }
     }
 
     #[inline(always)]
-    fn start(&mut self, state: &Coefficient<Pack<L, 1>, B>) {
+    fn start(&mut self, state: &Coefficient<Batch<L, 1>, B>) {
         let mut q = Components::new();
         for i in 0..4 {
             q.0[i] = state.q[i].0[0];
@@ -234,29 +234,29 @@ impl<L: Lane, const B: usize> Series<Pack<L, 1>, B> for Alone<L, B> {
     }
 
     #[inline(always)]
-    fn get(&self, k: usize) -> Coefficient<Pack<L, 1>, B> {
+    fn get(&self, k: usize) -> Coefficient<Batch<L, 1>, B> {
         let Order { state, g, .. } = &self.orders[k];
         let mut at = Coefficient {
-            w: [Pack::new(0.0); 3],
-            q: [Pack::new(0.0); 4],
-            g: [[Pack::new(0.0); 3]; B],
+            w: [Batch::new(0.0); 3],
+            q: [Batch::new(0.0); 4],
+            g: [[Batch::new(0.0); 3]; B],
         };
         for i in 0..4 {
-            at.q[i] = Pack([state.0[i]]);
+            at.q[i] = Batch([state.0[i]]);
         }
         for i in 0..3 {
-            at.w[i] = Pack([state.0[4 + i]]);
+            at.w[i] = Batch([state.0[4 + i]]);
         }
         for b in 0..B {
             for i in 0..3 {
-                at.g[b][i] = Pack([g[b][i]]);
+                at.g[b][i] = Batch([g[b][i]]);
             }
         }
         at
     }
 
     #[inline(always)]
-    fn increment(&self, order: usize, h: Pack<L, 1>) -> [Pack<L, 1>; 7] {
+    fn increment(&self, order: usize, h: Batch<L, 1>) -> [Batch<L, 1>; 7] {
         let [h] = h.0;
         let square = h * h;
         let (mut odd, mut even) = (Components::new(), Components::new());
@@ -266,24 +266,24 @@ impl<L: Lane, const B: usize> Series<Pack<L, 1>, B> for Alone<L, B> {
         }
         let [x, y, z, w, w0, w1, w2, _] = even.times_plus(h, &odd).times(h).0;
         [
-            Pack([w0]),
-            Pack([w1]),
-            Pack([w2]),
-            Pack([x]),
-            Pack([y]),
-            Pack([z]),
-            Pack([w]),
+            Batch([w0]),
+            Batch([w1]),
+            Batch([w2]),
+            Batch([x]),
+            Batch([y]),
+            Batch([z]),
+            Batch([w]),
         ]
     }
 
-    type Sums = LaneSums<L, B>;
+    type Sums = SingleMotionSums<L, B>;
 
     #[inline(always)]
     fn sums(&mut self, k: usize) -> Self::Sums {
         let orders = &self.orders;
         if k.is_multiple_of(2) {
-            let mut sums = LaneSums::new();
-            let mut ahead = LaneSums::new();
+            let mut sums = SingleMotionSums::new();
+            let mut ahead = SingleMotionSums::new();
             if k > 0 {
                 let middle = k / 2;
                 sums.add_middle(&orders[middle]);
@@ -294,17 +294,17 @@ impl<L: Lane, const B: usize> Series<Pack<L, 1>, B> for Alone<L, B> {
                     ahead.add_pair(a, far);
                 }
             }
-            self.begun = [sums, ahead];
+            self.partial = [sums, ahead];
         }
         // The compiler is not to know which: it would take apart the sums, which are whole registers.
-        let mut sums = self.begun[black_box(k % 2)];
+        let mut sums = self.partial[black_box(k % 2)];
         if k == 0 {
             sums.add(&orders[0], &orders[0]);
         } else {
             sums.add_pair(&orders[0], &orders[k]);
             for b in 0..B {
                 let [s0, s1, s2, s3, s4, s5, ..] = sums.squares[b].0;
-                let halves = [Pack([s0 + s1]), Pack([s2 + s3]), Pack([s4 + s5])];
+                let halves = [Batch([s0 + s1]), Batch([s2 + s3]), Batch([s4 + s5])];
                 let [x, y, z] = from_squares(axis::<B>(b), halves);
                 self.orders[k].g[b] = [x.0[0], y.0[0], z.0[0]];
             }
@@ -313,13 +313,13 @@ impl<L: Lane, const B: usize> Series<Pack<L, 1>, B> for Alone<L, B> {
     }
 
     #[inline(always)]
-    fn spins(sums: &Self::Sums) -> [Pack<L, 1>; 3] {
+    fn spins(sums: &Self::Sums) -> [Batch<L, 1>; 3] {
         let [.., w0, w1, w2] = sums.products.0;
-        [Pack([w0]), Pack([w1]), Pack([w2])]
+        [Batch([w0]), Batch([w1]), Batch([w2])]
     }
 
     #[inline(always)]
-    fn extend(&mut self, k: usize, sums: &Self::Sums, acceleration: &[Pack<L, 1>; 3]) {
+    fn extend(&mut self, k: usize, sums: &Self::Sums, acceleration: &[Batch<L, 1>; 3]) {
         let reciprocal = L::new(RECIPROCALS[k + 1]);
         let half = L::new(0.5 * RECIPROCALS[k + 1]);
         let products = &sums.products.0;

@@ -2,7 +2,7 @@
 
 use std::ops::{Index, IndexMut};
 
-use super::batch::Pack;
+use super::batch::Batch;
 use super::series::{Coefficient, Series};
 use crate::numerics::double_double::two_sum;
 use crate::numerics::number::Number;
@@ -10,34 +10,34 @@ use crate::numerics::number::Number;
 /// ω in principal axes and (x, y, z, w) of the attitude. The attitude begins at a place of its own: a register that held numbers
 /// of both would be loaded across two places that were stored apart, and would have to wait until both are in the cache.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct State<T> {
+pub(super) struct MotionState<T> {
     omega: [T; 3],
-    attitude: Apart<[T; 4]>,
+    attitude: Aligned<[T; 4]>,
 }
 
 /// At a place where a register of four numbers is loaded at once.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
-struct Apart<T>(T);
+struct Aligned<T>(T);
 
-impl<T: Copy> State<T> {
+impl<T: Copy> MotionState<T> {
     #[inline(always)]
     fn of(number: T) -> Self {
         Self {
             omega: [number; 3],
-            attitude: Apart([number; 4]),
+            attitude: Aligned([number; 4]),
         }
     }
 
     /// All seven.
     #[inline(always)]
-    pub(super) fn all(&self) -> [T; 7] {
+    pub(super) fn components(&self) -> [T; 7] {
         let ([w0, w1, w2], [x, y, z, w]) = (self.omega, self.attitude.0);
         [w0, w1, w2, x, y, z, w]
     }
 }
 
-impl<T> Index<usize> for State<T> {
+impl<T> Index<usize> for MotionState<T> {
     type Output = T;
 
     #[inline(always)]
@@ -49,7 +49,7 @@ impl<T> Index<usize> for State<T> {
     }
 }
 
-impl<T> IndexMut<usize> for State<T> {
+impl<T> IndexMut<usize> for MotionState<T> {
     #[inline(always)]
     fn index_mut(&mut self, i: usize) -> &mut T {
         match i {
@@ -62,14 +62,14 @@ impl<T> IndexMut<usize> for State<T> {
 /// The state, with what rounding has left out of each number so far.
 #[derive(Clone, Debug)]
 pub(super) struct Compensated<T> {
-    pub(super) value: State<T>,
-    pub(super) rest: State<T>,
+    pub(super) value: MotionState<T>,
+    pub(super) rest: MotionState<T>,
 }
 
-impl<L: Number, const R: usize> Compensated<Pack<L, R>> {
+impl<L: Number, const R: usize> Compensated<Batch<L, R>> {
     #[inline(always)]
     pub(super) fn new() -> Self {
-        let zero = State::of(Pack::new(0.0));
+        let zero = MotionState::of(Batch::new(0.0));
         Self {
             value: zero,
             rest: zero,
@@ -79,7 +79,7 @@ impl<L: Number, const R: usize> Compensated<Pack<L, R>> {
     /// Adds the increments of a step, then puts the quaternion back to unit length: at once, since in a step of more than
     /// half a turn what is left of the length would grow, by `1 − cos(ω h/2)`.
     #[inline(always)]
-    pub(super) fn add(&mut self, increment: &[Pack<L, R>; 7]) {
+    pub(super) fn add(&mut self, increment: &[Batch<L, R>; 7]) {
         let (value, rest) = (&mut self.value, &mut self.rest);
         // Written out, since a loop would be vectorised across the numbers instead of the rows.
         let ([v0, v1, v2], [r0, r1, r2]) = (&mut value.omega, &mut rest.omega);
@@ -93,11 +93,11 @@ impl<L: Number, const R: usize> Compensated<Pack<L, R>> {
         compensate(q2, r2, increment[5]);
         compensate(q3, r3, increment[6]);
         // ½ (1 − |q|²), with the rest: the first-order correction.
-        let mut lack = Pack::new(1.0);
+        let mut lack = Batch::new(1.0);
         for i in 0..4 {
             lack = (-q[i]).mul_add(q[i] + left_out[i] + left_out[i], lack);
         }
-        lack = lack * Pack::new(0.5);
+        lack = lack * Batch::new(0.5);
         for i in 0..4 {
             let change = q[i] * lack;
             compensate(&mut q[i], &mut left_out[i], change);
@@ -115,7 +115,7 @@ impl<L: Number, const R: usize> Compensated<Pack<L, R>> {
 
     /// The state of one row moved by `increment`: to the bit what [`Self::add`] would make of it.
     #[inline(always)]
-    pub(super) fn moved(&self, increment: &[Pack<L, R>; 7], row: usize) -> [L::Real; 7] {
+    pub(super) fn moved(&self, increment: &[Batch<L, R>; 7], row: usize) -> [L::Real; 7] {
         let mut end = self.clone();
         end.add(increment);
         end.now(row)
@@ -125,9 +125,9 @@ impl<L: Number, const R: usize> Compensated<Pack<L, R>> {
 /// Adds an increment to a value and to what rounding has left out of it.
 #[inline(always)]
 pub(super) fn compensate<L: Number, const R: usize>(
-    value: &mut Pack<L, R>,
-    rest: &mut Pack<L, R>,
-    increment: Pack<L, R>,
+    value: &mut Batch<L, R>,
+    rest: &mut Batch<L, R>,
+    increment: Batch<L, R>,
 ) {
     (*value, *rest) = two_sum(*value, increment + *rest);
 }
@@ -135,13 +135,13 @@ pub(super) fn compensate<L: Number, const R: usize>(
 /// [`Series::increment`] from the coefficients.
 #[inline(always)]
 pub(super) fn increment<L: Number, const R: usize, const B: usize>(
-    series: &impl Series<Pack<L, R>, B>,
+    series: &impl Series<Batch<L, R>, B>,
     order: usize,
-    h: Pack<L, R>,
-) -> [Pack<L, R>; 7] {
+    h: Batch<L, R>,
+) -> [Batch<L, R>; 7] {
     let square = h * h;
-    let mut odd = [Pack::new(0.0); 7];
-    let mut even = [Pack::new(0.0); 7];
+    let mut odd = [Batch::new(0.0); 7];
+    let mut even = [Batch::new(0.0); 7];
     for half in (1..=order / 2).rev() {
         let (one, two) = (series.get(2 * half - 1), series.get(2 * half));
         for i in 0..3 {
@@ -153,7 +153,7 @@ pub(super) fn increment<L: Number, const R: usize, const B: usize>(
             even[3 + i] = even[3 + i].mul_add(square, two.q[i]);
         }
     }
-    let mut sum = [Pack::new(0.0); 7];
+    let mut sum = [Batch::new(0.0); 7];
     for i in 0..7 {
         sum[i] = even[i].mul_add(h, odd[i]) * h;
     }
@@ -166,8 +166,8 @@ pub(super) fn increment<L: Number, const R: usize, const B: usize>(
 /// Not finite where a coefficient is not.
 /// Source: Jorba & Zou, Experimental Mathematics 14 (2005) 99.
 #[inline(always)]
-pub(super) fn longest<L: Number, const R: usize, const B: usize>(
-    series: &impl Series<Pack<L, R>, B>,
+pub(super) fn longest_step<L: Number, const R: usize, const B: usize>(
+    series: &impl Series<Batch<L, R>, B>,
     order: usize,
     tolerance: f64,
     scale: &[f64; R],
@@ -175,8 +175,8 @@ pub(super) fn longest<L: Number, const R: usize, const B: usize>(
     let (last, last_but_one) = (series.get(order), series.get(order - 1));
     let mut steps = [0.0; R];
     for row in 0..R {
-        let a = limit_of(&last, row, order, tolerance, scale[row]);
-        let b = limit_of(&last_but_one, row, order - 1, tolerance, scale[row]);
+        let a = log2_step_of(&last, row, order, tolerance, scale[row]);
+        let b = log2_step_of(&last_but_one, row, order - 1, tolerance, scale[row]);
         steps[row] = exp2(if a < b { a } else { b }) + 0.0 * (a + b);
     }
     steps
@@ -184,8 +184,8 @@ pub(super) fn longest<L: Number, const R: usize, const B: usize>(
 
 /// The logarithm of the step for which the term of this order is as large as allowed.
 #[inline(always)]
-fn limit_of<L: Number, const R: usize, const B: usize>(
-    at: &Coefficient<Pack<L, R>, B>,
+fn log2_step_of<L: Number, const R: usize, const B: usize>(
+    at: &Coefficient<Batch<L, R>, B>,
     row: usize,
     order: usize,
     tolerance: f64,
@@ -204,12 +204,12 @@ fn limit_of<L: Number, const R: usize, const B: usize>(
         sum += q;
     }
     // What is not a number is lost among the largest, but not in the sum.
-    limit(largest, order, tolerance) + 0.0 * sum
+    log2_step(largest, order, tolerance) + 0.0 * sum
 }
 
 /// The same for a term of this size at one unit of time.
 #[inline(always)]
-pub(super) fn limit(size: f64, order: usize, tolerance: f64) -> f64 {
+pub(super) fn log2_step(size: f64, order: usize, tolerance: f64) -> f64 {
     (tolerance - log2(size)) * (1.0 / order as f64)
 }
 

@@ -2,31 +2,24 @@
 
 use nalgebra::Vector3;
 
-use super::linear_terms::Field;
-use super::batch::Pack;
+use super::batch::Batch;
 use super::series::Series;
 use crate::motion::loads::Forcing;
 use crate::numerics::number::Number;
 
-/// A term of a load as a series: its coefficient of order k from those of the motion up to k, asked for in order.
-pub(super) trait Analytic<T, const B: usize> {
-    /// The coefficient of order `k` of the angular acceleration, components in principal axes.
-    fn coefficient(&mut self, k: usize, series: &impl Series<T, B>, field: &Field<T, B>) -> [T; 3];
-}
-
 /// Torques that are cubics in time, in the body or in space: of the latter `Σ_j τ_j·γ_{k−j}` with the axes γ of space.
 #[derive(Clone, Debug)]
-#[repr(align(64))] // see Pack
-pub(super) struct Forced<T> {
+#[repr(align(64))] // see Batch
+pub(super) struct ForcedTorques<T> {
     in_body: [[T; 3]; 4],
     in_space: [[T; 3]; 4],
     inverse_moments: [T; 3],
 }
 
-impl<L: Number, const R: usize> Forced<Pack<L, R>> {
+impl<L: Number, const R: usize> ForcedTorques<Batch<L, R>> {
     #[inline(always)]
     pub(super) fn new() -> Self {
-        let zero = Pack::new(0.0);
+        let zero = Batch::new(0.0);
         Self {
             in_body: [[zero; 3]; 4],
             in_space: [[zero; 3]; 4],
@@ -49,17 +42,15 @@ impl<L: Number, const R: usize> Forced<Pack<L, R>> {
             self.inverse_moments[i].put(row, inverse_moments[i]);
         }
     }
-}
 
-impl<L: Number, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Forced<Pack<L, R>> {
+    /// The coefficient of order `k` of the angular acceleration, components in principal axes.
     #[inline(always)]
-    fn coefficient(
-        &mut self,
+    pub(super) fn coefficient<const B: usize>(
+        &self,
         k: usize,
-        series: &impl Series<Pack<L, R>, B>,
-        _: &Field<Pack<L, R>, B>,
-    ) -> [Pack<L, R>; 3] {
-        let mut sum = [Pack::new(0.0); 3];
+        series: &impl Series<Batch<L, R>, B>,
+    ) -> [Batch<L, R>; 3] {
+        let mut sum = [Batch::new(0.0); 3];
         if B == 3 {
             for j in 0..=k.min(3) {
                 let g = series.get(k - j).g;

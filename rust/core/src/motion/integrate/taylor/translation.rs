@@ -1,25 +1,25 @@
 //! The path of a free body under forces: `m v̇ = F`, with F constant in space and in the body.
 
-use super::linear_terms::Field;
-use super::batch::Pack;
+use super::batch::Batch;
+use super::double_double_series;
+use super::linear_terms::LinearTerms;
 use super::series::Series;
 use super::step::compensate;
-use super::double_double_series;
 use crate::numerics::number::{Number, Real};
 
 /// Position and velocity of the centre of mass in N, and the series of the acceleration in a step.
 #[derive(Clone, Debug)]
-#[repr(align(64))] // see Pack
-pub(super) struct Push<T> {
+#[repr(align(64))] // see Batch
+pub(super) struct Translation<T> {
     value: [T; 6],
     rest: [T; 6],
     acceleration: [[T; 3]; double_double_series::COUNT],
 }
 
-impl<L: Number, const R: usize> Push<Pack<L, R>> {
+impl<L: Number, const R: usize> Translation<Batch<L, R>> {
     #[inline(always)]
     pub(super) fn new() -> Self {
-        let zero = Pack::new(0.0);
+        let zero = Batch::new(0.0);
         Self {
             value: [zero; 6],
             rest: [zero; 6],
@@ -50,20 +50,20 @@ impl<L: Number, const R: usize> Push<Pack<L, R>> {
     pub(super) fn expand<const B: usize>(
         &mut self,
         order: usize,
-        series: &impl Series<Pack<L, R>, B>,
-        field: &Field<Pack<L, R>, B>,
+        series: &impl Series<Batch<L, R>, B>,
+        linear_terms: &LinearTerms<Batch<L, R>, B>,
     ) {
         for k in 0..order {
             let mut sum = if k == 0 {
-                field.force
+                linear_terms.force
             } else {
-                [Pack::new(0.0); 3]
+                [Batch::new(0.0); 3]
             };
             if B == 3 {
                 let g = series.get(k).g;
                 for (axis, direction) in g.iter().enumerate() {
                     for i in 0..3 {
-                        sum[axis] = direction[i].mul_add(field.thrust[i], sum[axis]);
+                        sum[axis] = direction[i].mul_add(linear_terms.thrust[i], sum[axis]);
                     }
                 }
             }
@@ -73,11 +73,11 @@ impl<L: Number, const R: usize> Push<Pack<L, R>> {
 
     /// What the series add to position and velocity within the time `h`.
     #[inline(always)]
-    pub(super) fn increment(&self, order: usize, h: Pack<L, R>) -> [Pack<L, R>; 6] {
-        let mut sums = [Pack::new(0.0); 6];
+    pub(super) fn increment(&self, order: usize, h: Batch<L, R>) -> [Batch<L, R>; 6] {
+        let mut sums = [Batch::new(0.0); 6];
         for k in (0..order).rev() {
-            let once = Pack::over(k + 1);
-            let twice = once * Pack::over(k + 2);
+            let once = Batch::over(k + 1);
+            let twice = once * Batch::over(k + 2);
             for i in 0..3 {
                 let a = self.acceleration[k][i];
                 sums[i] = sums[i].mul_add(h, a * twice);
@@ -93,7 +93,7 @@ impl<L: Number, const R: usize> Push<Pack<L, R>> {
     }
 
     #[inline(always)]
-    pub(super) fn add(&mut self, increment: &[Pack<L, R>; 6]) {
+    pub(super) fn add(&mut self, increment: &[Batch<L, R>; 6]) {
         for i in 0..6 {
             compensate(&mut self.value[i], &mut self.rest[i], increment[i]);
         }
@@ -125,7 +125,7 @@ impl<L: Number, const R: usize> Push<Pack<L, R>> {
 
     /// Position and velocity of one row moved by `increment`.
     #[inline(always)]
-    pub(super) fn moved(&self, increment: &[Pack<L, R>; 6], row: usize) -> [L::Real; 6] {
+    pub(super) fn moved(&self, increment: &[Batch<L, R>; 6], row: usize) -> [L::Real; 6] {
         let mut place = [L::Real::default(); 6];
         for i in 0..6 {
             let change = increment[i].real(row) + self.rest[i].real(row);

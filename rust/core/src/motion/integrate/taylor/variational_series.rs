@@ -3,24 +3,24 @@
 //! Series of such numbers obey the same recurrences as those of plain ones, and what comes out are the series of the motion and
 //! of the linearised equations, with all that depends on the varied numbers. Steps are as long as the series of both allow.
 
-use super::pace::Pace;
-use super::batch::Pack;
-use super::row::Row;
+use super::batch::Batch;
+use super::pace::ConvergenceRadius;
+use super::row::VariedCoefficients;
 use super::series::{Coefficient, Series};
 use super::step::increment;
 use crate::motion::loads::variables::{Varied, WIDTH};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
 
-type One = Pack<Varied, 1>;
+type One = Batch<Varied, 1>;
 
 /// One motion with its derivatives: the rows of ω, of (x, y, z, w), of each direction.
-pub(super) struct Derived<const B: usize> {
-    w: [Row; 3],
-    q: [Row; 4],
-    g: [[Row; 3]; B],
+pub(super) struct VariationalSeries<const B: usize> {
+    w: [VariedCoefficients; 3],
+    q: [VariedCoefficients; 4],
+    g: [[VariedCoefficients; 3]; B],
     /// Of ω, and of the attitude.
-    paces: [Pace; 2],
+    radii: [ConvergenceRadius; 2],
 }
 
 /// The sums of products: ω₂ω₃, ω₃ω₁, ω₁ω₂; q∘ω and γ×ω.
@@ -30,14 +30,14 @@ pub(super) struct Products<const B: usize> {
     crossed: [[Varied; 3]; B],
 }
 
-impl<const B: usize> Series<One, B> for Derived<B> {
+impl<const B: usize> Series<One, B> for VariationalSeries<B> {
     fn new() -> Self {
-        let row = |_| Row::new();
+        let row = |_| VariedCoefficients::new();
         Self {
             w: std::array::from_fn(row),
             q: std::array::from_fn(row),
             g: std::array::from_fn(|_| std::array::from_fn(row)),
-            paces: [Pace::default(); 2],
+            radii: [ConvergenceRadius::default(); 2],
         }
     }
 
@@ -45,14 +45,17 @@ impl<const B: usize> Series<One, B> for Derived<B> {
         let rows = (self.w.iter_mut()).chain(&mut self.q);
         let rows = rows.chain(self.g.as_flattened_mut());
         let numbers = state.w.iter().chain(&state.q);
-        for (row, Pack([number])) in rows.zip(numbers.chain(state.g.as_flattened())) {
+        for (row, Batch([number])) in rows.zip(numbers.chain(state.g.as_flattened())) {
             row.set(0, number, 1.0);
         }
     }
 
     fn limit(&mut self, steps: &mut [f64]) {
-        let [pace, turning] = &mut self.paces;
-        let longest = [pace.longest(&self.w), turning.longest(&self.q)];
+        let [of_omega, of_attitude] = &mut self.radii;
+        let longest = [
+            of_omega.longest_step(&self.w),
+            of_attitude.longest_step(&self.q),
+        ];
         for h in steps {
             for most in longest {
                 // Not a number wherever one of them is not.
@@ -62,14 +65,14 @@ impl<const B: usize> Series<One, B> for Derived<B> {
     }
 
     fn rescale(&mut self, ratio: f64) {
-        self.paces[0].rescale(ratio);
+        self.radii[0].rescale(ratio);
     }
 
     #[inline(always)]
     fn get(&self, k: usize) -> Coefficient<One, B> {
         let ([a, b, c], [x, y, z, s]) = (&self.w, &self.q);
-        let at = |row: &Row| Pack([row.get(k)]);
-        let mut g = [[Pack::new(0.0); 3]; B];
+        let at = |row: &VariedCoefficients| Batch([row.get(k)]);
+        let mut g = [[Batch::new(0.0); 3]; B];
         for (g, [a, b, c]) in g.iter_mut().zip(&self.g) {
             *g = [at(a), at(b), at(c)];
         }
@@ -93,13 +96,13 @@ impl<const B: usize> Series<One, B> for Derived<B> {
     #[inline(always)]
     fn spins(sums: &Products<B>) -> [One; 3] {
         let [x, y, z] = sums.spins;
-        [Pack([x]), Pack([y]), Pack([z])]
+        [Batch([x]), Batch([y]), Batch([z])]
     }
 
     #[inline(always)]
     fn extend(&mut self, k: usize, sums: &Products<B>, acceleration: &[One; 3]) {
         let (next, half) = (1.0 / (k + 1) as f64, 0.5 / (k + 1) as f64);
-        for (row, Pack([x])) in self.w.iter_mut().zip(acceleration) {
+        for (row, Batch([x])) in self.w.iter_mut().zip(acceleration) {
             row.set(k + 1, x, next);
         }
         for (row, x) in self.q.iter_mut().zip(&sums.turned) {
@@ -114,7 +117,7 @@ impl<const B: usize> Series<One, B> for Derived<B> {
 
 /// The sums of products of order `k`.
 struct SumsOfProducts<'a, const B: usize> {
-    series: &'a Derived<B>,
+    series: &'a VariationalSeries<B>,
     k: usize,
 }
 
@@ -123,7 +126,7 @@ impl<const B: usize> Kernel for SumsOfProducts<'_, B> {
 
     #[inline(always)]
     fn run<L: Lane>(self) -> Products<B> {
-        let Derived {
+        let VariationalSeries {
             w: [p, q, r],
             q: [x, y, z, s],
             g,
@@ -158,7 +161,10 @@ impl<const B: usize> Kernel for SumsOfProducts<'_, B> {
 
 /// The coefficient of order `k` of a sum of products of two rows, each with a sign.
 #[inline(always)]
-fn product<L: Lane, const N: usize>(k: usize, products: [(f64, &Row, &Row); N]) -> Varied {
+fn product<L: Lane, const N: usize>(
+    k: usize,
+    products: [(f64, &VariedCoefficients, &VariedCoefficients); N],
+) -> Varied {
     let mut sum = Varied::constant(0.0);
     for (sign, a, b) in products {
         let mut value = L::new(0.0);

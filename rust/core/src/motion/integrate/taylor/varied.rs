@@ -3,56 +3,56 @@
 use std::iter::once;
 use std::ops::ControlFlow;
 
-use super::orbit_cache::Almanac;
-use super::course::{Course, parts};
-use super::variational_series::Derived;
-use super::drive::{Job, Settings, Tell, drive};
+use super::course::{PiecewiseEquations, parts};
+use super::drive::{Job, SampleSink, Settings, drive};
+use super::orbit_cache::OrbitSeriesCache;
 use super::row::ORDER;
+use super::variational_series::VariationalSeries;
 use crate::error::{Error, MotionFault};
 use crate::motion::loads::Term;
 use crate::motion::loads::variables::{Block, Varied};
 use crate::motion::problem::{End, Run, Task};
 
-/// Runs `task`, which carries what `terms` carry along, under these to its last time; `tell` gets ω and (x, y, z, w) in B and the
+/// Runs `task`, which carries what `terms` carry along, under these to its last time; `sink` gets ω and (x, y, z, w) in B and the
 /// states of the load at each time, by the number of the time. Tolerances do not matter. `watch` gets the fraction done and may
 /// stop it.
 ///
 /// # Errors
 /// When a term cannot act, the motion cannot go on, or [`Error::Stopped`].
-pub(in crate::motion::integrate) fn run_varied(
+pub(in crate::motion::integrate) fn solve_variational(
     task: &Task<'_>,
     terms: &[Term],
     block: Block,
-    tell: Tell<'_, Varied>,
+    sink: SampleSink<'_, Varied>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<(), Error> {
     let mut run = Run::at_start(task, End::Stopped);
-    let course = Course::new(task, terms, block)?;
-    let start = course.start();
-    let own = course.own_reported(&start, &course.own_at_start());
-    tell(0, &course.in_body(&start), &own);
+    let equations = PiecewiseEquations::new(task, terms, block)?;
+    let start = equations.start();
+    let own = equations.reported_internal_states(&start, &equations.internal_states_at_start());
+    sink(0, &equations.in_body(&start), &own);
     if task.times.len() == 1 {
         return Ok(());
     }
     let mut next = 1;
-    let mut tell = |k: usize, state: &[Varied; 7], own: &[Varied]| {
+    let mut sink = |k: usize, state: &[Varied; 7], own: &[Varied]| {
         next = k + 1;
-        tell(k, state, own);
+        sink(k, state, own);
     };
     // The path of the body is left out.
     let parts = parts::<Varied>(terms, &task.subject, block, false);
     let settings = Settings::of_derivatives(ORDER, parts);
     let job = Job {
-        course,
+        equations,
         run: &mut run,
-        tell: Some(&mut tell),
+        sink: Some(&mut sink),
     };
     let jobs = &mut once(job);
-    let almanac = &mut Almanac::default();
+    let cache = &mut OrbitSeriesCache::default();
     let _stopped = match parts.directions {
-        0 => directed::<0>(settings, jobs, watch, almanac),
-        1 => directed::<1>(settings, jobs, watch, almanac),
-        _ => directed::<3>(settings, jobs, watch, almanac),
+        0 => drive_directions::<0>(settings, jobs, watch, cache),
+        1 => drive_directions::<1>(settings, jobs, watch, cache),
+        _ => drive_directions::<3>(settings, jobs, watch, cache),
     };
     match run.end {
         End::Complete => Ok(()),
@@ -70,11 +70,11 @@ pub(in crate::motion::integrate) fn run_varied(
 
 /// Out of line: without optimization the three take a megabyte of the stack each.
 #[inline(never)]
-fn directed<const B: usize>(
+fn drive_directions<const B: usize>(
     settings: Settings,
     jobs: &mut dyn Iterator<Item = Job<'_, Varied>>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
-    almanac: &mut Almanac,
+    cache: &mut OrbitSeriesCache,
 ) -> ControlFlow<()> {
-    drive::<Varied, Derived<B>, B, 1>(settings, jobs, watch, None, almanac)
+    drive::<Varied, VariationalSeries<B>, B, 1>(settings, jobs, watch, None, cache)
 }

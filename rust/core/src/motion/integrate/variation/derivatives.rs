@@ -5,7 +5,7 @@ use std::ops::{ControlFlow, Range};
 use nalgebra::{Matrix6, Matrix6x3, Quaternion, Vector3, Vector6};
 
 use crate::error::{Error, MotionFault};
-use crate::motion::integrate::taylor::run_varied;
+use crate::motion::integrate::taylor::solve_variational;
 use crate::motion::loads::Term;
 use crate::motion::loads::variables::{
     ATTITUDE, Block, CENTER, LOAD, MASS, MOMENTS, PRODUCTS, Varied, WIDTH,
@@ -106,7 +106,7 @@ pub fn variations(
             first: index * WIDTH,
         };
         let mut watch = |part| watch((index as f64 + part) / blocks as f64);
-        let mut tell = |k: usize, state: &[Varied; 7], own: &[Varied]| {
+        let mut record = |k: usize, state: &[Varied; 7], own: &[Varied]| {
             for (column, slopes) in (block.first..all).zip(columns(state)) {
                 if k > 0 {
                     found[k].set(column, &slopes);
@@ -116,7 +116,7 @@ pub fn variations(
                 }
             }
         };
-        run_varied(task, terms, block, &mut tell, &mut watch)?;
+        solve_variational(task, terms, block, &mut record, &mut watch)?;
     }
     for (state, row) in found[0].of_own.iter_mut().enumerate() {
         row[LOAD + numbers..].fill(0.0);

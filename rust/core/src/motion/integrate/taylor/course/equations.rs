@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::segments::Course;
-use crate::motion::integrate::taylor::linear_terms::Field;
+use super::segments::PiecewiseEquations;
+use crate::motion::integrate::taylor::linear_terms::LinearTerms;
 use crate::motion::integrate::taylor::principal_frame::Precision;
 use crate::motion::kinematics::Frame;
 use crate::motion::loads::variables::{MASS, Variables};
@@ -13,7 +13,7 @@ use crate::motion::loads::{
 use crate::numerics::number::Real;
 use crate::numerics::power_of_two::power_below;
 
-impl<X: Precision> Course<'_, X> {
+impl<X: Precision> PiecewiseEquations<'_, X> {
     pub(in crate::motion::integrate::taylor) fn unit(&self) -> f64 {
         self.unit
     }
@@ -63,7 +63,9 @@ impl<X: Precision> Course<'_, X> {
     }
 
     /// The equations in the segment under way.
-    pub(in crate::motion::integrate::taylor) fn field<const B: usize>(&self) -> Field<X, B> {
+    pub(in crate::motion::integrate::taylor) fn linear_terms<const B: usize>(
+        &self,
+    ) -> LinearTerms<X, B> {
         let linear = &self.linear;
         let inverse = Matrix3::from_diagonal(&self.inverse_moments);
         let rate = X::from(1.0 / self.unit);
@@ -71,16 +73,16 @@ impl<X: Precision> Course<'_, X> {
         let on_attitude = inverse * linear.on_attitude() * rate * rate;
         // What the wheels that turn freely add to the tensor, along the axes and across them.
         let (along, across) = (linear.turning.diagonal(), linear.turning);
-        let pulled = [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
+        let pull = [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
             .map(|(i, j, k)| self.kappa[i] + (along[j] - along[k]) * self.inverse_moments[i]);
         let aside =
             [(0, 1, 2), (1, 2, 0), (2, 0, 1)].map(|(i, j, k)| self.products[i] + across[(j, k)]);
         let mass = (self.variables).number(self.task.subject.mass, MASS);
-        let mut field = Field {
+        let mut linear_terms = LinearTerms {
             kappa: self.kappa.into(),
             inverse_moments: self.inverse_moments.into(),
             products: self.products.into(),
-            pull: (pulled, aside),
+            pull: (pull, aside),
             constant: (inverse * linear.constant * rate * rate).into(),
             on_omega: rows(&on_omega),
             on_attitude: [0, 1, 2].map(|n| [0, 1, 2, 3].map(|i| on_attitude[(n, i)])),
@@ -91,7 +93,7 @@ impl<X: Precision> Course<'_, X> {
         let directions = Self::directions::<B>();
         for (vector, matrix) in &linear.on_space {
             let scaled = inverse * matrix * rate * rate;
-            for (block, direction) in field.on_space.iter_mut().zip(&directions) {
+            for (block, direction) in linear_terms.on_space.iter_mut().zip(&directions) {
                 let part = scaled * vector.dot(&Vector3::from(*direction));
                 for (row, more) in block.iter_mut().zip(rows(&part)) {
                     for (x, more) in row.iter_mut().zip(more) {
@@ -100,7 +102,7 @@ impl<X: Precision> Course<'_, X> {
                 }
             }
         }
-        field
+        linear_terms
     }
 
     /// The formulas of the segment under way, each with its matrix over the moments in units of rates.
@@ -162,7 +164,7 @@ impl<X: Precision> Course<'_, X> {
     }
 
     /// What the states of the load do in the segment under way.
-    pub(in crate::motion::integrate::taylor) fn own(&self) -> &[Own<X>] {
+    pub(in crate::motion::integrate::taylor) fn internal_states(&self) -> &[Own<X>] {
         &self.linear.own
     }
 

@@ -13,5 +13,5 @@ mod state;
 mod times;
 
 pub(super) use equations::parts;
-pub(super) use segments::Course;
-pub(super) use state::Besides;
+pub(super) use segments::PiecewiseEquations;
+pub(super) use state::AuxiliaryState;

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Matrix3x4, Vector3, Vector4};
 
 use crate::error::{Error, MotionFault};
 use crate::mass::validity::ROUNDING;
-use crate::motion::integrate::taylor::principal_frame::{Precision, Principal};
+use crate::motion::integrate::taylor::principal_frame::{Precision, PrincipalFrame};
 use crate::motion::loads::variables::Variables;
 use crate::motion::loads::{Axes, Linear, Term};
 use crate::motion::problem::Task;
@@ -41,7 +41,7 @@ impl<X: Real> Switch<X> {
 
 /// A motion on its way.
 #[derive(Clone, Debug)]
-pub(in crate::motion::integrate::taylor) struct Course<'a, X: Precision> {
+pub(in crate::motion::integrate::taylor) struct PiecewiseEquations<'a, X: Precision> {
     pub(super) task: Task<'a>,
     pub(super) terms: &'a [Term],
     /// Which numbers are varied, and the first column of each term.
@@ -62,7 +62,7 @@ pub(in crate::motion::integrate::taylor) struct Course<'a, X: Precision> {
     pub(super) unit: f64,
 }
 
-impl<'a, X: Precision> Course<'a, X> {
+impl<'a, X: Precision> PiecewiseEquations<'a, X> {
     /// The course of `task` under `terms`.
     ///
     /// # Errors
@@ -74,8 +74,8 @@ impl<'a, X: Precision> Course<'a, X> {
     ) -> Result<Self, Error> {
         // After those of all terms stand the states of the load.
         let firsts = variables.columns(&mut terms.iter().map(Term::count).chain([0]));
-        let principal = X::less(X::principal(task, variables), |principal| {
-            turning(task, terms, principal, variables, &firsts)
+        let principal = X::subtract_wheels(X::principal(task, variables), |principal| {
+            free_wheel_tensor(task, terms, principal, variables, &firsts)
         });
         let ([i1, i2, i3], [d1, d2, d3]) = (principal.moments, principal.differences);
         let one = X::one();
@@ -88,15 +88,23 @@ impl<'a, X: Precision> Course<'a, X> {
         if end < start {
             breaks.reverse();
         }
-        let mut course = Self {
+        let mut equations = Self {
             task: task.clone(),
             terms,
             variables,
             firsts,
             axes: principal.axes,
             q_bp: principal.q_bp,
-            kappa: Vector3::new(over(d1, i1), over(d2, i2), over(d3, i3)),
-            inverse_moments: Vector3::new(over(one, i1), over(one, i2), over(one, i3)),
+            kappa: Vector3::new(
+                quotient_or_zero(d1, i1),
+                quotient_or_zero(d2, i2),
+                quotient_or_zero(d3, i3),
+            ),
+            inverse_moments: Vector3::new(
+                quotient_or_zero(one, i1),
+                quotient_or_zero(one, i2),
+                quotient_or_zero(one, i3),
+            ),
             products: principal.products.into(),
             breaks,
             segment: 0,
@@ -104,16 +112,16 @@ impl<'a, X: Precision> Course<'a, X> {
             switches: Vec::new(),
             unit: 1.0,
         };
-        let state = course.start();
+        let state = equations.start();
         let mut from = start;
-        for &to in &course.breaks {
-            for (_, term) in course.acting(from, to) {
+        for &to in &equations.breaks {
+            for (_, term) in equations.acting(from, to) {
                 term.check(&task.subject, from, to)?;
             }
             from = to;
         }
-        course.linearize(&state)?;
-        Ok(course)
+        equations.linearize(&state)?;
+        Ok(equations)
     }
 
     /// Past the end of a segment, in the state `state`.
@@ -237,13 +245,13 @@ impl<'a, X: Precision> Course<'a, X> {
     }
 
     /// Whether the scalar part of a feedback's error has another sign in `state` than the torques are made for.
-    pub(in crate::motion::integrate::taylor) fn has_flipped(&self, state: &[X; 7]) -> bool {
+    pub(in crate::motion::integrate::taylor) fn has_switched(&self, state: &[X; 7]) -> bool {
         (self.switches.iter()).any(|switch| switch.sign(state) != switch.side)
     }
 
     /// How many functions of the attitude change the law by their signs, and of number `index` the value in the attitude (x, y, z, w),
     /// or in a coefficient of its series, and the sign before the step.
-    pub(in crate::motion::integrate::taylor) fn switches(&self) -> usize {
+    pub(in crate::motion::integrate::taylor) fn switch_count(&self) -> usize {
         self.switches.len()
     }
 
@@ -265,7 +273,7 @@ impl<'a, X: Precision> Course<'a, X> {
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub(in crate::motion::integrate::taylor) fn flip(
+    pub(in crate::motion::integrate::taylor) fn switch_laws(
         &mut self,
         state: &mut [X; 7],
         own: &mut [X],
@@ -304,10 +312,10 @@ impl<'a, X: Precision> Course<'a, X> {
 }
 
 /// Σ J a aᵀ of the wheels that turn freely, in principal axes.
-fn turning<X: Precision>(
+fn free_wheel_tensor<X: Precision>(
     task: &Task<'_>,
     terms: &[Term],
-    principal: &Principal<X>,
+    principal: &PrincipalFrame<X>,
     variables: X::Variables,
     firsts: &[usize],
 ) -> Matrix3<X> {
@@ -328,7 +336,7 @@ fn turning<X: Precision>(
     linear.turning
 }
 
-fn over<X: Real>(number: X, moment: X) -> X {
+fn quotient_or_zero<X: Real>(number: X, moment: X) -> X {
     if moment.rounded() > 0.0 {
         number / moment
     } else {

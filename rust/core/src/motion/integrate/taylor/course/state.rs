@@ -2,7 +2,7 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use super::segments::Course;
+use super::segments::PiecewiseEquations;
 use crate::motion::integrate::taylor::principal_frame::Precision;
 use crate::motion::loads::variables::{ATTITUDE, RATES, Variables};
 use crate::motion::state::Phase;
@@ -10,14 +10,14 @@ use crate::numerics::quaternion::{conjugate, normalized, product};
 
 /// What goes on beside attitude and ω.
 #[derive(Clone, Debug, Default)]
-pub(in crate::motion::integrate::taylor) struct Besides<X> {
+pub(in crate::motion::integrate::taylor) struct AuxiliaryState<X> {
     /// Position and velocity, in units of the unit of rates, of a body that is pushed.
-    pub(in crate::motion::integrate::taylor) place: Option<[X; 6]>,
+    pub(in crate::motion::integrate::taylor) position_velocity: Option<[X; 6]>,
     /// The states of the load, vectors among them in principal axes.
-    pub(in crate::motion::integrate::taylor) own: Vec<X>,
+    pub(in crate::motion::integrate::taylor) internal_states: Vec<X>,
 }
 
-impl<X: Precision> Course<'_, X> {
+impl<X: Precision> PiecewiseEquations<'_, X> {
     pub(in crate::motion::integrate::taylor) fn initial(&self) -> &Phase {
         &self.task.initial
     }
@@ -38,13 +38,13 @@ impl<X: Precision> Course<'_, X> {
     pub(in crate::motion::integrate::taylor) fn phase(
         &self,
         state: &[X; 7],
-        besides: &Besides<X>,
+        auxiliary: &AuxiliaryState<X>,
         now: (f64, f64),
     ) -> Phase {
         let [x, y, z, i, j, k, w] = *state;
         let initial = self.initial();
-        let (position, velocity) = if let Some(place) = besides.place {
-            let [x, y, z, u, v, w] = place.map(X::rounded);
+        let (position, velocity) = if let Some(numbers) = auxiliary.position_velocity {
+            let [x, y, z, u, v, w] = numbers.map(X::rounded);
             (Vector3::new(x, y, z), Vector3::new(u, v, w) * self.unit)
         } else {
             let elapsed = (now.0 + now.1) / self.unit;
@@ -60,44 +60,52 @@ impl<X: Precision> Course<'_, X> {
             omega: (self.axes * Vector3::new(x, y, z)).map(X::rounded) * self.unit,
             position,
             velocity,
-            own: if besides.own.is_empty() {
+            own: if auxiliary.internal_states.is_empty() {
                 Box::default()
             } else {
-                let own = self.own_in_body(&besides.own).into_iter();
+                let own = self
+                    .internal_states_in_body(&auxiliary.internal_states)
+                    .into_iter();
                 own.map(X::rounded).collect()
             },
         }
     }
 
     /// The load's own states at the start, vectors among them in principal axes.
-    pub(in crate::motion::integrate::taylor) fn own_at_start(&self) -> Vec<X> {
+    pub(in crate::motion::integrate::taylor) fn internal_states_at_start(&self) -> Vec<X> {
         let first = self.firsts.get(self.terms.len()).copied().unwrap_or(0);
         let given = self.task.initial.own.iter().enumerate();
         let given: Vec<X> = given
             .map(|(i, &x)| self.variables.number(x, first + i))
             .collect();
-        self.own_turned(&given, |vector| self.axes.tr_mul(&vector))
+        self.rotate_internal_states(&given, |vector| self.axes.tr_mul(&vector))
     }
 
     /// The load's own states, or coefficients of their series, vectors among them in body axes.
-    pub(in crate::motion::integrate::taylor) fn own_in_body(&self, own: &[X]) -> Vec<X> {
-        self.own_turned(own, |vector| self.axes * vector)
+    pub(in crate::motion::integrate::taylor) fn internal_states_in_body(
+        &self,
+        own: &[X],
+    ) -> Vec<X> {
+        self.rotate_internal_states(own, |vector| self.axes * vector)
     }
 
     /// What is reported of the load's own states, in body axes.
-    pub(in crate::motion::integrate::taylor) fn own_reported(
+    pub(in crate::motion::integrate::taylor) fn reported_internal_states(
         &self,
         state: &[X; 7],
         own: &[X],
     ) -> Vec<X> {
         let omega = Vector3::from_column_slice(&state[..3]) * X::from(self.unit);
-        let states = self.own_in_body(own).into_iter().zip(&self.linear.own);
+        let states = self
+            .internal_states_in_body(own)
+            .into_iter()
+            .zip(&self.linear.own);
         states
             .map(|(value, state)| value + state.reported_on_omega.dot(&omega))
             .collect()
     }
 
-    fn own_turned(&self, own: &[X], turn: impl Fn(Vector3<X>) -> Vector3<X>) -> Vec<X> {
+    fn rotate_internal_states(&self, own: &[X], turn: impl Fn(Vector3<X>) -> Vector3<X>) -> Vec<X> {
         let mut turned = own.to_vec();
         for (number, state) in self.linear.own.iter().enumerate() {
             if let Some((first, component)) = state.turned {

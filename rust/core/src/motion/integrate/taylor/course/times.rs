@@ -1,13 +1,13 @@
 //! Times in units of the run, and of the task.
 
-use super::segments::Course;
+use super::segments::PiecewiseEquations;
 use crate::error::Error;
-use crate::motion::integrate::taylor::orbit_cache::Place;
+use crate::motion::integrate::taylor::orbit_cache::CacheKey;
 use crate::motion::integrate::taylor::principal_frame::Precision;
 use crate::motion::problem::limits::check_steps;
 use crate::numerics::double_double::two_sum;
 
-impl<X: Precision> Course<'_, X> {
+impl<X: Precision> PiecewiseEquations<'_, X> {
     /// Time since the start of output `k`.
     pub(in crate::motion::integrate::taylor) fn output(&self, k: usize) -> (f64, f64) {
         self.since_start(self.task.times[k])
@@ -29,13 +29,16 @@ impl<X: Precision> Course<'_, X> {
 
     /// Where a step that begins at `now` stands in an almanac, and the unit of rates.
     #[inline(always)]
-    pub(in crate::motion::integrate::taylor) fn place(&self, now: (f64, f64)) -> (Place, f64) {
+    pub(in crate::motion::integrate::taylor) fn cache_key(
+        &self,
+        now: (f64, f64),
+    ) -> (CacheKey, f64) {
         let (start, unit) = (self.task.times[0], self.unit);
-        let place = Place {
+        let key = CacheKey {
             when: [now.0 / unit, now.1 / unit, start].map(f64::to_bits),
             terms: (self.terms.as_ptr().addr(), self.terms.len()),
         };
-        (place, unit)
+        (key, unit)
     }
 
     /// The whole length of the motion.

@@ -20,8 +20,8 @@ mod shown;
 mod stepping;
 mod stops;
 
-pub(super) use lanes::{Job, Tell};
+pub(super) use lanes::{Job, SampleSink};
 pub(super) use run::drive;
 pub(super) use settings::Settings;
-pub(super) use shown::See;
+pub(super) use shown::Observer;
 pub(crate) use shown::Step;

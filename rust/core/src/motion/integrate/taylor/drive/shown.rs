@@ -5,9 +5,9 @@ use std::ops::ControlFlow;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::lanes::Lanes;
-use crate::motion::integrate::taylor::course::{Besides, Course};
+use crate::motion::integrate::taylor::batch::Batch;
+use crate::motion::integrate::taylor::course::{AuxiliaryState, PiecewiseEquations};
 use crate::motion::integrate::taylor::principal_frame::Precision;
-use crate::motion::integrate::taylor::batch::Pack;
 use crate::motion::integrate::taylor::series::{Coefficient, Series};
 use crate::motion::integrate::taylor::step::Compensated;
 use crate::motion::state::Phase;
@@ -92,76 +92,81 @@ impl Step {
 }
 
 /// Gets each step of a motion as it is made, and whether the motion has ended with it; may stop the run.
-pub(in crate::motion::integrate::taylor) type See<'a> =
+pub(in crate::motion::integrate::taylor) type Observer<'a> =
     &'a mut dyn FnMut(Step, bool) -> ControlFlow<()>;
 
 /// What a step begins with.
-pub(super) struct Before<'a, L: Number<Real: Precision>, const R: usize> {
-    course: Course<'a, L::Real>,
+pub(super) struct StepStart<'a, L: Number<Real: Precision>, const R: usize> {
+    equations: PiecewiseEquations<'a, L::Real>,
     now: (f64, f64),
-    state: Compensated<Pack<L, R>>,
-    besides: Besides<L::Real>,
+    state: Compensated<Batch<L, R>>,
+    auxiliary: AuxiliaryState<L::Real>,
 }
 
 impl<'a, L, S, const B: usize, const R: usize> Lanes<'a, L, S, B, R>
 where
     L: Number<Real: Precision>,
-    S: Series<Pack<L, R>, B>,
+    S: Series<Batch<L, R>, B>,
 {
     /// What the step that the first motion is to make begins with.
     #[inline(never)]
-    pub(super) fn before(&self) -> Option<Before<'a, L, R>> {
-        let lead = self.leads[0].as_ref()?;
-        Some(Before {
-            course: lead.job.course.clone(),
+    pub(super) fn step_start(&self) -> Option<StepStart<'a, L, R>> {
+        let motion = self.motions[0].as_ref()?;
+        Some(StepStart {
+            equations: motion.job.equations.clone(),
             now: self.now[0],
             state: self.state.clone(),
-            besides: self.besides(0),
+            auxiliary: self.auxiliary_state(0),
         })
     }
 
     /// The step that began with `before` and was the last one made.
     #[inline(never)]
-    pub(super) fn seen(&self, before: Before<'a, L, R>) -> Step {
-        let Before {
-            course,
+    pub(super) fn finished_step(&self, before: StepStart<'a, L, R>) -> Step {
+        let StepStart {
+            equations,
             now,
             state,
-            besides,
+            auxiliary,
         } = before;
         let order = self.settings.order;
         let mut series = Vec::with_capacity(order);
         for k in 1..=order {
             let Coefficient { w, q, .. } = self.series.get(k);
-            let q = self.extras.in_space(q);
+            let q = self.nonlinear.to_space(q);
             let [w0, w1, w2, x, y, z, s] = [w[0], w[1], w[2], q[0], q[1], q[2], q[3]];
             let coefficient = [w0, w1, w2, x, y, z, s].map(|number| number.real(0));
-            series.push(course.in_body(&coefficient).map(L::Real::rounded));
+            series.push(equations.in_body(&coefficient).map(L::Real::rounded));
         }
         let mut own = Vec::new();
-        if let Some(carried) = &self.carried {
+        if let Some(internal_states) = &self.internal_states {
             for k in 0..=order {
-                let coefficients = course.own_in_body(&carried.coefficients(0, k));
+                let coefficients =
+                    equations.internal_states_in_body(&internal_states.coefficients(0, k));
                 own.push(coefficients.into_iter().map(L::Real::rounded).collect());
             }
         }
         // Of what is rounded to a double, which is much of it where the numbers have twice the precision.
-        let own_change = course.own_in_body(&besides.own).into_iter().enumerate();
+        let own_change = equations
+            .internal_states_in_body(&auxiliary.internal_states)
+            .into_iter()
+            .enumerate();
         let own_change: Vec<f64> = own_change
             .map(|(i, exact)| {
                 let rounded: &Vec<f64> = &own[0];
                 (exact - rounded[i].into()).rounded()
             })
             .collect();
-        let unit = course.unit();
-        let end = self.leads[0].as_ref().map_or_else(
-            || course.last_elapsed(),
-            |lead| (self.now[0].0 + self.now[0].1) / lead.job.course.unit(),
+        let unit = equations.unit();
+        let end = self.motions[0].as_ref().map_or_else(
+            || equations.last_elapsed(),
+            |motion| (self.now[0].0 + self.now[0].1) / motion.job.equations.unit(),
         );
         let begin = (now.0 + now.1) / unit;
-        let initial = course.initial();
-        let state_in_body = course.in_body(&state.value.all().map(|number| number.real(0)));
-        let rest_in_body = course.in_body(&state.rest.all().map(|number| number.real(0)));
+        let initial = equations.initial();
+        let state_in_body =
+            equations.in_body(&state.value.components().map(|number| number.real(0)));
+        let rest_in_body = equations.in_body(&state.rest.components().map(|number| number.real(0)));
         let rounded = state_in_body.map(L::Real::rounded);
         let change = |i: usize| (state_in_body[i] - rounded[i].into() + rest_in_body[i]).rounded();
         Step {
@@ -173,8 +178,10 @@ where
             series,
             own,
             own_change,
-            path: (self.push.as_ref().zip(besides.place))
-                .map_or_else(Vec::new, |(push, place)| push.path(0, order, &place)),
+            path: (self.translation.as_ref().zip(auxiliary.position_velocity))
+                .map_or_else(Vec::new, |(translation, place)| {
+                    translation.path(0, order, &place)
+                }),
             initial: [initial.position, initial.velocity],
         }
     }

@@ -3,8 +3,8 @@
 use nalgebra::Matrix3;
 
 use super::*;
-use crate::motion::integrate::taylor::single_series::Alone;
 use crate::motion::integrate::taylor::series::Coefficient;
+use crate::motion::integrate::taylor::single_series::SingleMotionSeries;
 use crate::motion::loads::{OMEGA, Steps};
 
 type One = crate::numerics::lane::Double<false>;
@@ -12,7 +12,7 @@ type One = crate::numerics::lane::Double<false>;
 /// The coefficients of `M u² ω` with `u = ω·ω`, of `ω = (1 + t, 0, 2)`, for which `u² = 25 + 20 t + 14 t² + 4 t³ + t⁴`.
 #[test]
 fn products_of_products() {
-    let number = |x: f64| Pack([<One as Number>::new(x)]);
+    let number = |x: f64| Batch([<One as Number>::new(x)]);
     let mut steps = Steps::default();
     let square = steps.square();
     let cube = steps.times(square, OMEGA);
@@ -21,7 +21,7 @@ fn products_of_products() {
     let mut formulas = Formulas::new();
     let matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0]];
     formulas.set(0, [(&formula, matrix)].into_iter());
-    let mut series = Alone::<One, 0>::new();
+    let mut series = SingleMotionSeries::<One, 0>::new();
     series.start(&Coefficient {
         w: [number(1.0), number(0.0), number(2.0)],
         q: [number(0.0), number(0.0), number(0.0), number(1.0)],
@@ -45,18 +45,18 @@ fn products_of_products() {
 /// |ω| ω in one piece and step by step.
 #[test]
 fn the_quick_way_has_the_same_bits() {
-    let number = |x: f64| Pack([<One as Number>::new(x)]);
+    let number = |x: f64| Batch([<One as Number>::new(x)]);
     let mut steps = Steps::default();
     let speed = steps.speed();
     let vector = steps.times(speed, OMEGA);
     let formula = steps.torque(Matrix3::<f64>::identity(), vector);
-    let (mut quick, mut slow) = (Worked::new(&formula), Worked::new(&formula));
+    let (mut quick, mut slow) = (FormulaSeries::new(&formula), FormulaSeries::new(&formula));
     assert!(quick.is_quadratic);
     slow.is_quadratic = false;
-    for worked in [&mut quick, &mut slow] {
-        worked.matrix = [[number(0.3); 3]; 3];
+    for formula in [&mut quick, &mut slow] {
+        formula.matrix = [[number(0.3); 3]; 3];
     }
-    let mut series = Alone::<One, 0>::new();
+    let mut series = SingleMotionSeries::<One, 0>::new();
     series.start(&Coefficient {
         w: [number(0.6), number(-0.1), number(0.3)],
         q: [number(0.0), number(0.0), number(0.0), number(1.0)],
@@ -82,12 +82,12 @@ fn each_row_has_its_own() {
     };
     let (once, twice) = (formula(1.0), formula(2.0));
     let rows = |by: f64| [[by, 0.0, 0.0], [0.0, by, 0.0], [0.0, 0.0, by]];
-    let mut formulas = Formulas::<Pack<One, 2>>::new();
+    let mut formulas = Formulas::<Batch<One, 2>>::new();
     formulas.set(1, [(&twice, rows(2.0))].into_iter());
     formulas.set(0, [(&once, rows(1.0)), (&twice, rows(2.0))].into_iter());
     let matrices = |row: usize| -> Vec<f64> {
-        let all = formulas.worked.iter();
-        all.map(|worked| worked.matrix[2][2].get(row)).collect()
+        let all = formulas.formulas.iter();
+        all.map(|formula| formula.matrix[2][2].get(row)).collect()
     };
     assert_eq!((matrices(0), matrices(1)), (vec![1.0, 2.0], vec![2.0, 0.0]));
 }
