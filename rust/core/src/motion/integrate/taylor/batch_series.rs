@@ -1,9 +1,9 @@
 //! Several motions, the lanes over the motions.
 
 use super::batch::{Batch, CacheAligned};
-use super::directions::{add_squares, axis, from_squares, halved, roots};
+use super::series::increment;
 use super::series::{COUNT, Coefficient, RECIPROCALS, Series};
-use super::step::increment;
+use super::series::{add_squares, axis, from_squares, halved, roots};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
 
@@ -214,7 +214,7 @@ impl<N: Lane, const B: usize, const R: usize, const CONSTANT: usize> Kernel
     }
 }
 
-/// The sums of the squares that make [directions](super::directions).
+/// The sums of the squares that make directions.
 struct Squares<T, const B: usize>([[T; 6]; B]);
 
 impl<L: Lane, const R: usize, const B: usize> Squares<Batch<L, R>, B> {

@@ -1,15 +1,10 @@
 //! The series of one motion in numbers of twice the precision, the lanes over its components.
 
 use super::batch::Batch;
-use super::series::{Coefficient, Series};
-use super::step::increment;
+use super::series::{Coefficient, MAX_COUNT, Series, increment};
 use crate::numerics::double_double::two_sum;
 use crate::numerics::lane::Lane;
 use crate::numerics::twofold::Twofold;
-
-/// The highest order of such series, and the number of their coefficients.
-pub(super) const HIGHEST_ORDER: usize = 40;
-pub(super) const COUNT: usize = HIGHEST_ORDER + 1;
 
 type Double<L> = Batch<Twofold<L>, 1>;
 
@@ -106,8 +101,8 @@ impl<L: Lane, const W: usize> Order<L, W> {
 /// One motion: `W` ≥ 4 + 3 `B`.
 #[derive(Clone, Debug)]
 pub(super) struct DoubleDoubleSeries<L, const B: usize, const W: usize> {
-    orders: [Order<L, W>; COUNT],
-    plain: [Coefficient<Double<L>, B>; COUNT],
+    orders: [Order<L, W>; MAX_COUNT],
+    plain: [Coefficient<Double<L>, B>; MAX_COUNT],
 }
 
 /// The sums of products of [`DoubleDoubleSeries`]: ω₂ω₃, ω₃ω₁, ω₁ω₂; q∘ω and γ×ω.
@@ -126,8 +121,8 @@ impl<L: Lane, const B: usize, const W: usize> Series<Double<L>, B> for DoubleDou
             g: [[zero; 3]; B],
         };
         Self {
-            orders: [Order::new(&none); COUNT],
-            plain: [none; COUNT],
+            orders: [Order::new(&none); MAX_COUNT],
+            plain: [none; MAX_COUNT],
         }
     }
 

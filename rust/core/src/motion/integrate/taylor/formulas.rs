@@ -1,8 +1,8 @@
 //! Torques that are not linear in ω, by the formulas that their laws state.
 
 use super::batch::{Batch, CacheAligned};
-use super::double_double_series::COUNT;
 use super::principal_frame::Precision;
+use super::series::MAX_COUNT;
 use super::series::Series;
 use crate::motion::loads::{Formula, Step};
 use crate::numerics::dispatch::{Kernel, dispatch};
@@ -12,12 +12,12 @@ use crate::numerics::number::{Number, Real};
 /// The coefficients of a scalar.
 #[derive(Clone, Debug)]
 #[repr(align(64))] // see Batch
-struct Scalar<T>([T; COUNT]);
+struct Scalar<T>([T; MAX_COUNT]);
 
 /// The coefficients of a vector.
 #[derive(Clone, Debug)]
 #[repr(align(64))] // see Batch
-struct Vector<T>([[T; 3]; COUNT]);
+struct Vector<T>([[T; 3]; MAX_COUNT]);
 
 /// A formula, and the coefficients of its scalars and vectors.
 #[derive(Clone, Debug)]
@@ -243,9 +243,9 @@ impl<L: Number<Real: Precision>, const R: usize> FormulaSeries<Batch<L, R>> {
                     if matches!(step, Step::Speed(_)) {
                         speed = Some(scalars.len());
                     }
-                    scalars.push(Scalar([zero; COUNT]));
+                    scalars.push(Scalar([zero; MAX_COUNT]));
                 }
-                Step::Times(..) => vectors.push(Vector([[zero; 3]; COUNT])),
+                Step::Times(..) => vectors.push(Vector([[zero; 3]; MAX_COUNT])),
             }
         }
         Self {
@@ -338,7 +338,7 @@ impl<L: Number<Real: Precision>, const R: usize> FormulaSeries<Batch<L, R>> {
         number: usize,
         square: Batch<L, R>,
         rest_speed: Batch<L, R>,
-    ) -> &[Batch<L, R>; COUNT] {
+    ) -> &[Batch<L, R>; MAX_COUNT] {
         let speeds = &mut self.scalars[number].0;
         speeds[k] = Batch::new(0.0);
         if k == 0 {
@@ -383,7 +383,7 @@ fn square<L: Number, const R: usize, const B: usize>(
 #[inline(always)]
 fn times<L: Number, const R: usize>(
     k: usize,
-    factor: &[Batch<L, R>; COUNT],
+    factor: &[Batch<L, R>; MAX_COUNT],
     vector: impl Fn(usize) -> [Batch<L, R>; 3],
 ) -> [Batch<L, R>; 3] {
     let mut product = [Batch::new(0.0); 3];

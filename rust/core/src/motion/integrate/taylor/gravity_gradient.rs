@@ -3,13 +3,13 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::batch::{Batch, CacheAligned, plus};
-use super::double_double_series::COUNT;
 use super::linear_terms::LinearTerms;
 use super::orbit_series::OrbitSeries;
 use super::principal_frame::quaternion_of_matrix;
 use super::pulled::{
     HalfTurnProduct, PairedSums, SeriesAttitudes, pointing_from_squares, square_terms,
 };
+use super::series::MAX_COUNT;
 use super::series::Series;
 use crate::motion::loads::OnOrbit;
 use crate::numerics::dispatch::{Kernel, dispatch};
@@ -33,10 +33,10 @@ pub(super) struct GravityGradientSeries<T> {
     /// The rotation from the orbit's frame at the start of the step to N.
     frame: [T; 4],
     /// The attitude from that frame, where the series are not of it already, and with the half turn.
-    attitude: [[T; 4]; COUNT],
-    turned: [[T; 4]; COUNT],
+    attitude: [[T; 4]; MAX_COUNT],
+    turned: [[T; 4]; MAX_COUNT],
     /// m.
-    pointing: [[T; 3]; COUNT],
+    pointing: [[T; 3]; MAX_COUNT],
     strength: T,
     /// −3μκ of the step.
     on_products: [T; 3],
@@ -59,9 +59,9 @@ impl<L: Number, const R: usize> GravityGradientSeries<Batch<L, R>> {
         Self {
             orbit: OrbitSeries::new(),
             frame: [zero; 4],
-            attitude: [[zero; 4]; COUNT],
-            turned: [[zero; 4]; COUNT],
-            pointing: [[zero; 3]; COUNT],
+            attitude: [[zero; 4]; MAX_COUNT],
+            turned: [[zero; 4]; MAX_COUNT],
+            pointing: [[zero; 3]; MAX_COUNT],
             strength: zero,
             on_products: [zero; 3],
             coefficient: [zero; 3],

@@ -1,11 +1,11 @@
 //! The states that a load has of its own: wheels and slugs.
 
 use super::batch::{Batch, CacheAligned, cross_term, plus};
-use super::double_double_series::COUNT;
-use super::pace::ConvergenceRadius;
 use super::principal_frame::Precision;
+use super::series::MAX_COUNT;
 use super::series::Series;
 use super::step::{compensate, exp2, log2_step};
+use super::variational_series::ConvergenceRadius;
 use crate::motion::loads::Own;
 use crate::motion::loads::variables::WIDTH;
 use crate::numerics::dispatch::{Kernel, dispatch};
@@ -24,7 +24,7 @@ use crate::numerics::number::Number;
 pub(super) struct InternalStates<T> {
     states: Vec<InternalState<T>>,
     /// Σ z g.
-    momentum: [[T; 3]; COUNT],
+    momentum: [[T; 3]; MAX_COUNT],
     inverse_moments: [T; 3],
 }
 
@@ -34,7 +34,7 @@ pub(super) struct InternalStates<T> {
 struct InternalState<T> {
     value: T,
     rest: T,
-    series: [T; COUNT],
+    series: [T; MAX_COUNT],
     torque: [T; 3],
     momentum: [T; 3],
     constant: T,
@@ -56,7 +56,7 @@ impl<L: Number<Real: Precision>, const R: usize> InternalStates<Batch<L, R>> {
         let none = InternalState {
             value: zero,
             rest: zero,
-            series: [zero; COUNT],
+            series: [zero; MAX_COUNT],
             torque: [zero; 3],
             momentum: [zero; 3],
             constant: zero,
@@ -70,7 +70,7 @@ impl<L: Number<Real: Precision>, const R: usize> InternalStates<Batch<L, R>> {
         };
         Self {
             states: vec![none; count],
-            momentum: [[zero; 3]; COUNT],
+            momentum: [[zero; 3]; MAX_COUNT],
             inverse_moments: [zero; 3],
         }
     }
@@ -338,7 +338,7 @@ impl<N: Number<Real: Precision>, S: Series<Batch<N, R>, B>, const R: usize, cons
 }
 
 impl<L: Number, const R: usize> InternalState<Batch<L, R>> {
-    /// As [`increment`](super::step::increment).
+    /// As [`increment`](super::series::increment).
     #[inline(always)]
     fn increment(&self, order: usize, h: Batch<L, R>) -> Batch<L, R> {
         let square = h * h;

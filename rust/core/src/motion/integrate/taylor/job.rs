@@ -3,7 +3,7 @@
 use super::course::PiecewiseEquations;
 use super::drive::{Job, Settings};
 use super::principal_frame::Precision;
-use super::{double_double_series, series};
+use super::series;
 use crate::error::Error;
 use crate::motion::loads::variables::Fixed;
 use crate::motion::loads::{Parts, Term};
@@ -12,9 +12,9 @@ use crate::motion::problem::{End, Run, Task, check_times};
 pub(super) fn choose_settings(task: &Task<'_>, parts: Parts) -> Settings {
     let tolerance = task.tolerance;
     let highest = if tolerance.is_beyond_doubles() {
-        double_double_series::HIGHEST_ORDER
+        series::MAX_ORDER_DOUBLE_DOUBLE
     } else {
-        series::HIGHEST_ORDER
+        series::MAX_ORDER_DOUBLE
     };
     Settings::new(tolerance.relative, tolerance.absolute, highest, parts)
 }

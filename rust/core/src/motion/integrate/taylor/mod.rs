@@ -32,7 +32,6 @@
 mod batch;
 mod batch_series;
 mod course;
-mod directions;
 mod double_double_series;
 mod drive;
 mod formulas;
@@ -46,10 +45,8 @@ mod nonlinear;
 mod one;
 mod orbit_cache;
 mod orbit_series;
-mod pace;
 mod principal_frame;
 mod pulled;
-mod row;
 mod series;
 mod single_series;
 mod step;

@@ -1,7 +1,7 @@
 //! The series of an orbit about its attractor, in the frame that the orbit has at the start of a step.
 
 use super::batch::Batch;
-use super::double_double_series::COUNT;
+use super::series::MAX_COUNT;
 use crate::numerics::number::Number;
 
 /// A Kepler orbit in its plane, lengths over the distance at the start of the step, time in the unit of rates.
@@ -17,23 +17,23 @@ use crate::numerics::number::Number;
 #[derive(Clone, Debug)]
 #[repr(align(64))] // see Batch
 pub(super) struct OrbitSeries<T> {
-    radial: [T; COUNT],
-    around: [T; COUNT],
-    pull: [T; COUNT],
+    radial: [T; MAX_COUNT],
+    around: [T; MAX_COUNT],
+    pull: [T; MAX_COUNT],
     /// a and b.
-    half: [[T; 2]; COUNT],
+    half: [[T; 2]; MAX_COUNT],
 }
 
 impl<L: Number, const R: usize> OrbitSeries<Batch<L, R>> {
     #[inline(always)]
     pub(super) fn new() -> Self {
         let zero = Batch::new(0.0);
-        let mut half = [[zero; 2]; COUNT];
+        let mut half = [[zero; 2]; MAX_COUNT];
         half[0] = [Batch::new(1.0), zero];
         Self {
-            radial: [zero; COUNT],
-            around: [zero; COUNT],
-            pull: [zero; COUNT],
+            radial: [zero; MAX_COUNT],
+            around: [zero; MAX_COUNT],
+            pull: [zero; MAX_COUNT],
             half,
         }
     }
@@ -58,7 +58,7 @@ impl<L: Number, const R: usize> OrbitSeries<Batch<L, R>> {
 
     /// The coefficients of c from order 0 on.
     #[inline(always)]
-    pub(super) fn half_turn(&self) -> &[[Batch<L, R>; 2]; COUNT] {
+    pub(super) fn half_turn(&self) -> &[[Batch<L, R>; 2]; MAX_COUNT] {
         &self.half
     }
 

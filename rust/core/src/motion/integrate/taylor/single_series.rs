@@ -3,8 +3,8 @@
 use std::hint::black_box;
 
 use super::batch::Batch;
-use super::directions::{PairSums, ROOTS, axis, from_squares};
 use super::series::{COUNT, Coefficient, RECIPROCALS, Series};
+use super::series::{PairSums, ROOTS, axis, from_squares};
 use crate::numerics::lane::Lane;
 
 /// `W` numbers in the lanes.

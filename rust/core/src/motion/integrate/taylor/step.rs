@@ -132,34 +132,6 @@ pub(super) fn compensate<L: Number, const R: usize>(
     (*value, *rest) = two_sum(*value, increment + *rest);
 }
 
-/// [`Series::increment`] from the coefficients.
-#[inline(always)]
-pub(super) fn increment<L: Number, const R: usize, const B: usize>(
-    series: &impl Series<Batch<L, R>, B>,
-    order: usize,
-    h: Batch<L, R>,
-) -> [Batch<L, R>; 7] {
-    let square = h * h;
-    let mut odd = [Batch::new(0.0); 7];
-    let mut even = [Batch::new(0.0); 7];
-    for half in (1..=order / 2).rev() {
-        let (one, two) = (series.get(2 * half - 1), series.get(2 * half));
-        for i in 0..3 {
-            odd[i] = odd[i].mul_add(square, one.w[i]);
-            even[i] = even[i].mul_add(square, two.w[i]);
-        }
-        for i in 0..4 {
-            odd[3 + i] = odd[3 + i].mul_add(square, one.q[i]);
-            even[3 + i] = even[3 + i].mul_add(square, two.q[i]);
-        }
-    }
-    let mut sum = [Batch::new(0.0); 7];
-    for i in 0..7 {
-        sum[i] = even[i].mul_add(h, odd[i]) * h;
-    }
-    sum
-}
-
 /// The longest step for which the last two terms of the series are `tolerance` (as a logarithm to base 2) at most:
 /// those of ω relative to `scale`, those of the attitude to one, in the norm of the largest magnitude.
 ///

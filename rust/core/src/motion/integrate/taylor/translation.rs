@@ -1,8 +1,8 @@
 //! The path of a free body under forces: `m v̇ = F`, with F constant in space and in the body.
 
 use super::batch::Batch;
-use super::double_double_series;
 use super::linear_terms::LinearTerms;
+use super::series;
 use super::series::Series;
 use super::step::compensate;
 use crate::numerics::number::{Number, Real};
@@ -13,7 +13,7 @@ use crate::numerics::number::{Number, Real};
 pub(super) struct Translation<T> {
     value: [T; 6],
     rest: [T; 6],
-    acceleration: [[T; 3]; double_double_series::COUNT],
+    acceleration: [[T; 3]; series::MAX_COUNT],
 }
 
 impl<L: Number, const R: usize> Translation<Batch<L, R>> {
@@ -23,7 +23,7 @@ impl<L: Number, const R: usize> Translation<Batch<L, R>> {
         Self {
             value: [zero; 6],
             rest: [zero; 6],
-            acceleration: [[zero; 3]; double_double_series::COUNT],
+            acceleration: [[zero; 3]; series::MAX_COUNT],
         }
     }
 

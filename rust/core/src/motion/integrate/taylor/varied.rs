@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use super::course::{PiecewiseEquations, parts};
 use super::drive::{Job, SampleSink, Settings, drive};
 use super::orbit_cache::OrbitSeriesCache;
-use super::row::ORDER;
+use super::variational_series::ORDER;
 use super::variational_series::VariationalSeries;
 use crate::error::{Error, MotionFault};
 use crate::motion::loads::Term;

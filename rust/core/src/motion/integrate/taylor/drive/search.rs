@@ -6,8 +6,8 @@
 
 use super::lanes::{Landing, Lanes};
 use crate::motion::integrate::taylor::batch::Batch;
-use crate::motion::integrate::taylor::double_double_series::COUNT;
 use crate::motion::integrate::taylor::principal_frame::Precision;
+use crate::motion::integrate::taylor::series::MAX_COUNT;
 use crate::motion::integrate::taylor::series::Series;
 use crate::numerics::number::Number;
 use crate::numerics::sign_changes::sign_changes;
@@ -57,7 +57,7 @@ where
             return switch_times;
         }
         let mut add_zeros = |value: &dyn Fn(usize) -> f64, side: f64| {
-            let mut coefficients = [0.0; COUNT];
+            let mut coefficients = [0.0; MAX_COUNT];
             let coefficients = &mut coefficients[..=self.settings.order];
             let mut power = 1.0;
             for (k, coefficient) in coefficients.iter_mut().enumerate() {
