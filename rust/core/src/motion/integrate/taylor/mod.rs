@@ -31,30 +31,26 @@
 
 mod batch;
 mod batch_series;
-mod course;
 mod double_double_series;
-mod drive;
+mod driver;
+mod equations;
 mod formulas;
 mod gravity_gradient;
 mod internal_states;
-mod job;
-mod kernels;
 mod linear_terms;
-mod many;
 mod nonlinear;
-mod one;
 mod orbit_cache;
 mod orbit_series;
 mod principal_frame;
+mod run;
 mod series;
 mod single_series;
 mod step;
+mod stops;
 mod translation;
 mod variational_series;
-mod varied;
 
-pub(crate) use drive::Step;
-pub use many::solve_many;
-pub use one::solve_one;
-pub(crate) use one::solve_with_observer;
-pub(super) use varied::solve_variational;
+pub(super) use run::solve_variational;
+pub(crate) use run::solve_with_observer;
+pub use run::{solve_many, solve_one};
+pub(crate) use step::Step;

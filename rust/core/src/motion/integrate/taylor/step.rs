@@ -1,9 +1,12 @@
 //! One step: how long it may be, and the state at its end or anywhere within it.
 
-use std::ops::{Index, IndexMut};
+use std::ops::{ControlFlow, Index, IndexMut};
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::batch::Batch;
 use super::series::{Coefficient, Series};
+use crate::motion::state::Phase;
 use crate::numerics::double_double::two_sum;
 use crate::numerics::number::Number;
 
@@ -206,6 +209,87 @@ pub(super) fn exp2(x: f64) -> f64 {
     let power = f64::from_bits(last_bits.wrapping_add(1023) << 52);
     power * (1.0 + part * (0.6565 + 0.3435 * part))
 }
+
+/// A step: polynomials in the time since its start, in body axes and real units.
+#[derive(Clone, Debug)]
+pub(crate) struct Step {
+    /// When it begins and ends, since the start of the motion.
+    pub(crate) ends: [f64; 2],
+    /// What rounding left out of its beginning.
+    pub(super) rest: f64,
+    /// The unit of rates: its polynomials are in time times this.
+    pub(super) unit: f64,
+    /// ω and (x, y, z, w), from order 1 on; before those the state at the start, and what rounding left out of it.
+    pub(super) state: [f64; 7],
+    pub(super) change: [f64; 7],
+    pub(super) series: Vec<[f64; 7]>,
+    /// Position and velocity, where they do not go on evenly.
+    pub(super) path: Vec<[f64; 6]>,
+    /// The states of the load, from order 0 on, and what rounding left out at the start.
+    pub(super) own: Vec<Vec<f64>>,
+    pub(super) own_change: Vec<f64>,
+    /// Position and velocity at the start of the motion.
+    pub(super) initial: [Vector3<f64>; 2],
+}
+
+impl Step {
+    /// The state at a time since the start of the motion.
+    pub(crate) fn at(&self, elapsed: f64) -> Phase {
+        let within = ((elapsed - self.ends[0]) - self.rest) * self.unit;
+        let mut sum = [0.0; 7];
+        for order in self.series.iter().rev() {
+            for (sum, coefficient) in sum.iter_mut().zip(order) {
+                *sum = *sum * within + coefficient;
+            }
+        }
+        for ((sum, state), change) in sum.iter_mut().zip(&self.state).zip(&self.change) {
+            *sum = state + (*sum * within + change);
+        }
+        let [x, y, z, i, j, k, w] = sum;
+        let [position, velocity] = self.path_at(elapsed, within);
+        Phase {
+            attitude: UnitQuaternion::new_normalize(Quaternion::new(w, i, j, k)),
+            omega: Vector3::new(x, y, z),
+            position,
+            velocity,
+            own: self.own_at(within),
+        }
+    }
+
+    fn own_at(&self, within: f64) -> Box<[f64]> {
+        let states = self.own_change.iter().enumerate().map(|(i, change)| {
+            let higher = self.own[1..].iter().rev();
+            let sum = higher.fold(0.0, |sum, order| (sum + order[i]) * within);
+            self.own[0][i] + (sum + change)
+        });
+        states.collect()
+    }
+
+    fn path_at(&self, elapsed: f64, within: f64) -> [Vector3<f64>; 2] {
+        if self.path.is_empty() {
+            let [position, velocity] = self.initial;
+            return [position + velocity * elapsed, velocity];
+        }
+        let mut sum = [0.0; 6];
+        for order in self.path.iter().rev() {
+            for (sum, coefficient) in sum.iter_mut().zip(order) {
+                *sum = *sum * within + coefficient;
+            }
+        }
+        let [x, y, z, u, v, w] = sum;
+        [Vector3::new(x, y, z), Vector3::new(u, v, w) * self.unit]
+    }
+
+    /// How far it turns, about, in radians.
+    pub(crate) fn turn(&self) -> f64 {
+        let speed = |phase: &Phase| phase.omega.norm();
+        let fastest = speed(&self.at(self.ends[0])).max(speed(&self.at(self.ends[1])));
+        (self.ends[1] - self.ends[0]).abs() * fastest
+    }
+}
+
+/// Gets each step of a motion as it is made, and whether the motion has ended with it; may stop the run.
+pub(super) type Observer<'a> = &'a mut dyn FnMut(Step, bool) -> ControlFlow<()>;
 
 #[cfg(test)]
 mod tests {
