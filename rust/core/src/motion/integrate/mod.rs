@@ -9,17 +9,13 @@
 //! | splitting | `splitting` | loads without damping over long times: the energy does not drift |
 
 pub(crate) mod dop853;
-mod first_step;
 pub(crate) mod radau;
 mod runge_kutta;
 pub(crate) mod splitting;
-mod system;
-mod tableau;
 pub mod taylor;
 pub mod variation;
 
 pub(crate) use dop853::Dop853;
 pub(crate) use radau::Radau;
-pub(crate) use runge_kutta::RungeKutta;
+pub(crate) use runge_kutta::{Compensated, RungeKutta, System};
 pub(crate) use splitting::Splitting;
-pub(crate) use system::{Compensated, System};

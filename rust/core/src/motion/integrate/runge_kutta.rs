@@ -2,10 +2,75 @@
 
 use nalgebra::SVector;
 
-use super::first_step::first_step;
-use super::system::{Compensated, System};
 use crate::error::{Error, MotionFault};
-use crate::numerics::double_double::fast_two_sum;
+use crate::numerics::double_double::{fast_two_sum, two_sum};
+
+/// The equations that a stepper solves.
+pub(crate) trait System<const N: usize> {
+    /// What evaluating the equations may go wrong with, besides what the stepper itself may refuse.
+    type Error: From<Error>;
+
+    /// `f(t, y)` into `slope`, all numbers of it. It is not returned, since a copy of it would wait until it is written.
+    ///
+    /// # Errors
+    /// Ends the integration and comes back to the caller as it is.
+    fn derivative(
+        &mut self,
+        t: f64,
+        y: &SVector<f64, N>,
+        slope: &mut SVector<f64, N>,
+    ) -> Result<(), Self::Error>;
+
+    /// The size of `error` in a step from `y` to `y_new`, in units of what is allowed: at most one is accepted.
+    fn error_norm(
+        &self,
+        y: &SVector<f64, N>,
+        y_new: &SVector<f64, N>,
+        error: &SVector<f64, N>,
+    ) -> f64;
+
+    /// Called with each accepted state: puts it back on the manifold it belongs to, and takes note of it.
+    fn accept(&mut self, y: &mut Compensated<N>);
+}
+
+/// A state with the rounding errors of its increments carried along, so that many small steps add up as few large ones.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Compensated<const N: usize> {
+    /// The rounded state.
+    pub value: SVector<f64, N>,
+    /// What rounding has left out so far.
+    rest: SVector<f64, N>,
+}
+
+impl<const N: usize> Compensated<N> {
+    /// The state `value`, exactly.
+    #[must_use]
+    #[inline]
+    pub(crate) fn new(value: SVector<f64, N>) -> Self {
+        Self {
+            value,
+            rest: SVector::zeros(),
+        }
+    }
+
+    /// The state with `increment` added.
+    #[must_use]
+    #[inline]
+    pub(crate) fn plus(&self, increment: &SVector<f64, N>) -> Self {
+        let mut sum = *self;
+        for i in 0..N {
+            (sum.value[i], sum.rest[i]) = two_sum(self.value[i], increment[i] + self.rest[i]);
+        }
+        sum
+    }
+
+    /// What rounding has left out of `value`.
+    #[must_use]
+    #[inline]
+    pub(crate) fn rest(&self) -> &SVector<f64, N> {
+        &self.rest
+    }
+}
 
 /// How far an integration has come.
 #[derive(Clone, Debug)]
@@ -183,4 +248,39 @@ pub(crate) trait RungeKutta<const N: usize>: Sized {
     fn state(&self) -> &SVector<f64, N> {
         &self.progress().state.value
     }
+}
+
+/// A step that a method whose error is of the order 1/`exponent` may try first, at most `span`, with its sign; takes one
+/// evaluation of the equations.
+///
+/// `y`, `slope`: the state and `f(start, y)`. Source: Hairer, Nørsett & Wanner, Solving ODEs I, §II.4.
+///
+/// # Errors
+/// What the equations refuse.
+fn first_step<S: System<N>, const N: usize>(
+    system: &mut S,
+    start: f64,
+    span: f64,
+    y: &SVector<f64, N>,
+    slope: &SVector<f64, N>,
+    exponent: f64,
+) -> Result<f64, S::Error> {
+    let (size, speed) = (system.error_norm(y, y, y), system.error_norm(y, y, slope));
+    let trial = if speed > 0.0 && speed.is_finite() {
+        0.01 * size / speed
+    } else {
+        1e-3 * span.abs()
+    };
+    let trial = trial.min(span.abs()).copysign(span);
+    let there = y + slope * trial;
+    let mut later = SVector::zeros();
+    system.derivative(start + trial, &there, &mut later)?;
+    let bend = system.error_norm(y, &there, &(later - slope)) / trial.abs();
+    let fastest = speed.max(bend);
+    let step = if fastest > 0.0 && fastest.is_finite() {
+        (0.01 / fastest).powf(exponent).min(100.0 * trial.abs())
+    } else {
+        trial.abs()
+    };
+    Ok(step.min(span.abs()).copysign(span))
 }
