@@ -2,7 +2,6 @@
 
 use super::body::{Body, Point};
 use super::scheme::Scheme;
-use super::step_length::{self, allowed, cheapest, rate};
 use crate::error::{Error, MotionFault};
 use crate::motion::euler_equations::EulerEquations;
 use crate::motion::loads::Load;
@@ -18,6 +17,20 @@ const LEAST: f64 = 1e-4;
 /// Steps between two checks at most, and how much faster than at the last one the body may turn until the next.
 const UNCHECKED: u32 = 64;
 const FASTER: f64 = 1.05;
+
+/// Steps that are tried to find out how long a step may be.
+const TRIALS: usize = 6;
+/// Rounds of that search.
+const ROUNDS: usize = 5;
+/// Of the length of step at which a trial just meets the tolerance.
+const SAFETY: f64 = 0.9;
+
+/// Steps for each radian up to which a step may err by all that it is told to. Of more steps each may err by less, as their
+/// errors add up within the same turn.
+const PER_RADIAN: f64 = 20.0;
+
+/// What rounding alone does to a step.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// An integration under way.
 ///
@@ -233,7 +246,7 @@ impl Splitting {
                 return Ok(point);
             }
             let order = f64::from(self.scheme.order());
-            let factor = (step_length::SAFETY * error.powf(-1.0 / (order + 1.0))).max(0.02);
+            let factor = (SAFETY * error.powf(-1.0 / (order + 1.0))).max(0.02);
             self.chosen = h * factor;
             if self.elapsed() + self.chosen == self.elapsed() {
                 let (time, step) = (self.start + self.elapsed(), self.chosen);
@@ -258,5 +271,211 @@ impl Splitting {
         (self.body).step(self.scheme, &mut point, load, at, elapsed - from)?;
         self.evaluations += self.scheme.kicks() as u64;
         Ok(self.body.phase(&point))
+    }
+}
+
+/// What a step of length `h` may err by when the body moves by `rate` radians a time.
+fn allowed(tolerance: f64, h: f64, rate: f64) -> f64 {
+    let steps = 1.0 / (h * rate).abs();
+    if steps.is_finite() {
+        (tolerance * (PER_RADIAN / steps).min(1.0)).max(tolerance.min(ROUNDING))
+    } else {
+        tolerance // at rest
+    }
+}
+
+/// The scheme that takes fewest kicks at the length of step at which it meets the tolerance.
+fn cheapest<L: Load>(
+    body: &Body,
+    point: &Point,
+    load: &mut L,
+    start: f64,
+    span: f64,
+    tolerance: f64,
+    evaluations: &mut u64,
+) -> Result<(Scheme, f64), L::Error> {
+    let mut best: Option<(f64, Scheme, f64)> = None;
+    for scheme in Scheme::ALL {
+        let step = longest(
+            body,
+            point,
+            load,
+            start,
+            span,
+            tolerance,
+            scheme,
+            evaluations,
+        )?;
+        let cost = scheme.kicks() as f64 / step.abs();
+        if best.is_none_or(|(least, ..)| cost < least) {
+            best = Some((cost, scheme, step));
+        }
+    }
+    Ok(best.map_or((Scheme::Strang, span), |(_, scheme, step)| (scheme, step)))
+}
+
+/// The length of step at which one step differs from two halves by no more than the tolerance, over the first few steps.
+#[expect(clippy::too_many_arguments, reason = "one search, said in full")]
+fn longest<L: Load>(
+    body: &Body,
+    point: &Point,
+    load: &mut L,
+    start: f64,
+    span: f64,
+    tolerance: f64,
+    scheme: Scheme,
+    evaluations: &mut u64,
+) -> Result<f64, L::Error> {
+    let rate = rate(body, point, load, start)?;
+    let most = span.abs() / TRIALS as f64;
+    // A twentieth of a turn or a swing.
+    let first = std::f64::consts::TAU / 20.0 / rate;
+    let mut step = if first < most { first } else { most }.copysign(span);
+    for _ in 0..ROUNDS {
+        let mut worst: f64 = 0.0;
+        let mut fine = *point;
+        let mut reached = 0.0;
+        for _ in 0..TRIALS {
+            if (reached + step).abs() > span.abs() {
+                break;
+            }
+            let mut coarse = fine;
+            let at = start + reached;
+            body.step(scheme, &mut coarse, load, at, step)?;
+            body.step(scheme, &mut fine, load, at, 0.5 * step)?;
+            body.step(scheme, &mut fine, load, at + 0.5 * step, 0.5 * step)?;
+            *evaluations += 3 * scheme.kicks() as u64;
+            let allowed = allowed(tolerance, step, rate);
+            worst = worst.max(body.difference(&coarse, &fine) / allowed);
+            reached += step;
+        }
+        if worst == 0.0 && reached != 0.0 {
+            return Ok(span); // the load does nothing
+        }
+        let factor = if reached == 0.0 {
+            0.25 // longer than the span
+        } else {
+            SAFETY * worst.powf(-1.0 / f64::from(scheme.order() + 1))
+        };
+        let next = step * factor.clamp(0.02, 50.0);
+        if (0.8..1.1).contains(&factor) {
+            return Ok(next);
+        }
+        step = next.abs().min(span.abs() / TRIALS as f64).copysign(span);
+    }
+    Ok(step)
+}
+
+/// How fast the body turns, or swings, in radians a time.
+fn rate<L: Load>(body: &Body, point: &Point, load: &mut L, at: f64) -> Result<f64, L::Error> {
+    let phase = body.phase(point);
+    let torque = load.wrench(at, &phase)?.torque;
+    let along = body.q_bp.inverse_transform_vector(&torque);
+    let swing: f64 = (along.iter().zip(body.moments))
+        .filter(|&(_, moment)| moment > 0.0)
+        .map(|(torque, moment)| (torque / moment).abs())
+        .fold(0.0, f64::max);
+    Ok(phase.omega.norm().max(swing.sqrt()))
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+
+    use super::*;
+    use crate::mass::RigidBody;
+    use crate::motion::euler_equations::EulerEquations;
+    use crate::motion::loads::{Analytic, Subject, Term};
+    use crate::motion::state::{Phase, State};
+
+    #[test]
+    fn many_steps_in_a_radian_may_err_by_less_each_down_to_rounding() {
+        // Up to twenty steps a radian all of it, of forty half.
+        for (steps, part) in [(10.0, 1.0), (19.9, 1.0), (20.1, 0.995), (40.0, 0.5)] {
+            let found = allowed(1e-6, -1.0 / steps / 3.0, 3.0) / 1e-6;
+            assert!((found - part).abs() < 1e-4, "{steps} {found}");
+        }
+        assert_eq!(allowed(1e-6, 1e-300, 0.0), 1e-6);
+        // A step cannot err by less than rounding, nor by more than it is told to.
+        assert_eq!(allowed(1e-14, 1e-5, 1.0), ROUNDING);
+        assert_eq!(allowed(0.5 * ROUNDING, 1e-5, 1.0), 0.5 * ROUNDING);
+    }
+
+    fn top(moments: [f64; 3]) -> RigidBody {
+        let center = Vector3::new(0.0, 0.0, 0.6);
+        RigidBody::from_principal(1.3, &moments, &Matrix3::identity(), &center, 0.0).expect("body")
+    }
+
+    fn energy(body: &RigidBody, phase: &Phase) -> f64 {
+        let tensor = body.inertia_about(&Vector3::zeros());
+        let height = (phase.attitude * body.center_of_mass()).z;
+        0.5 * phase.omega.dot(&(tensor * phase.omega)) + body.mass() * 9.81 * height
+    }
+
+    #[test]
+    fn energy_and_vertical_momentum_of_a_heavy_body_do_not_drift() {
+        for moments in [[0.9, 0.9, 0.5], [0.7, 0.9, 0.5]] {
+            let body = top(moments);
+            let euler = EulerEquations::about(&body, &Vector3::zeros());
+            let phase = Phase::in_place(&State {
+                attitude: UnitQuaternion::from_euler_angles(0.8, 0.2, 0.1),
+                omega: Vector3::new(0.3, 0.1, 12.0),
+            });
+            let gravity = [Term::uniform_gravity(&Vector3::new(0.0, 0.0, -9.81)).expect("finite")];
+            let mut load = Analytic::new(&gravity, Subject::pivoted(&body, 0.0));
+            let times = [0.0, 200.0];
+            let mut run =
+                Splitting::new(&euler, None, times, &phase, &mut load, 1e-8, None).expect("smooth");
+            let vertical = |phase: &Phase| {
+                let tensor = body.inertia_about(&Vector3::zeros());
+                (phase.attitude * (tensor * phase.omega)).z
+            };
+            let (e, l) = (energy(&body, &phase), vertical(&phase));
+            let (mut first, mut second): (f64, f64) = (0.0, 0.0);
+            while run.elapsed() < 200.0 {
+                run.advance(&mut load).expect("smooth");
+                let change = (energy(&body, &run.phase()) / e - 1.0).abs();
+                if run.elapsed() <= 100.0 {
+                    first = first.max(change);
+                } else {
+                    second = second.max(change);
+                }
+                assert!((vertical(&run.phase()) / l - 1.0).abs() < 1e-13);
+            }
+            assert!(second <= 1.5 * first + 1e-13, "{first:e} {second:e}");
+            assert!(first < 1e-6, "{first:e}");
+        }
+    }
+
+    #[test]
+    fn between_steps_and_backward() {
+        let body = top([0.7, 0.9, 0.5]);
+        let euler = EulerEquations::about(&body, &Vector3::zeros());
+        let phase = Phase::in_place(&State {
+            attitude: UnitQuaternion::from_euler_angles(0.8, 0.2, 0.1),
+            omega: Vector3::new(0.3, 0.1, 3.0),
+        });
+        let gravity = [Term::uniform_gravity(&Vector3::new(0.0, 0.0, -9.81)).expect("finite")];
+        let mut load = Analytic::new(&gravity, Subject::pivoted(&body, 0.0));
+        let mut go = |times: [f64; 2], phase: &Phase| {
+            let mut run =
+                Splitting::new(&euler, None, times, phase, &mut load, 1e-12, None).expect("smooth");
+            let mut between = phase.clone();
+            while run.elapsed() != times[1] - times[0] {
+                let from = run.elapsed();
+                run.advance(&mut load).expect("smooth");
+                let middle = 0.5 * (times[1] - times[0]);
+                if (from - middle) * (run.elapsed() - middle) <= 0.0 {
+                    between = run.within(middle, &mut load).expect("smooth");
+                }
+            }
+            (between, run.phase())
+        };
+        let (middle, end) = go([1.0, 3.0], &phase);
+        let (_, again) = go([2.0, 3.0], &middle);
+        let (_, back) = go([3.0, 1.0], &end);
+        assert!(end.attitude.angle_to(&again.attitude) < 1e-10);
+        assert!(back.attitude.angle_to(&phase.attitude) < 1e-10);
+        assert!((back.omega - phase.omega).norm() < 1e-9);
     }
 }

@@ -8,17 +8,11 @@
 //! |---|---|
 //! | `method` | equal steps to the end of a span, and the checks of their length |
 //! | [`scheme`] | the compositions of kicks and free motions |
-//! | `step_length` | how long the steps may be, and which scheme then takes fewest kicks |
 //! | `body` | a body between kicks, and kicked |
-//! | `short_turn` | the free motion over a short time |
 
 mod body;
 mod method;
 pub(crate) mod scheme;
-mod short_turn;
-mod step_length;
-#[cfg(test)]
-mod tests;
 
 pub(crate) use self::method::Splitting;
 pub(crate) use self::scheme::Scheme;
