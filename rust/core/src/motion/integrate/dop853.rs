@@ -20,7 +20,7 @@ pub(crate) struct Dop853<const N: usize> {
     slopes: [SVector<f64, N>; EXTENDED_STAGES],
     /// Time and state before the last accepted step, and its length.
     last: (f64, SVector<f64, N>, f64),
-    /// Its polynomial, once it is asked for.
+    /// Its polynomial, once it is computed.
     dense: Option<Dense<N>>,
 }
 
@@ -98,10 +98,10 @@ impl<const N: usize> RungeKutta<N> for Dop853<N> {
 }
 
 impl<const N: usize> Dop853<N> {
-    /// The states during the last accepted step as a polynomial in time.
+    /// Compute the polynomial in time through the last accepted step.
     ///
     /// # Errors
-    /// What the equations refuse in the three more evaluations it takes.
+    /// Errors of the equations in its three additional evaluations.
     #[inline]
     fn polynomial<S: System<N>>(&mut self, system: &mut S) -> Result<Dense<N>, S::Error> {
         let (start, y, h) = self.last;
@@ -138,7 +138,7 @@ impl<const N: usize> Dop853<N> {
         sum
     }
 
-    /// The estimate of order 5, damped by that of order 3, in units of what is allowed.
+    /// Estimate the error: the estimate of order 5, damped by that of order 3, in units of the error allowed.
     #[inline]
     fn error<S: System<N>>(
         &self,
@@ -167,7 +167,7 @@ struct Dense<const N: usize> {
 }
 
 impl<const N: usize> Dense<N> {
-    /// The state at `elapsed` since the start of the integration.
+    /// Compute the state at `elapsed` since the start of the integration.
     #[inline]
     fn at(&self, elapsed: f64) -> SVector<f64, N> {
         let x = (elapsed - self.start) / self.step;

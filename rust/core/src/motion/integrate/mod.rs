@@ -3,7 +3,7 @@
 //! | method | file | for |
 //! |---|---|---|
 //! | Taylor series | [`taylor`] | analytic loads: as accurate as the numbers can be |
-//! | DOP853 | `dop853` | loads that are smooth but not analytic to us: callbacks |
+//! | DOP853 | `dop853` | loads whose series are not known: callbacks |
 //! | Radau IIA | `radau` | stiff loads: strong damping, stiff control |
 //! | Taylor series with derivatives | [`variation`] | how a motion under analytic loads depends on what it is computed from |
 //! | splitting | `splitting` | loads without damping over long times: the energy does not drift |

@@ -135,7 +135,7 @@ impl<const N: usize> Radau<N> {
         progress.slope(system, elapsed, &y, &mut self.slope)
     }
 
-    /// The factor by the errors of this step and the one before (Gustafsson).
+    /// Predict the factor of the step from the errors of this step and the one before (Gustafsson).
     fn predicted(&self, h: f64, error: f64, safety: f64) -> f64 {
         match &self.last {
             Some((last, before)) if error > 0.0 && *before > 0.0 => {
@@ -145,14 +145,14 @@ impl<const N: usize> Radau<N> {
         }
     }
 
-    /// `∂f/∂y` by differences: Newton's iteration needs its size and direction, not its digits.
+    /// Compute `∂f/∂y` by differences: Newton's iteration needs no more than a few digits of it.
     fn linearize<S: System<N>>(&mut self, system: &mut S) -> Result<(), S::Error> {
         let (y, slope) = (self.progress.state.value, self.slope);
         let size = system.error_norm(&y, &y, &y);
         for j in 0..N {
             let mut unit = SVector::<f64, N>::zeros();
             unit[j] = 1.0;
-            // The largest value of the group that the component belongs to, as the norm weighs it.
+            // The largest value in the group of the component, with the weights of the norm.
             let group = size / system.error_norm(&y, &y, &unit);
             let scale = [group, (slope[j] * self.progress.step).abs()]
                 .into_iter()
@@ -173,8 +173,8 @@ impl<const N: usize> Radau<N> {
         Ok(())
     }
 
-    /// The stages of a step of length h by Newton's iteration with the Jacobian at hand, the number of iterations and how fast they
-    /// converged; `None` when they do not.
+    /// Compute the stages of a step of length h by Newton's iteration with the present Jacobian; return also the number of iterations and
+    /// their rate of convergence, or `None` if they do not converge.
     fn collocate<S: System<N>>(
         &mut self,
         system: &mut S,
@@ -208,7 +208,7 @@ impl<const N: usize> Radau<N> {
                 *total += change;
             }
             stages = combined(&T, &transformed);
-            // Against the end of the step: what is zero at its start, as a body's place may be, has no size of its own there.
+            // Relative to the end of the step: a component may be zero at its start, for example the position of a body.
             let end = y + stages[2];
             let norm = (change.iter())
                 .map(|part| system.error_norm(&y, &end, part))
@@ -238,8 +238,8 @@ impl<const N: usize> Radau<N> {
         Ok(None)
     }
 
-    /// The estimate of the error in units of what is allowed; where a step was rejected, filtered once more, since the raw
-    /// estimate is far too large for what decays fast.
+    /// Estimate the error in units of the error allowed. After a rejected step the estimate is filtered once more, because the raw one is
+    /// far too large for components that decay fast.
     fn error<S: System<N>>(
         &mut self,
         system: &mut S,
@@ -298,7 +298,7 @@ impl<const N: usize> Dense<N> {
         }
     }
 
-    /// The state at `elapsed` since the start of the integration.
+    /// Compute the state at `elapsed` since the start of the integration.
     fn at(&self, elapsed: f64) -> SVector<f64, N> {
         let x = (elapsed - self.start) / self.step;
         let [first, second, third] = &self.coefficients;
@@ -306,11 +306,11 @@ impl<const N: usize> Dense<N> {
     }
 }
 
-/// `∂f/∂y`, and the sizes of the components of y.
+/// The Jacobian `∂f/∂y`, and the sizes of the components of y.
 #[derive(Clone, Debug)]
 struct Jacobian<const N: usize> {
     matrix: DMatrix<f64>,
-    /// Exponents of the powers of two that are their units.
+    /// Exponents of the powers of two that are the units of the components.
     units: SVector<i32, N>,
 }
 
@@ -322,7 +322,7 @@ impl<const N: usize> Jacobian<N> {
         }
     }
 
-    /// The derivatives by component j, about as large as `size`, from a change of it.
+    /// Set the derivatives by component j, whose size is about `size`, from a change `by` of it.
     fn set(&mut self, j: usize, size: f64, change: &SVector<f64, N>, by: f64) {
         self.units[j] = exponent(size);
         for i in 0..N {
@@ -330,7 +330,7 @@ impl<const N: usize> Jacobian<N> {
         }
     }
 
-    /// The matrix in units of the components and `2^time` of the time.
+    /// Compute the matrix in the units of the components and the unit `2^time` of time.
     fn in_units(&self, time: i32) -> DMatrix<f64> {
         DMatrix::from_fn(N, N, |i, j| {
             times_power_of_two(self.matrix[(i, j)], time + self.units[j] - self.units[i])
@@ -338,8 +338,8 @@ impl<const N: usize> Jacobian<N> {
     }
 }
 
-/// `γ/h − J` and `(α + iβ)/h − J`, factored, in the units of J and a unit of time near h: no product of pivots overflows or
-/// underflows, and a pivot is large beside what it is to be compared with.
+/// The matrices of Newton's iteration, `γ/h − J` and `(α + iβ)/h − J`, factored, in the units of J and a unit of time near h. With these
+/// units no product of pivots overflows or underflows, and pivots are compared in the same unit.
 #[derive(Clone, Debug)]
 struct Factors<const N: usize> {
     step: f64,
@@ -367,7 +367,7 @@ impl<const N: usize> Factors<N> {
         }
     }
 
-    /// Not numbers where the matrix is singular or none.
+    /// Return the solution; NaN if the matrix is singular or not finite.
     fn solve_real(&self, right: &SVector<f64, N>) -> SVector<f64, N> {
         let right = SVector::from_fn(|i, _| self.inward(right[i], i));
         let solution = self.real.solve(&right);
@@ -389,14 +389,15 @@ impl<const N: usize> Factors<N> {
         })
     }
 
-    /// A rate of component i, in the units.
+    /// Convert a rate of component i to the units.
     #[inline]
     fn inward(&self, rate: f64, i: usize) -> f64 {
         times_power_of_two(rate, self.time - self.units[i])
     }
 }
 
-/// `P A = L U`: each column holds that of L below the diagonal, where L has ones, and that of U from the diagonal up.
+/// A factored matrix, `P A = L U`: each column contains that of L below the diagonal, where L has ones, and that of U from the diagonal
+/// up. Its size is a constant, because a run solves with it thousands of times.
 #[derive(Clone, Debug)]
 struct Triangles<T: nalgebra::ComplexField, const N: usize> {
     rows: PermutationSequence<Dyn>,
@@ -414,7 +415,7 @@ impl<T: nalgebra::ComplexField + Copy + AddAssign, const N: usize> Triangles<T, 
         }
     }
 
-    /// The solution of `A x = right`; nothing where the matrix is singular.
+    /// Solve `A x = right`; `None` if the matrix is singular.
     #[inline]
     fn solve(&self, right: &SVector<T, N>) -> Option<SVector<T, N>> {
         let mut x = *right;
@@ -668,7 +669,7 @@ mod tests {
         fn accept(&mut self, _: &mut Compensated<2>) {}
     }
 
-    // To go on to rounding takes 14.6, 10.8 and 9.1 of them.
+    // Iterations down to rounding need 14.6, 10.8 and 9.1 evaluations a step.
     #[test]
     fn iterations_end_where_the_tolerance_needs_no_more() {
         for (tolerance, most) in [(1e-4, 9.5), (1e-6, 8.5), (1e-8, 7.75)] {

@@ -1,7 +1,7 @@
-//! What small changes at the start, of the body or of the load have become at a time: the derivatives of a motion.
+//! The derivatives of a motion: effects at a later time of small changes of the start, of the body, or of the load.
 //!
-//! Every number of the equations carries its derivatives by the variables with it, through the series of
-//! [`taylor`](super::taylor). Eight variables are varied at a time, each eight in a run of its own.
+//! Every number of the equations carries its derivatives by the variables, through the series of [`taylor`](super::taylor). A run
+//! computes the derivatives by eight variables.
 //!
 //! Source: Hairer, Nørsett & Wanner, Solving ODEs I, §I.14; where a law changes its torque with the state, Filippov's rule for
 //! derivatives ("saltation"), di Bernardo et al., Piecewise-smooth Dynamical Systems, §2.5.
@@ -18,35 +18,36 @@ use crate::motion::loads::variables::{
 };
 use crate::motion::problem::{Task, check_times};
 
-/// Derivatives of (δ, ω) at a time: δ is a small rotation of the body from its attitude, `R → R exp(δ×)`, components in the body
-/// frame as it stands at that time, ω likewise in the body frame.
+/// Derivatives of (δ, ω) at a time. δ is a small rotation of the body from its attitude, `R → R exp(δ×)`; its components and those of ω
+/// are in the body frame at that time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variation {
     /// By (δ, ω) at the start.
     pub state: Matrix6<f64>,
-    /// By the principal moments about the reference point, ascending, with axes, centre of mass and mass held. NaN, as are
-    /// `products`, for a body with a zero moment, which has no neighbours on one side.
+    /// By the principal moments about the reference point, ascending, with constant axes, centre of mass and mass. NaN, like `products`,
+    /// for a body with a zero moment, which has neighbours on one side only.
     pub moments: Matrix6x3<f64>,
     /// By the elements 23, 31, 12 of that tensor in its principal axes, which are minus products of inertia.
     pub products: Matrix6x3<f64>,
-    /// By the centre of mass from the origin of B, with the tensor about the reference point held.
+    /// By the centre of mass from the origin of B, with a constant tensor about the reference point.
     pub center_of_mass: Matrix6x3<f64>,
     /// By the mass.
     pub mass: Vector6<f64>,
     /// By the numbers of the load's terms, one after the other, in the order of [`Term::parameters`].
     pub load: Vec<Vector6<f64>>,
-    /// By the states that the load has of its own at the start, each with the others held.
+    /// By the states of the load at the start, each with the others constant.
     pub own: Vec<Vector6<f64>>,
     /// The derivatives of these states, by all of that in this order.
     pub of_own: Vec<Vec<f64>>,
-    /// Those of the states at the start by ω there, of states that begin with it and are not given. By ω the others hold them.
+    /// The derivatives of the initial states of the load by the initial ω, for states that depend on it and are not given. Derivatives by
+    /// ω elsewhere are at constant states.
     pub begins: Vec<Vector3<f64>>,
 }
 
-/// The derivatives of the motion of `task` under `terms` at the times of the task; its method and tolerance do not matter.
+/// Compute the derivatives of the motion of `task` under `terms` at the times of the task; its method and tolerance do not matter.
 ///
-/// `given` tells of each state of the load whether it is what the task says, whatever the numbers of the load are; the states that
-/// it leaves out are what the load begins with.
+/// `given` is true for each state of the load that the task gives, independent of the numbers of the load. The other states begin with
+/// the values that follow from the load.
 ///
 /// `watch` gets the fraction done and may stop it.
 ///
@@ -148,7 +149,7 @@ pub fn variations(
 }
 
 impl Variation {
-    /// Whether all are numbers, those by the tensor among them where it has neighbours.
+    /// Return whether all are finite; those by the tensor count only if it has neighbours.
     fn is_finite(&self, has_neighbours: bool) -> bool {
         let of_tensor = self.moments.iter().chain(&self.products);
         let of_load = (self.load.iter().chain(&self.own)).flat_map(|slopes| slopes.iter());
@@ -180,7 +181,7 @@ impl Variation {
         }
     }
 
-    /// Lets the states of the load begin as they do: by the numbers of the load, unless they are given.
+    /// Apply the dependence of the initial states on the numbers of the load, except for states that are given.
     fn begin(&mut self, task: &Task<'_>, terms: &[Term], given: &[bool]) {
         let (mut state, mut number) = (0, 0);
         for term in terms {
@@ -200,7 +201,8 @@ impl Variation {
         }
     }
 
-    /// Lets a state at the start follow from the numbers of the load from `first` on; one that is known can be nothing else.
+    /// Apply the dependence of an initial state on the numbers of the load from `first` on. A state that is known has no derivative of its
+    /// own.
     fn follow(&mut self, state: usize, first: usize, by_numbers: &[f64], is_known: bool) {
         let column = LOAD + self.load.len() + state;
         for (number, &slope) in (first..).zip(by_numbers) {
@@ -226,8 +228,8 @@ impl Variation {
         MASS..LOAD,
     ];
 
-    /// The derivative of number `row` of (δ, ω) and the states of the load by what stands in a column: the start of (δ, ω), the
-    /// moments, products, centre of mass and mass, the numbers of the load, the start of its states.
+    /// Return the derivative of number `row` of (δ, ω) and the states of the load by the number of a column. The columns are the initial
+    /// (δ, ω), the moments, products, centre of mass and mass, the numbers of the load, and its initial states.
     #[must_use]
     pub fn slope(&self, row: usize, column: usize) -> f64 {
         if let Some(state) = row.checked_sub(MOMENTS) {
@@ -247,7 +249,7 @@ impl Variation {
     }
 }
 
-/// The derivatives of (δ, ω) by the variables of a block: `δ = 2 vec(q⁻¹∘dq)`.
+/// Compute the derivatives of (δ, ω) by the variables of a block: `δ = 2 vec(q⁻¹∘dq)`.
 fn columns(state: &[Varied; 7]) -> [Vector6<f64>; WIDTH] {
     let [.., x, y, z, w] = state;
     let at = Quaternion::new(w.value, x.value, y.value, z.value);

@@ -1,4 +1,4 @@
-//! A body as it drifts freely and is kicked by a load.
+//! A body that moves freely (drift) and gets changes of momentum by a load (kicks).
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
@@ -12,16 +12,16 @@ use crate::motion::loads::Load;
 use crate::motion::state::Phase;
 use crate::numerics::double_double::two_sum;
 
-/// The turn within which the series converges soon, in radians.
+/// The angle up to which the series converges fast, in radians.
 const REACH: f64 = 0.2;
-/// So many times as far the closed form is sooner done.
+/// Beyond this number of such angles the closed form takes less time.
 const PARTS: f64 = 2.0;
-/// Terms of the series: at the reach the next is below 2⁻⁶⁰ for all bodies, since |κ| ≤ 1.
+/// Terms of the series: the next one is below 2⁻⁶⁰ for all bodies, because |κ| ≤ 1.
 const TERMS: usize = 26;
-/// What is left out, beside one.
+/// The largest error of the series, relative to one.
 const REST: f64 = 4e-19;
 
-/// A vector with what rounding has left out of its sum.
+/// A sum of vectors with its rounding error.
 #[derive(Clone, Copy, Debug)]
 struct Sum {
     value: Vector3<f64>,
@@ -43,7 +43,7 @@ impl Sum {
     }
 }
 
-/// A point of phase space by what a free motion keeps: L and the velocity change in kicks only.
+/// A point of phase space, in variables that a free motion conserves: L and the velocity change in kicks only.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Point {
     /// `q_NP`, P the principal axes.
@@ -59,7 +59,7 @@ pub(super) struct Point {
 struct Symmetry {
     axis: usize,
     transverse: f64,
-    /// `1/I_s − 1/I_t`; zero for a body without axial moment, whose spin is kept beside.
+    /// `1/I_s − 1/I_t`; zero for a body without axial moment, whose spin is `spin`.
     slip: f64,
     /// ω along an axis without a moment.
     spin: f64,
@@ -99,19 +99,19 @@ impl Symmetry {
     }
 }
 
-/// The body as it drifts and is kicked.
+/// The body for drifts and kicks.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Body {
-    /// Of a body that moves about.
+    /// The mass of a body that can move; none for a body with a fixed point.
     mass: Option<f64>,
     euler: EulerEquations,
     pub(super) moments: [f64; 3],
     principal: RefinedPrincipal,
     pub(super) q_bp: UnitQuaternion<f64>,
-    /// ω along axes without a moment, in P: it stays as it is.
+    /// ω along axes without a moment, in P: it is constant.
     massless: Vector3<f64>,
     symmetry: Option<Symmetry>,
-    /// `(I₂ − I₃)/I₁` and cyclic, of a body that is not symmetric.
+    /// `(I₂ − I₃)/I₁` and cyclic, for a body that is not symmetric.
     kappa: [f64; 3],
 }
 
@@ -129,7 +129,7 @@ impl Body {
             massless,
             symmetry: Symmetry::of(&moments, &massless),
             kappa: [0, 1, 2].map(|i| {
-                // A point's ω stays as it is.
+                // ω of a point is constant.
                 if moments[i] == 0.0 {
                     0.0
                 } else {
@@ -151,7 +151,7 @@ impl Body {
         }
     }
 
-    /// ω in P.
+    /// Compute ω in P.
     pub(super) fn omega(&self, point: &Point) -> Vector3<f64> {
         let along = point
             .attitude
@@ -165,7 +165,7 @@ impl Body {
         })
     }
 
-    /// |ω|.
+    /// Compute |ω|.
     pub(super) fn speed(&self, point: &Point) -> f64 {
         self.omega(point).norm()
     }
@@ -209,7 +209,7 @@ impl Body {
         let wrench = load.wrench(at, &phase)?;
         let along = self.q_bp.inverse_transform_vector(&wrench.torque);
         if self.moments[0] == 0.0 {
-            // Euler's equations say whether what has no moment can take the torque.
+            // An error if the torque acts along an axis without a moment.
             (self.euler).principal_acceleration(&Vector3::zeros(), &along)?;
         }
         point.momentum.add(&(phase.attitude * wrench.torque * time));
@@ -237,7 +237,7 @@ impl Body {
         Ok(self.drift(point, scheme.drift(scheme.kicks()) * h)?)
     }
 
-    /// Half the angle between two attitudes, or how far ω differ in parts of the larger one, whichever is more.
+    /// Compute the distance of two points: half the angle between the attitudes, or the relative difference of ω, whichever is larger.
     pub(super) fn difference(&self, a: &Point, b: &Point) -> f64 {
         let (one, other) = (self.omega(a), self.omega(b));
         let most = one.norm().max(other.norm());
@@ -251,9 +251,8 @@ impl Body {
     }
 }
 
-// The closed form costs mostly the constants of the motion, which are others after every kick.
-
-/// What the quaternion (x, y, z, w) of the attitude gains in a free turn, as multiples of itself from the left: `q → q + q∘gain`.
+/// Compute the gain of the quaternion (x, y, z, w) of the attitude in a free motion of an asymmetric body over a short time, by power
+/// series: `q → q + q∘gain`. In the closed form most time goes into the constants of the motion, which change with every kick.
 ///
 /// `w`: ω times the time, components in principal axes; `kappa`: `(I₂ − I₃)/I₁` and cyclic. With coefficients that carry the
 /// time,
@@ -262,7 +261,7 @@ impl Body {
 /// (k+1) w₁,ₖ₊₁ = κ₁ Σ w₂,ⱼ w₃,ₖ₋ⱼ,   (k+1) qₖ₊₁ = ½ Σ qⱼ∘wₖ₋ⱼ
 /// ```
 ///
-/// `None` where the body turns too far.
+/// `None` if the body turns too far.
 fn short_turn(kappa: &[f64; 3], w: &Vector3<f64>) -> Option<[f64; 4]> {
     let parts = (w.norm() / REACH).ceil().max(1.0);
     if parts.is_nan() || parts > PARTS {
@@ -278,7 +277,7 @@ fn short_turn(kappa: &[f64; 3], w: &Vector3<f64>) -> Option<[f64; 4]> {
     Some([0, 1, 2, 3].map(|i| gain[i] + (next[i] + both[i])))
 }
 
-/// The gain, and w at the end.
+/// Compute the gain, and w at the end.
 fn part(kappa: &[f64; 3], w: &Vector3<f64>) -> ([f64; 4], Vector3<f64>) {
     let mut ws = [[0.0; 4]; TERMS];
     let mut qs = [[0.0; 4]; TERMS];
@@ -310,7 +309,7 @@ fn part(kappa: &[f64; 3], w: &Vector3<f64>) -> ([f64; 4], Vector3<f64>) {
         }
         last = size;
     }
-    // The small ones first.
+    // Small terms first.
     let (mut gain, mut later) = ([0.0; 4], [0.0; 4]);
     for k in (0..count).rev() {
         for i in 0..4 {
@@ -321,7 +320,7 @@ fn part(kappa: &[f64; 3], w: &Vector3<f64>) -> ([f64; 4], Vector3<f64>) {
     (gain, Vector3::new(later[0], later[1], later[2]))
 }
 
-/// The product of two quaternions (x, y, z, w).
+/// Compute the product of two quaternions (x, y, z, w).
 fn product(p: &[f64; 4], q: &[f64; 4]) -> [f64; 4] {
     let [a, b, c, d] = *p;
     let [x, y, z, w] = *q;

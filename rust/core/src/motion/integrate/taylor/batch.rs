@@ -1,17 +1,17 @@
-//! The same number of several rows, side by side.
+//! Arithmetic with one number of several motions. Each motion is a *row*.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
 use crate::numerics::number::Number;
 
-/// One number of `R` rows; with one row plain arithmetic. Every operation acts on each row by itself.
+/// One number of `R` rows. Every operation acts on each row separately.
 ///
-/// What holds many of them is aligned to a line of the cache: a register of the widest lanes that lies in two lines takes twice as
-/// long to load.
+/// Types that contain many of them are aligned to a cache line: a register of the widest lanes that lies in two cache lines takes
+/// twice as long to load.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Batch<L, const R: usize>(pub(super) [L; R]);
 
-/// Packs that a function gives, aligned like what holds many of them.
+/// The result of a function, aligned to a cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct CacheAligned<T>(pub(super) T);
@@ -44,43 +44,43 @@ impl<L: Number, const R: usize> Neg for Batch<L, R> {
 }
 
 impl<L: Number, const R: usize> Batch<L, R> {
-    /// The number `x` in every row.
+    /// Return the number `x` in every row.
     #[inline(always)]
     pub(super) fn new(x: f64) -> Self {
         Self([L::new(x); R])
     }
 
-    /// 1/n in every row.
+    /// Return 1/n in every row.
     #[inline(always)]
     pub(super) fn over(n: usize) -> Self {
         Self([L::over(n); R])
     }
 
-    /// The number of one row, rounded to a double.
+    /// Return the number of one row, rounded to a double.
     #[inline(always)]
     pub(super) fn get(&self, row: usize) -> f64 {
         self.0[row].get()
     }
 
-    /// The number of one row.
+    /// Return the number of one row.
     #[inline(always)]
     pub(super) fn real(&self, row: usize) -> L::Real {
         self.0[row].real()
     }
 
-    /// Sets the number of one row to a double.
+    /// Set the number of one row to a double.
     #[inline(always)]
     pub(super) fn set(&mut self, row: usize, x: f64) {
         self.0[row] = L::new(x);
     }
 
-    /// Sets the number of one row.
+    /// Set the number of one row.
     #[inline(always)]
     pub(super) fn put(&mut self, row: usize, x: L::Real) {
         self.0[row] = L::of(x);
     }
 
-    /// `self * b + c`.
+    /// Compute `self * b + c`.
     #[inline(always)]
     pub(super) fn mul_add(mut self, b: Self, c: Self) -> Self {
         for row in 0..R {
@@ -89,7 +89,7 @@ impl<L: Number, const R: usize> Batch<L, R> {
         self
     }
 
-    /// Each row's number through `f`.
+    /// Apply `f` to the number of each row.
     #[inline(always)]
     pub(super) fn map(mut self, f: impl Fn(L) -> L) -> Self {
         for row in 0..R {
@@ -99,7 +99,7 @@ impl<L: Number, const R: usize> Batch<L, R> {
     }
 }
 
-/// `sum + a × b`.
+/// Compute `sum + a × b`.
 #[inline(always)]
 pub(super) fn cross_term<L: Number, const R: usize>(
     a: &[Batch<L, R>; 3],
@@ -113,7 +113,7 @@ pub(super) fn cross_term<L: Number, const R: usize>(
     ]
 }
 
-/// `a + b`.
+/// Compute `a + b`.
 #[inline(always)]
 pub(super) fn plus<L: Number, const R: usize>(
     a: [Batch<L, R>; 3],

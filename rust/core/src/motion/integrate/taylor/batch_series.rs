@@ -1,4 +1,4 @@
-//! Several motions, the lanes over the motions.
+//! The series of several motions in doubles, one motion in each lane.
 
 use super::batch::{Batch, CacheAligned};
 use super::series::increment;
@@ -7,17 +7,17 @@ use super::series::{add_squares, axis, from_squares, halved, roots};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
 
-/// `R` motions, the lanes over the motions.
+/// The series of `R` motions, one in each lane.
 #[derive(Clone, Debug)]
 #[repr(align(64))] // see Batch
 pub(super) struct BatchSeries<L, const B: usize, const R: usize> {
     orders: [Order<Batch<L, R>>; COUNT],
     directions: [[[Batch<L, R>; 3]; B]; COUNT],
-    /// The component of ω that is constant in all motions, or [`NONE`].
+    /// Index of the component of ω that is constant in all motions, or [`NONE`].
     constant: usize,
 }
 
-/// No component of ω.
+/// No component of ω is constant in all motions.
 const NONE: usize = 3;
 
 /// The sums of products of [`BatchSeries`]: ω₂ω₃, ω₃ω₁, ω₁ω₂ and q∘ω.
@@ -26,7 +26,7 @@ pub(super) struct BatchSums<T> {
     turned: [T; 4],
 }
 
-/// The real products that [`BatchSums`] are made of: those of ω's components, of α and β with ω₁ + iω₂, of q with ω₃. See
+/// Sums of real products, from which [`BatchSums`] are computed: components of ω; α and β with ω₁ + iω₂; q with ω₃. See
 /// [`series`](super::series).
 struct Products<T> {
     spins: [T; 3],
@@ -35,7 +35,7 @@ struct Products<T> {
     third: [T; 4],
 }
 
-/// One order.
+/// The coefficients of one order.
 #[derive(Clone, Copy, Debug)]
 struct Order<T> {
     w: [T; 3],
@@ -54,8 +54,8 @@ impl<L: Lane, const R: usize> Products<Batch<L, R>> {
         }
     }
 
-    /// Adds the products of `a` with ω of `b`; but not those with component `CONSTANT` of ω, which are zero. The sums in the products are
-    /// made anew: the processor adds while it multiplies, and they need not be loaded.
+    /// Add the products of `a` with ω of `b`. Products with component `CONSTANT` of ω are zero and are left out. Sums of two
+    /// coefficients are computed here each time: additions run beside multiplications, and a stored sum would have to be loaded.
     #[inline(always)]
     fn add<const CONSTANT: usize>(&mut self, a: &Order<Batch<L, R>>, b: &Order<Batch<L, R>>) {
         // Written out, since a loop would keep the sums in memory.
@@ -166,7 +166,8 @@ impl<L: Lane, const B: usize, const R: usize> Series<Batch<L, R>, B> for BatchSe
 }
 
 impl<L: Lane, const B: usize, const R: usize> BatchSeries<L, B, R> {
-    /// The sums of order `k`; without the products of orders above zero with component `CONSTANT` of ω, which is constant.
+    /// Compute the sums of order `k`. Component `CONSTANT` of ω is constant: its coefficients of orders above zero are zero, and
+    /// their products are left out.
     #[inline(always)]
     fn products<const CONSTANT: usize>(&mut self, k: usize) -> BatchSums<Batch<L, R>> {
         let mut products = Products::new();
@@ -197,7 +198,7 @@ impl<L: Lane, const B: usize, const R: usize> BatchSeries<L, B, R> {
     }
 }
 
-/// The sums of one order: a function of its own, since within a larger one they are not kept in registers.
+/// Computes the sums of one order. A separate function: within a larger one the sums are not kept in registers.
 struct Sum<'a, L, const B: usize, const R: usize, const CONSTANT: usize>(
     &'a mut BatchSeries<L, B, R>,
     usize,
@@ -214,7 +215,7 @@ impl<N: Lane, const B: usize, const R: usize, const CONSTANT: usize> Kernel
     }
 }
 
-/// The sums of the squares that make directions.
+/// Sums of squares for the directions: see [`series`](super::series).
 struct Squares<T, const B: usize>([[T; 6]; B]);
 
 impl<L: Lane, const R: usize, const B: usize> Squares<Batch<L, R>, B> {

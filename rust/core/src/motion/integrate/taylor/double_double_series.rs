@@ -1,4 +1,4 @@
-//! The series of one motion in numbers of twice the precision, the lanes over its components.
+//! The series of one motion in double-double, its components in the lanes.
 
 use super::batch::Batch;
 use super::series::{Coefficient, MAX_COUNT, Series, increment};
@@ -8,7 +8,7 @@ use crate::numerics::twofold::Twofold;
 
 type Double<L> = Batch<Twofold<L>, 1>;
 
-/// `W` numbers of twice the precision: their values and their rests.
+/// `W` double-double numbers: high and low parts.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 struct Components<L, const W: usize> {
@@ -30,13 +30,13 @@ impl<L: Lane, const W: usize> Components<L, W> {
         (self.high[i], self.low[i]) = (x.0[0].high, x.0[0].low);
     }
 
-    /// One of them; sums of products are brought to the form of a number here.
+    /// Return one of them. Sums of products are renormalized here.
     #[inline(always)]
     fn get(&self, i: usize) -> Double<L> {
         Batch([Twofold::renormalized(self.high[i], self.low[i])])
     }
 
-    /// `self + a b`: the rests pile up beside the values.
+    /// Compute `self + a b`; the low parts are added up separately.
     #[inline(always)]
     fn plus_products(mut self, a: &Self, b: &Self) -> Self {
         for i in 0..W {
@@ -49,7 +49,7 @@ impl<L: Lane, const W: usize> Components<L, W> {
         self
     }
 
-    /// `self + a · b` for one number a.
+    /// Compute `self + a · b` for one number a.
     #[inline(always)]
     fn plus_multiple(self, a: Twofold<L>, b: &Self) -> Self {
         let a = Self {
@@ -60,7 +60,7 @@ impl<L: Lane, const W: usize> Components<L, W> {
     }
 }
 
-/// One order: what each component of ω makes of attitude and directions, `q∘e_n` and `γ×e_n`; and ω.
+/// One order: `q∘e_n` and `γ×e_n`, the factors of each component of ω in the rates of attitude and directions; and ω.
 #[derive(Clone, Copy, Debug)]
 struct Order<L, const W: usize> {
     turned: [Components<L, W>; 3],
@@ -98,7 +98,7 @@ impl<L: Lane, const W: usize> Order<L, W> {
     }
 }
 
-/// One motion: `W` ≥ 4 + 3 `B`.
+/// The series of one motion; `W` ≥ 4 + 3 `B`.
 #[derive(Clone, Debug)]
 pub(super) struct DoubleDoubleSeries<L, const B: usize, const W: usize> {
     orders: [Order<L, W>; MAX_COUNT],

@@ -1,4 +1,4 @@
-//! Runs motions to their last output time, `R` at a time, each with its own steps.
+//! The loop over steps: runs motions to their last output time, `R` side by side, each with its own steps.
 
 use std::hint::black_box;
 use std::mem::swap;
@@ -21,34 +21,34 @@ use crate::motion::state::Phase;
 use crate::numerics::double_double::{fast_two_sum, two_sum};
 use crate::numerics::number::{Number, Real};
 
-/// How far ω may outgrow the unit of rates before another is taken: far below where its 26th power overflows.
+/// The largest ω, in the unit of rates, before another unit is chosen: far below the number whose 26th power overflows.
 pub(super) const MAX_RATE: f64 = 65_536.0;
 
-/// Steps of a motion between two looks at whether it will ever end.
+/// Steps of a motion between two checks that it can reach its end.
 const STEPS_PER_CHECK: u64 = 64;
 
-/// Steps between two looks at the watch, and of motions with derivatives, which take longer.
+/// Steps between two calls of `watch`; fewer with derivatives, whose steps take longer.
 const STEPS_PER_PROGRESS: u32 = 64;
 const VARIATIONAL_STEPS_PER_PROGRESS: u32 = 4;
 
-/// Relative to the tolerance of a step, the size of the last term of its series: the terms left out are a quarter of that,
-/// and at the tightest tolerance stay below the rounding of the state even where they all have the same sign.
+/// The size of the last term of a series, relative to the tolerance of a step. The terms left out are a quarter of that. At the tightest
+/// tolerance they stay below the rounding of the state even if they all have the same sign.
 const LAST_TERM: f64 = 0.05;
 
-/// What all motions of a run have in common.
+/// The settings that all motions of a run share.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Settings {
     /// The highest order of the series.
     pub(super) order: usize,
     /// The size of their last terms as a logarithm to base 2.
     last_term: f64,
-    /// The ω that counts as much as the largest |ω| so far: absolute over relative tolerance.
+    /// The least ω that errors are relative to: absolute over relative tolerance.
     floor: f64,
     pub(super) parts: Parts,
 }
 
 impl Settings {
-    /// For motions with derivatives, whose series say themselves how long a step may be.
+    /// Return the settings for motions with derivatives, whose series limit the step themselves.
     pub(super) fn of_derivatives(order: usize, parts: Parts) -> Self {
         Self {
             order,
@@ -58,8 +58,8 @@ impl Settings {
         }
     }
 
-    /// For the equations that `parts` says, with the order at which the work is least: it grows with the square of the order, the step with
-    /// `tolerance^(1/order)`. No order is above `highest`.
+    /// Return the settings for equations with these `parts`, with the order at which the work is least: the work grows with the square
+    /// of the order, the step with `tolerance^(1/order)`. The order is at most `highest`.
     pub(super) fn new(relative: f64, absolute: f64, highest: usize, parts: Parts) -> Self {
         let nats = -(LAST_TERM * relative).ln();
         let mut halves = (4..highest / 2).filter(|&half| half as f64 + 1.0 <= 0.36 * nats);
@@ -73,19 +73,19 @@ impl Settings {
     }
 }
 
-/// Gets the samples of a motion in the numbers of its run.
+/// A function that gets the samples of a motion in the numbers of its run.
 pub(super) type SampleSink<'a, X> = &'a mut dyn FnMut(usize, &[X; 7], &[X]);
 
-/// A motion to be run, and its run, which is at its start.
+/// A motion to compute, and its run, which is at its start.
 pub(super) struct Job<'a, X: Precision> {
     pub(super) equations: PiecewiseEquations<'a, X>,
     pub(super) run: &'a mut Run<Error>,
-    /// Gets each sample by its number: ω and (x, y, z, w) in body axes and real units, as the run has them, and what is reported of
-    /// the states of the load.
+    /// Gets the number of each sample, ω and (x, y, z, w) in body axes and real units, and the values of the states of the load that are
+    /// reported.
     pub(super) sink: Option<SampleSink<'a, X>>,
 }
 
-/// What a motion comes to next.
+/// The next time at which a motion stops.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Stop {
     /// A time of output.
@@ -94,7 +94,7 @@ pub(super) enum Stop {
     Break,
 }
 
-/// Why the equations of a motion change after a step.
+/// The reason for which the equations of a motion change after a step.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Landing {
     None,
@@ -102,48 +102,48 @@ pub(super) enum Landing {
     Switch,
 }
 
-/// A motion under way.
+/// A motion in a lane.
 pub(super) struct ActiveMotion<'a, X: Precision> {
     pub(super) job: Job<'a, X>,
     pub(super) stop: Stop,
     pub(super) steps: u64,
-    /// Changes of the law without a step between them.
+    /// Switches of the law without a step between them.
     pub(super) switches_without_step: u32,
 }
 
 impl<X: Precision> ActiveMotion<'_, X> {
-    /// Whether it is to be judged by its steps: now and then, and when it has taken all it may.
+    /// Return whether the number of steps must be checked: every [`STEPS_PER_CHECK`] steps, and at the largest number allowed.
     #[inline(always)]
     fn is_due(&self) -> bool {
         self.steps >= self.job.equations.most_steps() || self.steps.is_multiple_of(STEPS_PER_CHECK)
     }
 }
 
-/// `R` motions under way. Times are since the start, in the unit of each motion.
+/// `R` motions side by side. Times are since the start, in the unit of each motion.
 pub(super) struct Lanes<'a, L: Number<Real: Precision>, S, const B: usize, const R: usize> {
     pub(super) settings: Settings,
     pub(super) series: S,
     linear_terms: LinearTerms<Batch<L, R>, B>,
     pub(super) nonlinear: NonlinearTerms<Batch<L, R>>,
-    /// What depends on the time in one of them: kept so that no step asks for memory.
+    /// The terms of one motion that depend on time; stored here so that no step allocates memory.
     forcing: Forcing<L::Real>,
     directions: [[Batch<L, R>; 3]; B],
     pub(super) state: Compensated<Batch<L, R>>,
     translation: Option<Box<Translation<Batch<L, R>>>>,
     pub(super) internal_states: Option<Box<InternalStates<Batch<L, R>>>>,
     pub(super) motions: [Option<ActiveMotion<'a, L::Real>>; R],
-    /// The times now and of the next stop, each with what rounding has left out.
+    /// The present time and that of the next stop, each with its rounding error.
     pub(super) now: [(f64, f64); R],
     pub(super) stop: [(f64, f64); R],
-    /// The largest |ω| so far, or what else counts as large, and 1 or −1 for backward in time.
+    /// The size of ω that errors are relative to: the largest |ω| so far, or more; and 1, or −1 for backward in time.
     fastest: [f64; R],
     pub(super) direction: [f64; R],
-    /// The components of ω that are constant in each motion.
+    /// Which components of ω are constant in each motion.
     constant_components: [[bool; 3]; R],
 }
 
-/// Runs all motions that `jobs` gives. About every 64 steps `watch` gets the fraction of the first lane's motion that is
-/// done, and may stop them. `observer` is for motions one after the other; orbits are looked up in the almanac and put down there.
+/// Run all motions of `jobs`. About every 64 steps `watch` gets the fraction of the motion in the first lane that is done, and may stop
+/// all. `observer` gets each step if there is one lane. Orbits are read from `cache` and inserted there.
 #[inline(always)]
 pub(super) fn drive<
     L: Number<Real: Precision>,
@@ -202,8 +202,8 @@ fn run<
         };
         idle = lanes.step();
         idle |= lanes.end_overlong();
-        // The last step of a motion that was refused ends at a wrong time. It is not used: `solve_with_observer` shows the last step of a
-        // complete run only.
+        // The last step of a motion that failed ends at a wrong time. It is not used: `solve_with_observer` passes on the last step
+        // of a complete run only.
         if let (Some(observer), Some(before)) = (&mut observer, before)
             && observer(lanes.finished_step(before), idle).is_break()
         {
@@ -228,7 +228,7 @@ where
     L: Number<Real: Precision>,
     S: Series<Batch<L, R>, B>,
 {
-    /// All empty.
+    /// Return lanes without motions.
     #[inline(always)]
     fn new(settings: Settings) -> Self {
         let zero = Batch::new(0.0);
@@ -257,7 +257,7 @@ where
         }
     }
 
-    /// Tells the series which component of ω is constant in all motions.
+    /// Set in the series which component of ω is constant in all motions.
     fn update_constant_component(&mut self) {
         let is_constant = |n: &usize| self.constant_components.iter().all(|row| row[*n]);
         let constant = [0, 2].into_iter().find(is_constant);
@@ -266,14 +266,14 @@ where
             .set_constant_component(constant.filter(|_| is_autonomous));
     }
 
-    /// The time from now to the next stop, positive also backward in time.
+    /// Compute the time from now to the next stop, positive also backward in time.
     #[inline(always)]
     pub(super) fn gap(&self, row: usize) -> f64 {
         let ((now, now_rest), (stop, stop_rest)) = (self.now[row], self.stop[row]);
         ((stop - now) + (stop_rest - now_rest)) * self.direction[row]
     }
 
-    /// The time from now to the next stop. Not inlined: the compiler would compute it in every step, though only a break or an
+    /// Compute the time from now to the next stop. Not inlined: the compiler would compute it in every step, but only a break or an
     /// output needs it.
     #[inline(never)]
     pub(super) fn time_to_stop(&self, row: usize) -> L::Real {
@@ -291,7 +291,7 @@ where
         motion.map_or(1.0, |motion| motion.job.equations.fraction(self.now[0].0))
     }
 
-    /// The next motion into an empty lane, or none for ever.
+    /// Put the next motion into an empty lane; if none is left, the lane stays empty.
     #[inline(never)]
     fn load_next(&mut self, row: usize, jobs: &mut dyn Iterator<Item = Job<'a, L::Real>>) {
         let Some(job) = jobs.next() else {
@@ -326,7 +326,7 @@ where
         self.enter_segment(row);
     }
 
-    /// Takes the unit of rates, the field and the next stop of a motion.
+    /// Set the unit of rates, the equations and the next stop of a motion for its present segment.
     pub(super) fn enter_segment(&mut self, row: usize) {
         let state = self.state.now(row);
         let Some(motion) = &mut self.motions[row] else {
@@ -361,7 +361,7 @@ where
         let floor = self.settings.floor / unit;
         self.fastest[row] = (self.fastest[row] * ratio).max(speed).max(floor);
         if self.fastest[row] == 0.0 {
-            // At rest, what the load makes of it is large.
+            // At rest: errors are relative to the unit of rates, which is that of the load.
             self.fastest[row] = 1.0;
         }
         let linear_terms = equations.linear_terms();
@@ -387,7 +387,7 @@ where
         self.update_constant_component();
     }
 
-    /// What goes on beside attitude and ω, now.
+    /// Return the present state beside attitude and ω.
     fn auxiliary_state(&self, row: usize) -> AuxiliaryState<L::Real> {
         AuxiliaryState {
             position_velocity: self
@@ -399,7 +399,7 @@ where
         }
     }
 
-    /// Ends a motion before its last output.
+    /// End a motion before its last output.
     pub(super) fn end_motion(&mut self, row: usize, end: End<Error>) {
         let (time, state) = (self.time(row), self.state.now(row));
         let auxiliary = self.auxiliary_state(row);
@@ -416,8 +416,8 @@ where
         self.motions[row] = None;
     }
 
-    /// Ends the motions that would take too many steps; whether there was one. Each is judged by its own steps, whatever goes on
-    /// beside it.
+    /// End the motions that would take too many steps, and return whether there was one. Only its own steps count for a motion, not
+    /// those of the motions beside it.
     #[inline(always)]
     fn end_overlong(&mut self) -> bool {
         self.motions.iter().flatten().any(ActiveMotion::is_due) && self.end_due()
@@ -439,7 +439,7 @@ where
         ended
     }
 
-    /// A lane without motion: at rest for ever.
+    /// Empty a lane: its numbers are those of a motion at rest without end.
     fn clear(&mut self, row: usize) {
         for i in 0..7 {
             self.state.value[i].set(row, 0.0);
@@ -462,7 +462,7 @@ where
         self.direction[row] = 1.0;
     }
 
-    /// One step of every motion; whether one has ended.
+    /// Make one step of every motion, and return whether a motion has ended.
     #[inline(always)]
     fn step(&mut self) -> bool {
         let Settings {
@@ -481,7 +481,7 @@ where
             let ago = (now * self.direction[row], rest * self.direction[row]);
             h[row] = self.nonlinear.shorten_step(ago, h[row]);
             let (now, gap) = (self.now[row].0, self.gap(row));
-            // What is not a number is an event too.
+            // A NaN step length also takes the slow path.
             let is_plain = (h[row] < gap) & (h[row] > f64::EPSILON * now.abs());
             eventful |= !is_plain;
         }
@@ -537,7 +537,7 @@ where
         ended
     }
 
-    /// The series at the states now.
+    /// Compute the series at the present states.
     #[inline(always)]
     fn expand(&mut self) {
         let order = self.settings.order;
@@ -573,13 +573,13 @@ where
         if let Some(internal_states) = &mut self.internal_states {
             internal_states.start();
         }
-        // Several motions have order 0 apart, so that what is special about it is not in their loop.
+        // For several motions order 0 is computed before the loop, so that its special terms are not in the loop.
         let first = usize::from(R > 1);
         for k in 0..first {
             self.extend(k);
         }
         for k in first..order {
-            // Hidden from the compiler, which would keep an address for each array and add to all of them in every round: there
+            // Hidden from the compiler: it would keep an address for each array and increment all of them in every iteration, and there
             // are more addresses than registers.
             self.extend(black_box(k));
         }
@@ -588,7 +588,7 @@ where
         }
     }
 
-    /// The coefficients of order `k` + 1.
+    /// Compute the coefficients of order `k` + 1.
     #[inline(always)]
     fn extend(&mut self, k: usize) {
         self.nonlinear
@@ -610,7 +610,7 @@ where
         self.series.extend(k, &sums, &acceleration);
     }
 
-    /// The coefficient of order `k` of the angular acceleration, with what the elements off the diagonal of the tensor make of it.
+    /// Add the terms of elements off the diagonal of the tensor to the coefficient of order `k` of the angular acceleration.
     #[inline(never)]
     fn add_off_diagonal(
         &self,
@@ -630,7 +630,7 @@ where
         ))
     }
 
-    /// The state of a motion, and what goes on beside it, at a time since the start of the step.
+    /// Compute the state of a motion, and the state beside it, at a time since the start of the step.
     #[inline(always)]
     pub(super) fn within(
         &self,
@@ -643,7 +643,7 @@ where
         let change = self.series.increment(order, within);
         let change = self.nonlinear.change_in_space(change);
         let state = self.state.moved(&change, row);
-        // No `map`: its closure would be compiled without the instructions of the level.
+        // Without `map`: its closure would be compiled without the instructions of the level.
         let position_velocity = match &self.translation {
             Some(translation) => {
                 Some(translation.moved(&translation.increment(order, within), row))
@@ -663,7 +663,7 @@ where
         )
     }
 
-    /// What the step that the first motion is to make begins with.
+    /// Return the state at the start of the next step of the first motion.
     #[inline(never)]
     fn step_start(&self) -> Option<StepStart<'a, L, R>> {
         let motion = self.motions[0].as_ref()?;
@@ -675,7 +675,7 @@ where
         })
     }
 
-    /// The step that began with `before` and was the last one made.
+    /// Return the last step as polynomials; `before` is the state at its start.
     #[inline(never)]
     fn finished_step(&self, before: StepStart<'a, L, R>) -> Step {
         let StepStart {
@@ -701,7 +701,7 @@ where
                 own.push(coefficients.into_iter().map(L::Real::rounded).collect());
             }
         }
-        // Of what is rounded to a double, which is much of it where the numbers have twice the precision.
+        // The difference from the rounded doubles, which is large for double-double numbers.
         let own_change = equations
             .internal_states_in_body(&auxiliary.internal_states)
             .into_iter()
@@ -742,7 +742,7 @@ where
     }
 }
 
-/// The output `next` or the end of the segment, whichever comes first.
+/// Return the output `next` or the end of the segment, whichever comes first.
 pub(super) fn next_stop<X: Precision>(
     equations: &PiecewiseEquations<X>,
     next: usize,
@@ -757,7 +757,7 @@ pub(super) fn next_stop<X: Precision>(
     }
 }
 
-/// An evaluation is that of all coefficients of a step.
+/// Return the effort of so many steps. One evaluation computes all coefficients of a step.
 pub(super) fn effort(steps: u64) -> Effort {
     Effort {
         steps,
@@ -765,7 +765,7 @@ pub(super) fn effort(steps: u64) -> Effort {
     }
 }
 
-/// What a step begins with.
+/// The state at the start of a step.
 struct StepStart<'a, L: Number<Real: Precision>, const R: usize> {
     equations: PiecewiseEquations<'a, L::Real>,
     now: (f64, f64),

@@ -1,4 +1,4 @@
-//! One motion as the driver needs it: in principal axes, in a unit of time of its own, from break to break of its load.
+//! The equations of one motion: in principal axes, in a unit of rates of its own, in segments between the breaks of its load.
 
 use nalgebra::{Matrix3, Matrix3x4, Quaternion, UnitQuaternion, Vector3, Vector4};
 
@@ -20,12 +20,12 @@ use crate::numerics::number::Real;
 use crate::numerics::power_of_two::power_below;
 use crate::numerics::quaternion::{conjugate, normalized, product};
 
-/// A motion on its way.
+/// The equations of a motion, and the segment that it is in.
 #[derive(Clone, Debug)]
 pub(super) struct PiecewiseEquations<'a, X: Precision> {
     task: Task<'a>,
     terms: &'a [Term],
-    /// Which numbers are varied, and the first column of each term.
+    /// The variables of the derivatives, and the first column of each term.
     variables: X::Variables,
     firsts: Vec<usize>,
     axes: Matrix3<X>,
@@ -33,27 +33,27 @@ pub(super) struct PiecewiseEquations<'a, X: Precision> {
     kappa: Vector3<X>,
     inverse_moments: Vector3<X>,
     products: Vector3<X>,
-    /// The ends of the segments, and which is under way.
+    /// The ends of the segments, and the index of the present one.
     breaks: Vec<f64>,
     segment: usize,
     linear: Linear<'a, X>,
-    /// Of each feedback that acts, what changes its law.
+    /// The sign switches of the feedbacks that act.
     switches: Vec<Switch<X>>,
-    /// The unit of rates: a power of two near the fastest of the motion.
+    /// The unit of rates: a power of two near the fastest rate of the motion.
     unit: f64,
 }
 
-/// What goes on beside attitude and ω.
+/// The state beside attitude and ω.
 #[derive(Clone, Debug, Default)]
 pub(super) struct AuxiliaryState<X> {
-    /// Position and velocity, in units of the unit of rates, of a body that is pushed.
+    /// Position and velocity, in the unit of rates, if forces act on the body.
     pub(super) position_velocity: Option<[X; 6]>,
-    /// The states of the load, vectors among them in principal axes.
+    /// The internal states of the load; vectors among them in principal axes.
     pub(super) internal_states: Vec<X>,
 }
 
 impl<'a, X: Precision> PiecewiseEquations<'a, X> {
-    /// The course of `task` under `terms`.
+    /// Return the equations of `task` under `terms`, in the first segment.
     ///
     /// # Errors
     /// When a term cannot act, or acts along an axis without a moment of inertia.
@@ -114,13 +114,13 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         Ok(equations)
     }
 
-    /// Past the end of a segment, in the state `state`.
+    /// Enter the next segment in the state `state`.
     pub(super) fn pass_break(&mut self, state: &[X; 7]) -> Result<(), Error> {
         self.segment += 1;
         self.linearize(state)
     }
 
-    /// What acts in the segment under way.
+    /// Compute the terms of the present segment.
     fn linearize(&mut self, state: &[X; 7]) -> Result<(), Error> {
         let mut linear = Linear::default();
         let mut switches: Vec<Switch<X>> = Vec::new();
@@ -151,7 +151,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         Ok(())
     }
 
-    /// Those of the term whose first number is a variable of the column `first`.
+    /// Return the axes for the term whose first number is the variable of the column `first`.
     fn principal_axes(&self, first: usize) -> Axes<'_, X> {
         Axes {
             subject: &self.task.subject,
@@ -163,7 +163,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         }
     }
 
-    /// A torque along an axis without moment of inertia has nothing to turn.
+    /// Check that no torque acts along an axis without moment of inertia.
     fn check_massless(&self, linear: &Linear<'_, X>, state: &[X; 7]) -> Result<(), Error> {
         for (n, moment) in self.task.euler.moments().into_iter().enumerate() {
             if moment > 0.0 {
@@ -173,7 +173,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
             let on_omega = linear.on_omega().map(X::rounded);
             let on_attitude = linear.on_attitude().map(X::rounded);
             let mut turned = on_omega;
-            // ω along the axis is constant; where it is zero, what it would do does not matter.
+            // ω along the axis is constant. If it is zero, torques in proportion to it do not matter.
             if state[n].rounded() == 0.0 {
                 turned.column_mut(n).fill(0.0);
             }
@@ -210,7 +210,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         Ok(())
     }
 
-    /// The terms that act between two breaks, each with the column of its first number.
+    /// Iterate over the terms that act between two breaks, each with the column of its first number.
     fn acting(&self, from: f64, to: f64) -> impl Iterator<Item = (usize, &'a Term)> {
         let middle = from + 0.5 * (to - from);
         (self.terms.iter().enumerate()).filter_map(move |(k, term)| {
@@ -231,28 +231,28 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         from + 0.5 * (self.breaks[self.segment] - from)
     }
 
-    /// Whether the scalar part of a feedback's error has another sign in `state` than the torques are made for.
+    /// Return whether the scalar part of the error of a feedback has changed its sign in `state`.
     pub(super) fn has_switched(&self, state: &[X; 7]) -> bool {
         (self.switches.iter()).any(|switch| switch.sign(state) != switch.side)
     }
 
-    /// How many functions of the attitude change the law by their signs, and of number `index` the value in the attitude (x, y, z, w),
-    /// or in a coefficient of its series, and the sign before the step.
+    /// Return the number of functions of the attitude whose sign switches a law.
     pub(super) fn switch_count(&self) -> usize {
         self.switches.len()
     }
 
+    /// Compute the function of this index for the attitude (x, y, z, w), or for a coefficient of its series.
     pub(super) fn switch_value(&self, index: usize, attitude: &[X; 4]) -> f64 {
         self.switches[index].value(attitude)
     }
 
+    /// Return the sign of the function of this index before the step.
     pub(super) fn side(&self, index: usize) -> f64 {
         self.switches[index].side
     }
 
-    /// Takes the torques of the feedbacks for the signs in `state`. Neighbours that come to a change of sign later have been longer
-    /// under the law before it: ω and the states of the load, of which they are the derivatives, become what they are for the law
-    /// after it.
+    /// Switch the laws of the feedbacks to the signs in `state`. A neighbouring motion, which switches later, has been longer under the
+    /// law before: so the derivatives of ω and of the states of the load are corrected (saltation).
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -280,7 +280,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         self.linearize(&before)
     }
 
-    /// 1 or −1 for backward in time.
+    /// Return 1, or −1 for backward in time.
     pub(super) fn direction(&self) -> f64 {
         if self.breaks[self.segment] < self.task.times[0] {
             -1.0
@@ -293,8 +293,8 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         self.unit
     }
 
-    /// Takes the power of two at or below the fastest rate of the motion at ω (in principal axes) as the unit of rates.
-    /// `own` are the states of the load.
+    /// Choose the unit of rates: the power of two at or below the fastest rate of the motion at ω (in principal axes). `own` are the
+    /// states of the load.
     pub(super) fn choose_unit(&mut self, omega: &[f64; 3], own: &[X]) -> f64 {
         let (linear, inverse) = (&self.linear, self.inverse_moments.map(X::rounded));
         let over_moment = inverse.amax();
@@ -333,25 +333,25 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         self.unit
     }
 
-    /// The equations in the segment under way.
+    /// Compute the linear terms of the present segment.
     pub(super) fn linear_terms<const B: usize>(&self) -> LinearTerms<X, B> {
         let linear = &self.linear;
         let inverse = Matrix3::from_diagonal(&self.inverse_moments);
         let rate = X::from(1.0 / self.unit);
         let on_omega = inverse * linear.on_omega() * rate;
         let on_attitude = inverse * linear.on_attitude() * rate * rate;
-        // What the wheels that turn freely add to the tensor, along the axes and across them.
+        // The part of the tensor of wheels that turn freely: along the axes and across them.
         let (along, across) = (linear.turning.diagonal(), linear.turning);
         let pull = [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
             .map(|(i, j, k)| self.kappa[i] + (along[j] - along[k]) * self.inverse_moments[i]);
-        let aside =
+        let off_diagonal =
             [(0, 1, 2), (1, 2, 0), (2, 0, 1)].map(|(i, j, k)| self.products[i] + across[(j, k)]);
         let mass = (self.variables).number(self.task.subject.mass, MASS);
         let mut linear_terms = LinearTerms {
             kappa: self.kappa.into(),
             inverse_moments: self.inverse_moments.into(),
             products: self.products.into(),
-            pull: (pull, aside),
+            pull: (pull, off_diagonal),
             constant: (inverse * linear.constant * rate * rate).into(),
             on_omega: rows(&on_omega),
             on_attitude: [0, 1, 2].map(|n| [0, 1, 2, 3].map(|i| on_attitude[(n, i)])),
@@ -374,7 +374,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         linear_terms
     }
 
-    /// The formulas of the segment under way, each with its matrix over the moments in units of rates.
+    /// Iterate over the formulas of the present segment, each with its matrix over the moments in the unit of rates.
     pub(super) fn formulas(&self) -> impl Iterator<Item = (&Formula<X>, [[X; 3]; 3])> {
         let inverse = Matrix3::from_diagonal(&self.inverse_moments);
         self.linear.formulas.iter().map(move |formula| {
@@ -384,7 +384,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         })
     }
 
-    /// The directions in N that the torques of what is fixed in space are made of: the vertical axis, or all.
+    /// Return the directions in N for torques fixed in space: the vertical axis, or all three axes.
     pub(super) fn directions<const B: usize>() -> [[X; 3]; B] {
         let (zero, one) = (X::zero(), X::one());
         let mut directions = [[zero, zero, one]; B];
@@ -397,7 +397,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         directions
     }
 
-    /// Adds what depends on the time alone, as it is at `now`.
+    /// Add the terms that depend on time alone, at `now`.
     pub(super) fn force(&self, forcing: &mut Forcing<X>, now: (f64, f64)) {
         let when = When {
             elapsed: X::pair(now.0, now.1) / X::from(self.unit),
@@ -426,7 +426,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         }
     }
 
-    /// What the states of the load do in the segment under way.
+    /// Return the equations of the states of the load in the present segment.
     pub(super) fn internal_states(&self) -> &[Own<X>] {
         &self.linear.own
     }
@@ -439,7 +439,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         &self.task.initial
     }
 
-    /// ω in principal axes and units of the unit of rates, and (x, y, z, w) of the attitude.
+    /// Return the state at the start: ω in principal axes and the unit of rates, and (x, y, z, w) of the attitude.
     pub(super) fn start(&self) -> [X; 7] {
         let Phase {
             attitude, omega, ..
@@ -451,7 +451,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         [omega.x, omega.y, omega.z, x, y, z, w]
     }
 
-    /// The state in body axes and real units.
+    /// Compute the state in body axes and real units.
     pub(super) fn phase(
         &self,
         state: &[X; 7],
@@ -488,7 +488,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         }
     }
 
-    /// The load's own states at the start, vectors among them in principal axes.
+    /// Compute the states of the load at the start; vectors among them in principal axes.
     pub(super) fn internal_states_at_start(&self) -> Vec<X> {
         let first = self.firsts.get(self.terms.len()).copied().unwrap_or(0);
         let given = self.task.initial.own.iter().enumerate();
@@ -498,12 +498,12 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         self.rotate_internal_states(&given, |vector| self.axes.tr_mul(&vector))
     }
 
-    /// The load's own states, or coefficients of their series, vectors among them in body axes.
+    /// Compute the states of the load, or coefficients of their series, with vectors among them in body axes.
     pub(super) fn internal_states_in_body(&self, own: &[X]) -> Vec<X> {
         self.rotate_internal_states(own, |vector| self.axes * vector)
     }
 
-    /// What is reported of the load's own states, in body axes.
+    /// Compute the values of the states of the load that are reported, in body axes.
     pub(super) fn reported_internal_states(&self, state: &[X; 7], own: &[X]) -> Vec<X> {
         let omega = Vector3::from_column_slice(&state[..3]) * X::from(self.unit);
         let states = self
@@ -526,7 +526,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         turned
     }
 
-    /// ω and (x, y, z, w) in body axes and real units of a state, or of a coefficient of its series.
+    /// Compute ω and (x, y, z, w) in body axes and real units, of a state or of a coefficient of its series.
     pub(super) fn in_body(&self, state: &[X; 7]) -> [X; 7] {
         let [x, y, z, i, j, k, w] = *state;
         let omega = self.axes * Vector3::new(x, y, z) * X::from(self.unit);
@@ -534,7 +534,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         [omega.x, omega.y, omega.z, i, j, k, w]
     }
 
-    /// Time since the start of output `k`.
+    /// Return the time of output `k` since the start.
     pub(super) fn output(&self, k: usize) -> (f64, f64) {
         self.since_start(self.task.times[k])
     }
@@ -543,7 +543,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         self.since_start(self.breaks[self.segment])
     }
 
-    /// In units of the unit of rates, with what rounding leaves out.
+    /// Compute a time since the start in the unit of rates, with its rounding error.
     fn since_start(&self, t: f64) -> (f64, f64) {
         let (elapsed, rest) = two_sum(t, -self.task.times[0]);
         (elapsed * self.unit, rest * self.unit)
@@ -553,7 +553,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         self.task.times[0] + (now.0 + now.1) / self.unit
     }
 
-    /// Where a step that begins at `now` stands in an almanac, and the unit of rates.
+    /// Return the key of the orbit cache for a step that begins at `now`, and the unit of rates.
     #[inline(always)]
     pub(super) fn cache_key(&self, now: (f64, f64)) -> (CacheKey, f64) {
         let (start, unit) = (self.task.times[0], self.unit);
@@ -564,12 +564,12 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         (key, unit)
     }
 
-    /// The whole length of the motion.
+    /// Return the length of the motion.
     pub(super) fn last_elapsed(&self) -> f64 {
         self.last_time() - self.task.times[0]
     }
 
-    /// The time of an output.
+    /// Return the time of an output.
     pub(super) fn time_of(&self, output: usize) -> f64 {
         self.task.times[output]
     }
@@ -582,12 +582,12 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         self.task.times[self.task.times.len() - 1]
     }
 
-    /// The most steps that it may take.
+    /// Return the largest number of steps that it may take.
     pub(super) fn most_steps(&self) -> u64 {
         self.task.tolerance.most_steps
     }
 
-    /// Whether so many steps up to `now`, in units of the unit of rates, let the motion come to its end.
+    /// Check that the motion can reach its end, after so many steps up to `now` in the unit of rates.
     pub(super) fn check_steps(&self, steps: u64, now: f64) -> Result<(), Error> {
         check_steps(
             self.task.tolerance.most_steps,
@@ -598,22 +598,22 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         )
     }
 
-    /// How much of the motion is done.
+    /// Return the fraction of the motion that is done.
     pub(super) fn fraction(&self, now: f64) -> f64 {
         let times = self.task.times;
         now / self.unit / (times[times.len() - 1] - times[0])
     }
 }
 
-/// The scalar part w of a feedback's error, which is linear in the attitude (x, y, z, w), and the sign of it that the torques
-/// are made for.
+/// The sign switch of a feedback: the scalar part w of its error, which is linear in the attitude (x, y, z, w), and the sign of it for
+/// which the torques are computed.
 #[derive(Clone, Debug)]
 struct Switch<X> {
     scalar: Vector4<X>,
     side: f64,
-    /// What the torque is of the attitude.
+    /// The matrix from the attitude to the torque.
     torque: Matrix3x4<X>,
-    /// What the rates of states of the load are of it, by their numbers.
+    /// The rates of states of the load, linear in the attitude, with the numbers of the states.
     own: Vec<(usize, Vector4<X>)>,
 }
 
@@ -622,7 +622,7 @@ impl<X: Real> Switch<X> {
         self.scalar.dot(&Vector4::from(*attitude)).rounded()
     }
 
-    /// The sign of w in `state`; positive where it is zero.
+    /// Return the sign of w in `state`; positive if w is zero.
     fn sign(&self, state: &[X; 7]) -> f64 {
         let [_, _, _, x, y, z, w] = *state;
         if self.value(&[x, y, z, w]) < 0.0 {
@@ -633,7 +633,7 @@ impl<X: Real> Switch<X> {
     }
 }
 
-/// Σ J a aᵀ of the wheels that turn freely, in principal axes.
+/// Compute Σ J a aᵀ of the wheels that turn freely, in principal axes.
 fn free_wheel_tensor<X: Precision>(
     task: &Task<'_>,
     terms: &[Term],
@@ -666,9 +666,8 @@ fn quotient_or_zero<X: Real>(number: X, moment: X) -> X {
     }
 }
 
-/// What the equations of a motion of `subject` under these terms are made of, in numbers of which `variables` are varied: what
-/// they add, switched on or not. The principal axes do not matter for it. `has_path` where the path of the body is part of the
-/// motion.
+/// Return the parts of the equations of a motion of `subject` under these terms, whether they are switched on or not. The principal axes
+/// do not matter for it. `variables` are those of the derivatives; `has_path` is true if the path of the body is part of the motion.
 pub(super) fn parts<X: Exact>(
     terms: &[Term],
     subject: &Subject,

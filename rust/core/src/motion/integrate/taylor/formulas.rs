@@ -1,4 +1,4 @@
-//! Torques that are not linear in ω, by the formulas that their laws state.
+//! Torques that are not linear in ω, from the formulas that their laws state.
 
 use super::batch::{Batch, CacheAligned};
 use super::principal_frame::Precision;
@@ -24,12 +24,12 @@ struct Vector<T>([[T; 3]; MAX_COUNT]);
 struct FormulaSeries<T> {
     steps: Vec<Step>,
     vector: usize,
-    /// The matrix over the moments: zero in a row in which the formula does not act.
+    /// The matrix over the moments; zero in a row without this formula.
     matrix: [[T; 3]; 3],
     scalars: Vec<Scalar<T>>,
-    /// Those after ω.
+    /// The vectors after ω.
     vectors: Vec<Vector<T>>,
-    /// The number of |ω|, if it is in the formula.
+    /// Index of the scalar |ω|, if the formula contains it.
     speed: Option<usize>,
     /// Whether the vector is |ω| ω.
     is_quadratic: bool,
@@ -37,7 +37,7 @@ struct FormulaSeries<T> {
     half_over_speed: T,
 }
 
-/// Those that act in one of the rows; most loads have none.
+/// The formulas of all rows; most loads have none.
 ///
 /// With `u = ω·ω` and `s = |ω| = √u`, from s s = u
 ///
@@ -45,15 +45,16 @@ struct FormulaSeries<T> {
 /// s_k = (u_k − Σ_{0<j<k} s_j s_{k−j})/2s₀
 /// ```
 ///
-/// Rounding in s grows as `1/s(t)` does, so a step does not go as far as ω would take to zero at its present rate. Where ω
-/// passes through zero all the same the step ends, and at ω = 0 there is no series, and of |ω| ω no second derivative: below
-/// [`REST_SPEED`](Precision::REST_SPEED) of the fastest ω, or the same [beside torques](Precision::REST_SPEED_BESIDE_TORQUES), the speed counts as
-/// zero, in steps over which what it does stays below rounding.
+/// Rounding errors in s grow as `1/s(t)`, so a step is shorter than the time in which ω would come to zero at its present rate. If ω
+/// passes through zero nevertheless, the step ends there. At ω = 0, s has no series, and |ω| ω has no second derivative: below
+/// [`REST_SPEED`](Precision::REST_SPEED) of the largest ω, or below that
+/// [beside torques](Precision::REST_SPEED_BESIDE_TORQUES), the speed counts as zero, in steps so short that the error stays below
+/// rounding.
 #[derive(Clone, Debug)]
 #[repr(align(64))] // see Batch
 pub(super) struct Formulas<T> {
     formulas: Vec<FormulaSeries<T>>,
-    /// The speed below which a row is still.
+    /// The speed below which a row counts as at rest.
     rest_speed: T,
 }
 
@@ -66,7 +67,7 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Batch<L, R>> {
         }
     }
 
-    /// Takes those of one row, each with its matrix over the moments.
+    /// Set the formulas of one row, each with its matrix over the moments.
     pub(super) fn set<'a>(
         &mut self,
         row: usize,
@@ -92,7 +93,7 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Batch<L, R>> {
         }
     }
 
-    /// Leaves one row without formulas.
+    /// Remove the formulas of one row.
     pub(super) fn clear(&mut self, row: usize) {
         for formula in &mut self.formulas {
             for x in formula.matrix.as_flattened_mut() {
@@ -108,7 +109,7 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Batch<L, R>> {
         }
     }
 
-    /// Counts speeds as zero that are too small a part of this acceleration, the one by all else.
+    /// Raise the speed that counts as zero to its part of this acceleration, that by all other torques.
     #[inline(always)]
     fn raise_rest_speed(&mut self, acceleration: &[Batch<L, R>; 3]) {
         for row in 0..R {
@@ -127,7 +128,7 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Batch<L, R>> {
         }
     }
 
-    /// `sum` and the coefficients of order `k` of the angular acceleration by all of them; asked for in order.
+    /// Add the coefficient of order `k` of the angular acceleration by all formulas to `sum`. Called for one order after the other.
     #[inline(always)]
     pub(super) fn plus_coefficients<const B: usize>(
         &mut self,
@@ -156,27 +157,26 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Batch<L, R>> {
         sum
     }
 
-    /// Those with |ω| that act in one row.
+    /// Iterate over the series of |ω| of the formulas that act in one row.
     fn with_speed(&self, row: usize) -> impl Iterator<Item = &Scalar<Batch<L, R>>> {
         let acting = self.formulas.iter().filter(move |it| it.acts(row));
         acting.filter_map(|it| Some(&it.scalars[it.speed?]))
     }
 
-    /// Whether the series of one row, whose ω was `start`, are another law's where it is `omega`: where ω passes through zero
-    /// along a line, the series of |ω| goes on as −|ω|.
+    /// Return whether ω of one row has passed through zero between `start` and `omega`: beyond it the series of |ω| continues as
+    /// −|ω|, which is another law.
     pub(super) fn is_reversed(&self, row: usize, start: &[f64; 3], omega: &[f64; 3]) -> bool {
         let along: f64 = (0..3).map(|i| start[i] * omega[i]).sum();
         along < 0.0 && self.may_reverse(row)
     }
 
-    /// Whether the law of one row changes where ω passes through zero: its ω is not as good as zero, so that there is a series of
-    /// |ω|.
+    /// Return whether the law of one row changes if ω passes through zero: a formula contains |ω|, and ω does not count as zero.
     pub(super) fn may_reverse(&self, row: usize) -> bool {
         self.with_speed(row).any(|speed| speed.0[0].get(row) > 0.0)
     }
 
-    /// Keeps the steps of motions with |ω| in their law so short that those almost at rest stay so and that others do not come to
-    /// rest at their present rate.
+    /// Shorten the steps of motions whose law contains |ω|: a motion that counts as at rest stays so, and others do not come to rest
+    /// at their present rate.
     #[inline(always)]
     pub(super) fn limit<const B: usize>(
         &self,
@@ -209,8 +209,8 @@ fn size<L: Number, const R: usize>(w: &[Batch<L, R>; 3], row: usize) -> f64 {
     (x * x + y * y + z * z).sqrt()
 }
 
-/// The coefficient of order `k` of several rows: a function of its own, since loops within that of the steps keep its sums out of
-/// registers. One row is slower with it, since what another function may read must stand in memory.
+/// Computes the coefficient of order `k` of several rows. A separate function: within the loop over steps its sums are not kept in
+/// registers. A single row would be slower with it, because the arguments of a function must be in memory.
 struct Next<'a, L, S, const R: usize, const B: usize> {
     formula: &'a mut FormulaSeries<Batch<L, R>>,
     k: usize,
@@ -260,13 +260,13 @@ impl<L: Number<Real: Precision>, const R: usize> FormulaSeries<Batch<L, R>> {
         }
     }
 
-    /// Whether it acts in one row.
+    /// Return whether it acts in one row.
     #[inline(always)]
     fn acts(&self, row: usize) -> bool {
         self.matrix.iter().flatten().any(|x| x.get(row) != 0.0)
     }
 
-    /// The coefficient of order `k` of the angular acceleration, components in principal axes.
+    /// Compute the coefficient of order `k` of the angular acceleration, components in principal axes.
     #[inline(always)]
     fn coefficient<const B: usize>(
         &mut self,
@@ -275,7 +275,7 @@ impl<L: Number<Real: Precision>, const R: usize> FormulaSeries<Batch<L, R>> {
         rest_speed: Batch<L, R>,
     ) -> [Batch<L, R>; 3] {
         let vector = if self.is_quadratic {
-            // In one piece: what a step gives to the next one stays in registers.
+            // In one piece: intermediate results stay in registers.
             let speeds = self.set_speed(k, 1, square(k, series), rest_speed);
             times(k, speeds, |j| series.get(j).w)
         } else {
@@ -290,7 +290,7 @@ impl<L: Number<Real: Precision>, const R: usize> FormulaSeries<Batch<L, R>> {
         sum
     }
 
-    /// The coefficient of order `k` of the vector of any formula.
+    /// Compute the coefficient of order `k` of the vector of any formula.
     #[inline(always)]
     fn step_by_step<const B: usize>(
         &mut self,
@@ -329,7 +329,7 @@ impl<L: Number<Real: Precision>, const R: usize> FormulaSeries<Batch<L, R>> {
         }
     }
 
-    /// The coefficient of order `k` of |ω|, the scalar of this number, from that of ω·ω.
+    /// Compute the coefficient of order `k` of |ω|, the scalar of this index, from that of ω·ω.
     #[inline(always)]
     fn set_speed(
         &mut self,
@@ -362,7 +362,7 @@ impl<L: Number<Real: Precision>, const R: usize> FormulaSeries<Batch<L, R>> {
     }
 }
 
-/// The coefficient of order `k` of ω·ω.
+/// Compute the coefficient of order `k` of ω·ω.
 #[inline(always)]
 fn square<L: Number, const R: usize, const B: usize>(
     k: usize,
@@ -378,7 +378,7 @@ fn square<L: Number, const R: usize, const B: usize>(
     square
 }
 
-/// The coefficient of order `k` of a scalar times a vector.
+/// Compute the coefficient of order `k` of a scalar times a vector.
 #[inline(always)]
 fn times<L: Number, const R: usize>(
     k: usize,

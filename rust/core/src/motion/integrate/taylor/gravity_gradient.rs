@@ -1,4 +1,4 @@
-//! The recurrence of the gravity gradient.
+//! The series of the torque by a gravity gradient.
 
 use std::marker::PhantomData;
 
@@ -15,22 +15,23 @@ use crate::numerics::lane::Lane;
 use crate::numerics::number::{Number, Real};
 use crate::numerics::quaternion::{normalized, product};
 
-/// The gravity gradient on a Kepler orbit. The attitude as seen from the frame that the orbit has at the start of the step, turned
-/// back by the orbit's half turn since then and scaled (see [`OrbitSeries`]), is a quaternion `Q = c̄ q` of length `r^{−3/4}`: the first row
-/// of its matrix is `m = r^{−3/2} n`, n from the attractor to C as seen from the body, and
+/// The gravity gradient on a Kepler orbit. Take the attitude relative to the frame of the orbit at the start of the step, turn it
+/// back by the half turn of the orbit since then, and scale it (see [`OrbitSeries`]): a quaternion `Q = c̄ q` of length `r^{−3/4}`.
+/// The first row of its matrix is `m = r^{−3/2} n`, with n from the attractor to C in body axes, and
 ///
 /// ```text
 /// I⁻¹ (3μ/r³) n×I n = −3μ κ (m₂m₃, m₃m₁, m₁m₂)
 /// ```
 ///
-/// with κ of the body, its wheels locked; what is off the diagonal of that tensor is added by [`LinearTerms::off_diagonal_torque`].
+/// with κ of the body with its wheels locked. [`LinearTerms::off_diagonal_torque`] adds the terms of elements off the diagonal of its
+/// tensor.
 #[derive(Clone, Debug)]
 #[repr(align(64))] // see Batch
 pub(super) struct GravityGradientSeries<T> {
     orbit: OrbitSeries<T>,
-    /// The rotation from the orbit's frame at the start of the step to N.
+    /// The rotation from the frame of the orbit at the start of the step to N.
     frame: [T; 4],
-    /// The attitude from that frame, where the series are not of it already, and with the half turn.
+    /// The attitude relative to that frame, if the series are in N, and Q.
     attitude: [[T; 4]; MAX_COUNT],
     turned: [[T; 4]; MAX_COUNT],
     /// m.
@@ -38,16 +39,16 @@ pub(super) struct GravityGradientSeries<T> {
     strength: T,
     /// −3μκ of the step.
     on_products: [T; 3],
-    /// The coefficient of the angular acceleration that was found last.
+    /// The coefficient of the angular acceleration that was computed last.
     coefficient: [T; 3],
-    /// Whether the tensor that is pulled has elements off the diagonal.
+    /// Whether the tensor has elements off the diagonal.
     has_off_diagonal: bool,
 }
 
-/// The slowest orbit, in units of rates, of which the pole is found: the square of this is still a number.
+/// The slowest orbit, in units of rates, whose normal is computed: the square of this number does not underflow.
 const SLOWEST: f64 = 1e-140;
 
-/// How many numbers [`GravityGradientSeries::initial_numbers`] has.
+/// Count of [`GravityGradientSeries::initial_numbers`].
 pub(super) const INITIAL_NUMBERS: usize = 8;
 
 impl<L: Number, const R: usize> GravityGradientSeries<Batch<L, R>> {
@@ -67,20 +68,20 @@ impl<L: Number, const R: usize> GravityGradientSeries<Batch<L, R>> {
         }
     }
 
-    /// The orbit's state of one row at the start of a step.
+    /// Set the state of the orbit of one row at the start of a step.
     pub(super) fn set(&mut self, row: usize, at: &OnOrbit<L::Real>) {
         let (n, v) = (at.position, at.velocity);
         let swept = n.cross(&v);
         let around = swept.dot(&swept).root();
-        // A term that does not act, or an orbit that stands still beside the body: any pole will do.
+        // If the term is off, or the orbit has no angular momentum, the orbit normal is undefined; take any perpendicular.
         let pole = if around.rounded() > SLOWEST {
             swept / around
         } else {
-            let aside = n.cross(&Vector3::ith(
+            let perpendicular = n.cross(&Vector3::ith(
                 n.map(|x| x.rounded().abs()).imin(),
                 1.0.into(),
             ));
-            aside / aside.dot(&aside).root()
+            perpendicular / perpendicular.dot(&perpendicular).root()
         };
         let frame = quaternion_of_matrix(&Matrix3::from_columns(&[n, pole.cross(&n), pole]));
         self.put(row, frame, [n.dot(&v), around, at.pull], at.strength);
@@ -94,21 +95,21 @@ impl<L: Number, const R: usize> GravityGradientSeries<Batch<L, R>> {
         self.strength.put(row, strength);
     }
 
-    /// What [`Self::set`] has made of the orbit in one row.
+    /// Return the numbers of the orbit of one row at the start of a step, as [`Self::set`] has computed them.
     pub(super) fn initial_numbers(&self, row: usize) -> [L::Real; INITIAL_NUMBERS] {
         let [x, y, z, w] = [0, 1, 2, 3].map(|i| self.frame[i].real(row));
         let [radial, around, pull] = self.orbit.rates(row);
         [x, y, z, w, radial, around, pull, self.strength.real(row)]
     }
 
-    /// Takes that of another step for one row.
+    /// Set these numbers of one row.
     pub(super) fn restore(&mut self, row: usize, known: [L::Real; INITIAL_NUMBERS]) {
         let [x, y, z, w, radial, around, pull, strength] = known;
         self.put(row, [x, y, z, w], [radial, around, pull], strength);
     }
 
-    /// Takes for each row those numbers of another step, and after them the half turns in it from order 1 on, which were found in a
-    /// unit of rates that is `ratio` of the row's.
+    /// Set these numbers of each row, and the coefficients of the half turn from order 1 on, which follow them. They were computed in
+    /// a unit of rates that is `ratio` of that of the row.
     #[inline(always)]
     pub(super) fn restore_all(&mut self, known: &[&[f64]; R], ratio: Batch<L, R>) {
         let mut initial_numbers = [Batch::new(0.0); INITIAL_NUMBERS];
@@ -130,7 +131,7 @@ impl<L: Number, const R: usize> GravityGradientSeries<Batch<L, R>> {
         &mut self.orbit
     }
 
-    /// At the start of a step.
+    /// Prepare a step.
     #[inline(always)]
     pub(super) fn start<const B: usize>(&mut self, linear_terms: &LinearTerms<Batch<L, R>, B>) {
         self.has_off_diagonal = linear_terms.pull_has_off_diagonal();
@@ -138,17 +139,17 @@ impl<L: Number, const R: usize> GravityGradientSeries<Batch<L, R>> {
         self.on_products = [pull * a, pull * b, pull * c];
     }
 
-    /// The orbit's series.
+    /// Compute the series of the orbit.
     #[inline(always)]
     pub(super) fn expand(&mut self, order: usize) {
-        // As in `look_ahead`.
+        // A separate function, as in `look_ahead`.
         dispatch(Expand {
             orbit: &mut self.orbit,
             order,
         });
     }
 
-    /// Goes on to the end of a step of length `h`, where the orbit has come by its own series.
+    /// Continue the orbit by its own series to the end of a step of length `h`.
     #[inline(always)]
     pub(super) fn advance(&mut self, order: usize, h: Batch<L, R>) {
         let after = self.orbit.after(order, h);
@@ -166,7 +167,7 @@ impl<L: Number, const R: usize> GravityGradientSeries<Batch<L, R>> {
         }
     }
 
-    /// An attitude in N as seen from the orbit's frame at the start of the step.
+    /// Transform an attitude in N to the frame of the orbit at the start of the step.
     #[inline(always)]
     pub(super) fn to_orbit_frame(&self, [x, y, z, w]: [Batch<L, R>; 4]) -> [Batch<L, R>; 4] {
         let [a, b, c, d] = self.frame;
@@ -178,14 +179,14 @@ impl<L: Number, const R: usize> GravityGradientSeries<Batch<L, R>> {
         ]
     }
 
-    /// The attitude in N of one as seen from that frame.
+    /// Transform an attitude relative to that frame to N.
     #[inline(always)]
     pub(super) fn to_space(&self, attitude: [Batch<L, R>; 4]) -> [Batch<L, R>; 4] {
         dispatch(ToSpace(self.frame, attitude)).0
     }
 
-    /// Finds the coefficient of order `k` of the angular acceleration, which needs that of the attitude: of one that is seen from the
-    /// orbit's frame, or else in N.
+    /// Compute the coefficient of order `k` of the angular acceleration from that of the attitude, relative to the frame of the orbit
+    /// or to N.
     #[inline(always)]
     pub(super) fn look_ahead<S: Series<Batch<L, R>, B>, const B: usize>(
         &mut self,
@@ -195,11 +196,11 @@ impl<L: Number, const R: usize> GravityGradientSeries<Batch<L, R>> {
         in_orbit_frame: bool,
     ) {
         if !in_orbit_frame {
-            // What goes in and out stands in lines of the cache: see Batch.
+            // Stored in cache lines: see Batch.
             self.attitude[k] = self.to_orbit_frame(series.get(k).q);
         }
-        // A function of its own: within a larger one the sums are not kept in registers, and the caller of numbers with
-        // derivatives is not compiled for the widest lanes.
+        // A separate function: within a larger one the sums are not kept in registers, and the caller for numbers with derivatives
+        // is not compiled for the widest lanes.
         dispatch(Next {
             gradient: self,
             k,
@@ -208,13 +209,13 @@ impl<L: Number, const R: usize> GravityGradientSeries<Batch<L, R>> {
         });
     }
 
-    /// The coefficient that [`Self::look_ahead`] has found.
+    /// Return the coefficient that [`Self::look_ahead`] has computed.
     #[inline(always)]
     pub(super) fn coefficient(&self) -> [Batch<L, R>; 3] {
         self.coefficient
     }
 
-    /// Comes to another unit of rates in one row: `ratio` of the old one to the new one.
+    /// Change the unit of rates in one row; `ratio` is the old unit over the new one.
     pub(super) fn rescale(&mut self, row: usize, ratio: f64) {
         let (once, twice) = (L::Real::from(ratio), L::Real::from(ratio * ratio));
         let [radial, around, pull] = self.orbit.rates(row);
@@ -223,7 +224,8 @@ impl<L: Number, const R: usize> GravityGradientSeries<Batch<L, R>> {
     }
 }
 
-/// What the elements off the diagonal of the tensor add to a coefficient, from those of m up to it and of the products of m.
+/// Computes the part of a coefficient that elements off the diagonal of the tensor make, from the coefficients of m up to its order
+/// and of the products of m.
 struct OffDiagonalTorque<'a, T, const B: usize> {
     pointing: &'a [[T; 3]],
     products: [T; 3],
@@ -252,7 +254,7 @@ impl<N: Number, const R: usize, const B: usize> Kernel for OffDiagonalTorque<'_,
     }
 }
 
-/// A frame, and an attitude as seen from it.
+/// Transforms an attitude relative to a frame; the frame is the first field.
 struct ToSpace<T>([T; 4], [T; 4]);
 
 impl<N: Number, const R: usize> Kernel for ToSpace<Batch<N, R>> {
@@ -270,7 +272,7 @@ impl<N: Number, const R: usize> Kernel for ToSpace<Batch<N, R>> {
     }
 }
 
-/// The series of an orbit.
+/// Computes the series of an orbit.
 struct Expand<'a, T> {
     orbit: &'a mut OrbitSeries<T>,
     order: usize,
@@ -285,7 +287,7 @@ impl<N: Number, const R: usize> Kernel for Expand<'_, Batch<N, R>> {
     }
 }
 
-/// The next coefficient of a gradient, whose attitude is that of the series or its own.
+/// Computes the next coefficient of a gravity gradient. Without `series` the attitude is that of the gradient itself.
 struct Next<'a, L, S, const R: usize, const B: usize> {
     gradient: &'a mut GravityGradientSeries<Batch<L, R>>,
     k: usize,
@@ -298,8 +300,8 @@ impl<N: Number, S: Series<Batch<N, R>, B>, const R: usize, const B: usize> Kerne
 {
     type Output = ();
 
-    /// Sums of what is known before `q` come first, and what the newest order takes part in last: it is linear in it, and the
-    /// processor, which may still be busy with `q`, does not wait.
+    /// Sums of coefficients that are known before `q` come first. The terms with the newest order, which are linear in it, come last:
+    /// so the processor, which may still be computing `q`, does not wait.
     #[inline(always)]
     fn run<L: Lane>(self) {
         let Self {
@@ -326,7 +328,7 @@ impl<N: Number, S: Series<Batch<N, R>, B>, const R: usize, const B: usize> Kerne
                 it.attitude[k],
             ),
         };
-        // Written out, since a closure of `map` would be compiled without the instructions of the level.
+        // Written out: a closure of `map` would be compiled without the instructions of the level.
         let [x, y, z, w] = attitude;
         let turned = if k > 0 {
             [e + x, f + y, g + z, h + w]
@@ -359,24 +361,24 @@ impl<N: Number, S: Series<Batch<N, R>, B>, const R: usize, const B: usize> Kerne
         let ([a, b, c], [p, q, r]) = (it.on_products, products);
         it.coefficient = [a * p, b * q, c * r];
         if it.has_off_diagonal {
-            let CacheAligned(aside) = dispatch(OffDiagonalTorque {
+            let CacheAligned(off_diagonal) = dispatch(OffDiagonalTorque {
                 pointing: &it.pointing[..=k],
                 products,
                 linear_terms,
                 strength: it.strength,
             });
-            it.coefficient = plus(it.coefficient, aside);
+            it.coefficient = plus(it.coefficient, off_diagonal);
         }
     }
 }
 
-// The sums of products that the torque is made of.
+// Sums of products for the torque.
 
-// The components are written out, since a loop would keep the sums in memory.
+// The components are written out: a loop would keep the sums in memory.
 
-/// `sums` and the products that make the coefficients of `c̄ q`, which are `(a − ib)(x + iy)` and `(a − ib)(w + iz)`: three of each,
-/// as in [`series`](super::series). They are those of `a` with `x + y`, of `a + b` with x, of `a − b` with y; Re is the first less the
-/// third, Im the first less the second.
+/// Add the products for a coefficient of `c̄ q`, that is `(a − ib)(x + iy)` and `(a − ib)(w + iz)`, to `sums`: three real products
+/// each, as in [`series`](super::series). They are `a (x + y)`, `(a + b) x` and `(a − b) y`; Re is the first minus the third, Im the
+/// first minus the second.
 #[inline(always)]
 fn turn_terms<L: Number, const R: usize>(
     [a, b]: &[Batch<L, R>; 2],
@@ -398,10 +400,10 @@ fn turn_terms<L: Number, const R: usize>(
     ]
 }
 
-/// The sums of the squares that make m: of x, y, z, w, then of x + y, z + w, x + z, y + w.
+/// Sums of squares for m: of x, y, z, w, then of x + y, z + w, x + z, y + w.
 type Squares<T> = [T; 8];
 
-/// `sums` and the products of two orders, each once.
+/// Add the products of two orders, each once, to `sums`.
 #[inline(always)]
 fn square_terms<L: Number, const R: usize>(
     [x, y, z, w]: &[Batch<L, R>; 4],
@@ -420,7 +422,7 @@ fn square_terms<L: Number, const R: usize>(
     ]
 }
 
-/// `sums` and the products of two orders of m, each once.
+/// Add the products of two orders of m, each once, to the sums.
 #[inline(always)]
 fn crossed_terms<L: Number, const R: usize>(
     [a, b, c]: &[Batch<L, R>; 3],
@@ -434,8 +436,8 @@ fn crossed_terms<L: Number, const R: usize>(
     ]
 }
 
-/// Half of the coefficient of m = (x² + w² − y² − z², 2 (xy − zw), 2 (xz + yw)) from the products of two orders, each once; the
-/// coefficient from those of one order with itself.
+/// Compute half of the coefficient of m = (x² + w² − y² − z², 2 (xy − zw), 2 (xz + yw)) from the products of two orders, each once; or
+/// the whole coefficient from those of one order with itself.
 #[inline(always)]
 fn pointing_from_squares<L: Number, const R: usize>(
     [x, y, z, w, xy, zw, xz, yw]: Squares<Batch<L, R>>,
@@ -448,13 +450,13 @@ fn pointing_from_squares<L: Number, const R: usize>(
     ]
 }
 
-// Each of these sums is a function of its own: within a larger one they are not kept in registers.
+// Each of these sums is a separate function: within a larger one they are not kept in registers.
 
-/// The sums over slices of coefficients of m and of Q, the first with the last and so on: what they give to a coefficient of
-/// (m₂m₃, m₃m₁, m₁m₂), and to one of m.
+/// Sums the products of coefficients of m and of Q, the first with the last and so on: their parts of a coefficient of
+/// (m₂m₃, m₃m₁, m₁m₂), and of one of m.
 struct PairedSums<'a, T> {
     pointing: &'a [[T; 3]],
-    /// As many.
+    /// As many as of m.
     turned: &'a [[T; 4]],
 }
 
@@ -495,7 +497,7 @@ impl<N: Number, const R: usize> Kernel for PairedSums<'_, Batch<N, R>> {
     }
 }
 
-/// Coefficients of an attitude.
+/// Coefficients of an attitude, by their orders.
 trait AttitudeCoefficients<T> {
     fn at(&self, order: usize) -> [T; 4];
 }
@@ -507,7 +509,7 @@ impl<T: Copy, const COUNT: usize> AttitudeCoefficients<T> for &[[T; 4]; COUNT] {
     }
 }
 
-/// Those of the series of a motion.
+/// Coefficients of the attitude in the series of a motion.
 struct SeriesAttitudes<'a, S, T, const B: usize>(&'a S, PhantomData<T>);
 
 impl<'a, S, T, const B: usize> SeriesAttitudes<'a, S, T, B> {
@@ -526,7 +528,7 @@ impl<T: Copy, S: Series<T, B>, const B: usize> AttitudeCoefficients<T>
     }
 }
 
-/// The sum of the products of the slice backward with the coefficients from order 0 on: what they give to a coefficient of `c̄ q`.
+/// Sums the products of the slice, backward, with the coefficients from order 0 on: their part of a coefficient of `c̄ q`.
 struct HalfTurnProduct<'a, T, Q>(&'a [[T; 2]], Q);
 
 impl<N: Number, Q: AttitudeCoefficients<Batch<N, R>>, const R: usize> Kernel

@@ -1,4 +1,4 @@
-//! The states that a load has of its own: wheels and slugs.
+//! The internal states of a load: those of wheels and dampers.
 
 use super::batch::{Batch, CacheAligned, cross_term, plus};
 use super::principal_frame::Precision;
@@ -18,7 +18,7 @@ use crate::numerics::number::Number;
 /// ż = c + r z + b·ω + a·q,   N = Σ z p − ω × Σ z g
 /// ```
 ///
-/// where a vector s among them has the rate `−ω × s` besides.
+/// A vector s among them has the rate `−ω × s` in addition.
 #[derive(Clone, Debug)]
 #[repr(align(64))] // see Batch
 pub(super) struct InternalStates<T> {
@@ -28,7 +28,7 @@ pub(super) struct InternalStates<T> {
     inverse_moments: [T; 3],
 }
 
-/// One of them.
+/// One state.
 #[derive(Clone, Debug)]
 #[repr(align(64))] // see Batch
 struct InternalState<T> {
@@ -42,15 +42,15 @@ struct InternalState<T> {
     on_omega: [T; 3],
     on_attitude: [T; 4],
     turned: Option<(usize, usize)>,
-    /// What counts as large beside the fastest ω, and the largest it has been.
+    /// Its natural size over the largest ω, and its largest size so far.
     size: T,
     largest: T,
-    /// With derivatives the same of each, for the whole vector in its first component.
+    /// The same with derivatives; for a vector in its first component.
     radius: ConvergenceRadius,
 }
 
 impl<L: Number<Real: Precision>, const R: usize> InternalStates<Batch<L, R>> {
-    /// So many, all zero.
+    /// Return `count` states, all zero.
     pub(super) fn new(count: usize) -> Self {
         let zero = Batch::new(0.0);
         let none = InternalState {
@@ -75,7 +75,7 @@ impl<L: Number<Real: Precision>, const R: usize> InternalStates<Batch<L, R>> {
         }
     }
 
-    /// Sets the states of one row.
+    /// Set the states of one row at the start of a motion.
     pub(super) fn set(&mut self, row: usize, values: &[L::Real]) {
         for (state, &value) in self.states.iter_mut().zip(values) {
             state.value.put(row, value);
@@ -84,14 +84,14 @@ impl<L: Number<Real: Precision>, const R: usize> InternalStates<Batch<L, R>> {
         }
     }
 
-    /// Other values of the states of one row, which go on.
+    /// Change the values of the states of one row within a motion.
     pub(super) fn put(&mut self, row: usize, values: &[L::Real]) {
         for (state, &value) in self.states.iter_mut().zip(values) {
             state.value.put(row, value);
         }
     }
 
-    /// Sets what the states of one row do, in units of the unit of rates.
+    /// Set the equations of the states of one row, in the unit of rates.
     pub(super) fn set_rates(
         &mut self,
         row: usize,
@@ -120,7 +120,7 @@ impl<L: Number<Real: Precision>, const R: usize> InternalStates<Batch<L, R>> {
         }
     }
 
-    /// Leaves one row without effect.
+    /// Remove the states of one row.
     pub(super) fn clear(&mut self, row: usize) {
         let none = Own::default();
         let count = self.states.len();
@@ -135,7 +135,8 @@ impl<L: Number<Real: Precision>, const R: usize> InternalStates<Batch<L, R>> {
         }
     }
 
-    /// `sum` and the coefficient of order `k` of the angular acceleration by the states; and theirs of order k + 1.
+    /// Add the coefficient of order `k` of the angular acceleration by the states to `sum`, and compute the coefficients of order
+    /// k + 1 of the states.
     #[inline(always)]
     pub(super) fn plus_coefficients<const B: usize>(
         &mut self,
@@ -177,7 +178,7 @@ impl<L: Number<Real: Precision>, const R: usize> InternalStates<Batch<L, R>> {
         [x * a, y * b, z * c]
     }
 
-    /// The coefficients of order k + 1 of the states.
+    /// Compute the coefficients of order k + 1 of the states.
     #[inline(always)]
     fn extend<const B: usize>(&mut self, k: usize, series: &impl Series<Batch<L, R>, B>) {
         let at = series.get(k);
@@ -208,7 +209,7 @@ impl<L: Number<Real: Precision>, const R: usize> InternalStates<Batch<L, R>> {
         }
     }
 
-    /// Keeps each step so short that the last two terms of the states are `tolerance` at most, relative to what counts as large.
+    /// Shorten each step until the last two terms of the states are at most `tolerance`, relative to the largest size.
     #[inline(always)]
     pub(super) fn limit(
         &mut self,
@@ -222,7 +223,7 @@ impl<L: Number<Real: Precision>, const R: usize> InternalStates<Batch<L, R>> {
         }
         for row in 0..R {
             let (mut last, mut last_but_one) = (0.0, 0.0);
-            // What is not a number is lost among the largest, but not in the sum.
+            // A NaN is lost in the maximum, but not in the sum.
             let mut sum = 0.0;
             for state in &self.states {
                 let natural = state.size.get(row) * fastest[row];
@@ -248,7 +249,7 @@ impl<L: Number<Real: Precision>, const R: usize> InternalStates<Batch<L, R>> {
         }
     }
 
-    /// The same with derivatives, of which each is as good.
+    /// Shorten each step in the same way for numbers with derivatives.
     #[inline(never)]
     fn limit_with_derivatives(&mut self, steps: &mut [f64; R]) {
         let mut first = 0;
@@ -271,7 +272,7 @@ impl<L: Number<Real: Precision>, const R: usize> InternalStates<Batch<L, R>> {
                     sum
                 };
                 let most = radius.longest_step_of(&sizes);
-                // Not a number wherever one of them is not.
+                // NaN if one of the two is NaN.
                 *h = if most >= *h { *h } else { most };
             }
             self.states[first].radius = radius;
@@ -279,7 +280,7 @@ impl<L: Number<Real: Precision>, const R: usize> InternalStates<Batch<L, R>> {
         }
     }
 
-    /// The states of one row after the time `h`.
+    /// Compute the states of one row after the time `h`.
     #[inline(always)]
     pub(super) fn within(&self, row: usize, order: usize, h: Batch<L, R>) -> Vec<L::Real> {
         let mut moved = Vec::with_capacity(self.states.len());
@@ -291,7 +292,7 @@ impl<L: Number<Real: Precision>, const R: usize> InternalStates<Batch<L, R>> {
         moved
     }
 
-    /// Goes on by the time `h`.
+    /// Advance the states by the time `h`.
     #[inline(always)]
     pub(super) fn advance(&mut self, order: usize, h: Batch<L, R>) {
         for state in &mut self.states {
@@ -306,20 +307,20 @@ impl<L: Number<Real: Precision>, const R: usize> InternalStates<Batch<L, R>> {
         }
     }
 
-    /// The states of one row.
+    /// Return the states of one row.
     pub(super) fn now(&self, row: usize) -> Vec<L::Real> {
         let values = self.states.iter();
         values.map(|state| state.value.real(row)).collect()
     }
 
-    /// The coefficients of order `k` of the states of one row; of order 0 what rounding left out of them.
+    /// Return the coefficients of order `k` of the states of one row.
     pub(super) fn coefficients(&self, row: usize, k: usize) -> Vec<L::Real> {
         let coefficients = self.states.iter().map(|state| state.series[k].real(row));
         coefficients.collect()
     }
 }
 
-/// The coefficients of one order of several rows: a function of its own, as that of [formulas](super::formulas).
+/// Computes the coefficients of one order of several rows. A separate function, as in [`formulas`](super::formulas).
 struct Next<'a, L, S, const R: usize, const B: usize> {
     states: &'a mut InternalStates<Batch<L, R>>,
     k: usize,
@@ -338,7 +339,7 @@ impl<N: Number<Real: Precision>, S: Series<Batch<N, R>, B>, const R: usize, cons
 }
 
 impl<L: Number, const R: usize> InternalState<Batch<L, R>> {
-    /// As [`increment`](super::series::increment).
+    /// Compute the change within the time `h`, as [`increment`](super::series::increment) does.
     #[inline(always)]
     fn increment(&self, order: usize, h: Batch<L, R>) -> Batch<L, R> {
         let square = h * h;

@@ -1,4 +1,4 @@
-//! The equations of a motion between two breaks of its load, as far as they are linear in the coefficients of one order.
+//! The terms of the equations that are linear in the coefficients of one order, between two breaks of the load.
 
 use super::batch::Batch;
 use super::series::Coefficient;
@@ -14,22 +14,22 @@ type Square<T> = [[T; 3]; 3];
 #[derive(Clone, Debug)]
 pub(super) struct LinearTerms<T, const B: usize> {
     pub(super) kappa: [T; 3],
-    /// One over the moments, and the elements 23, 31, 12 of the tensor, which are zero where nothing is varied.
+    /// One over the moments, and the elements 23, 31, 12 of the tensor: zero without derivatives.
     pub(super) inverse_moments: [T; 3],
     pub(super) products: [T; 3],
-    /// κ and the elements 23, 31, 12 of the tensor that a gravity gradient pulls: of the body with its wheels locked.
+    /// κ and the elements 23, 31, 12 of the tensor for the gravity gradient: of the body with its wheels locked.
     pub(super) pull: ([T; 3], [T; 3]),
     pub(super) constant: [T; 3],
     pub(super) on_omega: Square<T>,
     pub(super) on_attitude: [[T; 4]; 3],
     pub(super) on_space: [Square<T>; B],
-    /// Force over mass in N, and that constant in the body.
+    /// Force over mass: constant in N, and constant in the body.
     pub(super) force: [T; 3],
     pub(super) thrust: [T; 3],
 }
 
 impl<T: Copy, const B: usize> LinearTerms<T, B> {
-    /// Nothing turns.
+    /// Return terms that are all zero.
     #[inline(always)]
     pub(super) fn none(zero: T) -> Self {
         Self {
@@ -48,8 +48,7 @@ impl<T: Copy, const B: usize> LinearTerms<T, B> {
 }
 
 impl<X: Copy + Default + PartialEq, const B: usize> LinearTerms<X, B> {
-    /// Whether nothing turns about each of the axes, so that its component of ω is constant: that of a symmetric body,
-    /// when no torque acts about it.
+    /// Return whether each component of ω is constant: that along the axis of a symmetric body without a torque about it.
     pub(super) fn constant_components(&self) -> [bool; 3] {
         let zero = X::default();
         [0, 1, 2].map(|n| {
@@ -67,7 +66,7 @@ impl<X: Copy + Default + PartialEq, const B: usize> LinearTerms<X, B> {
 }
 
 impl<L: Number, const R: usize, const B: usize> LinearTerms<Batch<L, R>, B> {
-    /// Sets the field of one row.
+    /// Set the terms of one row.
     #[inline(always)]
     pub(super) fn set(&mut self, row: usize, linear_terms: &LinearTerms<L::Real, B>) {
         for n in 0..3 {
@@ -95,7 +94,7 @@ impl<L: Number, const R: usize, const B: usize> LinearTerms<Batch<L, R>, B> {
         }
     }
 
-    /// The coefficient of order `k` of ω̇ from the products of ω's series and the coefficients of that order.
+    /// Compute the coefficient of order `k` of ω̇ from the products of the series of ω and the coefficients of that order.
     #[inline(always)]
     pub(super) fn acceleration(
         &self,
@@ -104,7 +103,7 @@ impl<L: Number, const R: usize, const B: usize> LinearTerms<Batch<L, R>, B> {
         products: [Batch<L, R>; 3],
         at: &Coefficient<Batch<L, R>, B>,
     ) -> [Batch<L, R>; 3] {
-        // Written out, since a loop would keep the sums in memory.
+        // Written out: a loop would keep the sums in memory.
         let [mut x, mut y, mut z] = [Batch::new(0.0); 3];
         if k == 0 {
             let [a, b, c] = self.constant;
@@ -133,18 +132,18 @@ impl<L: Number, const R: usize, const B: usize> LinearTerms<Batch<L, R>, B> {
 }
 
 impl<L: Number, const R: usize, const B: usize> LinearTerms<Batch<L, R>, B> {
-    /// Whether elements off the diagonal of the tensor are varied.
+    /// Return whether elements off the diagonal of the tensor have derivatives.
     pub(super) fn has_off_diagonal(&self) -> bool {
         !are_zero(&self.products)
     }
 
-    /// Whether the tensor that a gravity gradient pulls has elements off the diagonal.
+    /// Return whether the tensor for the gravity gradient has elements off the diagonal.
     pub(super) fn pull_has_off_diagonal(&self) -> bool {
         !are_zero(&self.pull.1)
     }
 
-    /// What the elements 23, 31, 12 of a tensor add to `−x×I x`, over the moments, with the coefficients of (x₂x₃, x₃x₁, x₁x₂)
-    /// and of (x₁², x₂², x₃²); cyclic in i, j, k:
+    /// Compute the part of `−x×I x`, over the moments, that the elements 23, 31, 12 of a tensor make, from the coefficients of
+    /// (x₂x₃, x₃x₁, x₁x₂) and of (x₁², x₂², x₃²); cyclic in i, j, k:
     ///
     /// ```text
     /// −I_ki x_i x_j + I_ij x_k x_i + I_jk (x_k² − x_j²)
@@ -164,7 +163,7 @@ impl<L: Number, const R: usize, const B: usize> LinearTerms<Batch<L, R>, B> {
         sum
     }
 
-    /// `I⁻¹ N` to first order in these elements, from N over the moments.
+    /// Compute `I⁻¹ N` to first order in these elements, from N over the moments.
     pub(super) fn divide_by_off_diagonal(&self, quotient: &[Batch<L, R>; 3]) -> [Batch<L, R>; 3] {
         let (p, a) = (&self.products, quotient);
         [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
@@ -177,7 +176,7 @@ fn are_zero<L: Number, const R: usize>(numbers: &[Batch<L, R>; 3]) -> bool {
     numbers.iter().all(is_zero)
 }
 
-/// `sum + a·b`.
+/// Compute `sum + a·b`.
 #[inline(always)]
 fn plus_product<L: Number, const R: usize, const N: usize>(
     a: &[Batch<L, R>; N],

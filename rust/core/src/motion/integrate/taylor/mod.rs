@@ -1,26 +1,22 @@
 //! Taylor series: each step sums the power series of the motion in time, to the order at which the work is least.
 //!
-//! | file | what it knows |
+//! | file | contents |
 //! |---|---|
-//! | `principal_frame` | the principal axes, in doubles or in numbers of twice the precision |
-//! | `equations` | one motion: its load in principal axes, from break to break, in a unit of its own |
-//! | `linear_terms` | the equations that are linear in the coefficients of one order |
-//! | `formulas`, `terms`, `gravity_gradient`, `pulled`, `nonlinear` | the recurrences of terms that are not |
-//! | `orbit_series`, `orbit_cache` | the series of an orbit, and where motions look them up |
-//! | `series` | the coefficients, and what is asked of the sums of their products |
-//! | `single_series`, `batch_series` | these sums, the lanes over the components of one motion or over motions |
-//! | `double_double_series` | these sums in numbers of twice the precision |
-//! | `variational_series`, `row`, `pace` | these sums in numbers with derivatives, and how far they reach |
-//! | `directions` | directions of space as seen from the body |
-//! | `translation` | the path of a body that forces act on |
-//! | `internal_states` | the states that a load has of its own |
-//! | `step` | the length of a step, the state at its end or within |
-//! | `drive` | steps, outputs, breaks, until all motions are done; `seen`: each step as it is made |
-//! | `batch` | one number of several motions |
-//! | `one`, `many` | the motion of one task, of many tasks on all cores |
-//! | `varied` | the motion of one task with its derivatives |
-//! | `job` | what there is to do of a task |
-//! | `kernels` | motions in the lanes that serve them |
+//! | `run` | the motion of one task, of many tasks on all cores, of one task with its derivatives |
+//! | `driver`, `stops` | the loop over steps of several motions side by side; outputs, breaks and switches of the load within a step |
+//! | `step` | length of a step, state with its rounding errors, a finished step as polynomials in time |
+//! | `equations` | equations of one motion: principal axes, unit of rates, segments from break to break of the load |
+//! | `principal_frame` | principal axes and moments, in doubles, in double-double, or with derivatives |
+//! | `linear_terms` | terms that are linear in the coefficients of one order |
+//! | `nonlinear` | all other terms; torques that depend on time alone |
+//! | `formulas` | torques that are not linear in ω, such as quadratic damping |
+//! | `gravity_gradient`, `orbit_series`, `orbit_cache` | gravity gradient, the series of its orbit, and a cache of such series |
+//! | `internal_states` | states of wheels and dampers |
+//! | `translation` | path of the centre of mass under forces |
+//! | `series` | recursion for ω, attitude and directions: what every series below implements |
+//! | `single_series`, `batch_series` | one motion with its components in the lanes; several motions, one in each lane |
+//! | `double_double_series`, `variational_series` | one motion in double-double; one motion with derivatives |
+//! | `batch` | arithmetic with one number of several motions |
 //!
 //! Sources: Jorba & Zou, Experimental Mathematics 14 (2005) 99; Hairer, Nørsett & Wanner, Solving ODEs I, §I.8.
 

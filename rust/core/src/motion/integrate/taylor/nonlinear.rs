@@ -1,4 +1,4 @@
-//! The terms of a load that are not linear in the coefficients of one order, together.
+//! All terms of a load that are not linear in the coefficients of one order.
 
 use nalgebra::Vector3;
 
@@ -12,30 +12,30 @@ use super::series::Series;
 use crate::motion::loads::{Forcing, OnOrbit, Parts};
 use crate::numerics::number::Number;
 
-/// Those that the load has; most loads have none.
+/// The nonlinear terms of a load; most loads have none.
 #[derive(Clone, Debug)]
 pub(super) struct NonlinearTerms<T> {
     is_empty: bool,
     pub(super) formulas: Formulas<T>,
     forced: Option<Box<ForcedTorques<T>>>,
     gradients: Vec<GravityGradientSeries<T>>,
-    /// The rows whose orbits have come from the step before.
+    /// The rows whose orbits continue from the step before.
     are_continued: Vec<bool>,
-    /// What the almanac has of the rows, and what motions that were there before have put down.
+    /// Where the orbits of each row come from, and the cache.
     sources: Vec<OrbitSource>,
     pub(super) cache: OrbitSeriesCache,
-    /// Whether the series are of the attitude as seen from the orbit's frame at the start of the step.
+    /// Whether the series of the attitude are relative to the frame of the orbit at the start of the step.
     in_orbit_frame: bool,
 }
 
-/// Where the orbits of a row come from in a step, in which unit of rates.
+/// Where the orbits of a row come from in a step, and the unit of rates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum OrbitSource {
-    /// Not from the almanac.
+    /// The cache is not used.
     Uncached,
-    /// From the page of this number.
+    /// From the entry of this number.
     Cached(usize, f64),
-    /// Their series are to be found, and put down for this place.
+    /// Their series must be computed and inserted with this key.
     Missing(CacheKey, f64),
 }
 
@@ -62,7 +62,7 @@ impl<L: Number<Real: Precision>, const R: usize> NonlinearTerms<Batch<L, R>> {
         }
     }
 
-    /// The attitude that the series begin with, from that in N.
+    /// Compute the initial attitude of the series from that in N.
     #[inline(always)]
     pub(super) fn initial_attitude(&self, attitude: [Batch<L, R>; 4]) -> [Batch<L, R>; 4] {
         match &self.gradients[..] {
@@ -71,7 +71,7 @@ impl<L: Number<Real: Precision>, const R: usize> NonlinearTerms<Batch<L, R>> {
         }
     }
 
-    /// A sum or a coefficient of the attitude's series, in N.
+    /// Transform a sum or a coefficient of the series of the attitude to N.
     #[inline(always)]
     pub(super) fn to_space(&self, attitude: [Batch<L, R>; 4]) -> [Batch<L, R>; 4] {
         match &self.gradients[..] {
@@ -80,7 +80,7 @@ impl<L: Number<Real: Precision>, const R: usize> NonlinearTerms<Batch<L, R>> {
         }
     }
 
-    /// What a step adds to the state, its attitude in N.
+    /// Transform the change of the state in a step: its attitude to N.
     #[inline(always)]
     pub(super) fn change_in_space(&self, change: [Batch<L, R>; 7]) -> [Batch<L, R>; 7] {
         let [a, b, c, x, y, z, w] = change;
@@ -88,7 +88,7 @@ impl<L: Number<Real: Precision>, const R: usize> NonlinearTerms<Batch<L, R>> {
         [a, b, c, x, y, z, w]
     }
 
-    /// Whether nothing but orbits goes with the time.
+    /// Return whether nothing but orbits depends on time.
     #[inline(always)]
     pub(super) fn has_only_orbits(&self) -> bool {
         self.forced.is_none()
@@ -99,7 +99,7 @@ impl<L: Number<Real: Precision>, const R: usize> NonlinearTerms<Batch<L, R>> {
         self.forced.is_some() || !self.gradients.is_empty()
     }
 
-    /// What depends on time in one row, at the start of a step.
+    /// Set the terms of one row that depend on time, at the start of a step.
     #[inline(never)]
     pub(super) fn set(
         &mut self,
@@ -118,11 +118,11 @@ impl<L: Number<Real: Precision>, const R: usize> NonlinearTerms<Batch<L, R>> {
         }
     }
 
-    /// Whether orbits are found anew in every step, in doubles: then motions side by side look them up.
+    /// Whether orbits are computed again for every step, in doubles; several motions side by side then use the cache.
     const RECOMPUTES_ORBITS: bool = !L::VARIES && !L::Real::CARRIES_ORBITS;
     const USES_CACHE: bool = R > 1 && Self::RECOMPUTES_ORBITS;
 
-    /// Whether the orbits of one row, where a step begins, are known already.
+    /// Return whether the orbits of one row at the start of a step are known already.
     #[inline(always)]
     pub(super) fn look_up(&mut self, row: usize, key: impl FnOnce() -> (CacheKey, f64)) -> bool {
         if !Self::USES_CACHE || self.gradients.is_empty() {
@@ -137,8 +137,8 @@ impl<L: Number<Real: Precision>, const R: usize> NonlinearTerms<Batch<L, R>> {
         known.is_some()
     }
 
-    /// The series of the orbits: read where those of all rows are known, else found for all and put down. In no step are pages read
-    /// after one is put down, which may take the place of another.
+    /// Compute the series of the orbits, or read them from the cache if those of all rows are there. All reads of a step come before
+    /// its inserts, because an insert may replace an entry.
     #[inline(always)]
     pub(super) fn expand(&mut self, order: usize) {
         if Self::USES_CACHE && self.restore_all(order) {
@@ -160,7 +160,7 @@ impl<L: Number<Real: Precision>, const R: usize> NonlinearTerms<Batch<L, R>> {
         }
     }
 
-    /// Gives all rows their orbits at once, if they are all known; a row without motion gets those of another.
+    /// Restore the orbits of all rows if all are in the cache; a row without a motion gets those of another.
     #[inline(always)]
     fn restore_all(&mut self, order: usize) -> bool {
         let (mut entries, mut any) = ([None; R], None);
@@ -185,7 +185,7 @@ impl<L: Number<Real: Precision>, const R: usize> NonlinearTerms<Batch<L, R>> {
         true
     }
 
-    /// A step from `now`, as long ago as that is, shortened so that orbits may be looked up at its end.
+    /// Shorten a step from `now`, the time since the start, so that the cache may contain the orbits at its end.
     #[inline(always)]
     pub(super) fn shorten_step(&self, now: (f64, f64), h: f64) -> f64 {
         if self.gradients.is_empty() || L::VARIES || L::Real::CARRIES_ORBITS {
@@ -195,7 +195,7 @@ impl<L: Number<Real: Precision>, const R: usize> NonlinearTerms<Batch<L, R>> {
         }
     }
 
-    /// Goes on to the end of a step of length `h`.
+    /// Continue the orbits to the end of a step of length `h`.
     #[inline(always)]
     pub(super) fn advance(&mut self, order: usize, h: Batch<L, R>) {
         if L::Real::CARRIES_ORBITS {
@@ -206,19 +206,19 @@ impl<L: Number<Real: Precision>, const R: usize> NonlinearTerms<Batch<L, R>> {
         }
     }
 
-    /// Comes to another unit of rates in one row: `ratio` of the old one to the new one.
+    /// Change the unit of rates in one row; `ratio` is the old unit over the new one.
     pub(super) fn rescale(&mut self, row: usize, ratio: f64) {
         for gradient in &mut self.gradients {
             gradient.rescale(row, ratio);
         }
     }
 
-    /// Has the orbits of one row found anew.
+    /// Let the orbits of one row be computed again.
     pub(super) fn restart(&mut self, row: usize) {
         self.are_continued[row] = false;
     }
 
-    /// Leaves one row without such terms.
+    /// Remove the terms of one row.
     pub(super) fn clear(&mut self, row: usize) {
         self.restart(row);
         self.sources[row] = OrbitSource::Uncached;
@@ -238,8 +238,8 @@ impl<L: Number<Real: Precision>, const R: usize> NonlinearTerms<Batch<L, R>> {
         self.formulas.start(fastest);
     }
 
-    /// Finds what of order `k` depends on the attitude alone, whose coefficient of that order is known sooner than that of ω: the processor
-    /// does both side by side.
+    /// Compute the part of order `k` that depends on the attitude alone. The coefficient of the attitude is known sooner than that of
+    /// ω, so the processor computes both side by side.
     #[inline(always)]
     pub(super) fn look_ahead<const B: usize>(
         &mut self,
@@ -252,7 +252,7 @@ impl<L: Number<Real: Precision>, const R: usize> NonlinearTerms<Batch<L, R>> {
         }
     }
 
-    /// `sum` and the coefficients of order `k` of the angular acceleration by all of them.
+    /// Add the coefficients of order `k` of the angular acceleration by all terms to `sum`.
     #[inline(always)]
     pub(super) fn plus_coefficients<const B: usize>(
         &mut self,
@@ -274,13 +274,14 @@ impl<L: Number<Real: Precision>, const R: usize> NonlinearTerms<Batch<L, R>> {
     }
 }
 
-/// Whether nothing but one gravity gradient depends on the attitude: then its series may be as seen from any frame.
+/// Return whether nothing but one gravity gradient depends on the attitude: then its series may be relative to any frame.
 fn is_of_orbit_alone(parts: &Parts) -> bool {
     let sees_space = parts.directions > 0 || parts.on_attitude || parts.is_pushed;
     parts.gradients == 1 && !sees_space && !parts.is_timed && parts.own == 0
 }
 
-/// Torques that are cubics in time, in the body or in space: of the latter `Σ_j τ_j·γ_{k−j}` with the axes γ of space.
+/// Torques that are cubic polynomials in time, in the body or in space; in space the coefficient is `Σ_j τ_j·γ_{k−j}` with the axes
+/// γ of space.
 #[derive(Clone, Debug)]
 #[repr(align(64))] // see Batch
 struct ForcedTorques<T> {
@@ -300,7 +301,7 @@ impl<L: Number, const R: usize> ForcedTorques<Batch<L, R>> {
         }
     }
 
-    /// The cubics of one row at the start of a step.
+    /// Set the polynomials of one row at the start of a step.
     fn set(&mut self, row: usize, forcing: &Forcing<L::Real>, inverse_moments: &Vector3<L::Real>) {
         for i in 0..3 {
             for k in 0..4 {
@@ -311,7 +312,7 @@ impl<L: Number, const R: usize> ForcedTorques<Batch<L, R>> {
         }
     }
 
-    /// The coefficient of order `k` of the angular acceleration, components in principal axes.
+    /// Compute the coefficient of order `k` of the angular acceleration, components in principal axes.
     #[inline(always)]
     fn coefficient<const B: usize>(
         &self,
@@ -349,7 +350,7 @@ mod tests {
     type Pair = Batch<Double<false>, 2>;
     const ORDER: usize = 6;
 
-    /// Places on one shelf: as many as it has pages, and one more.
+    /// Return keys of one bucket: one more than it has entries.
     fn neighbours() -> Vec<CacheKey> {
         let key = |k: u32| CacheKey {
             when: [f64::from(k).to_bits(), 0, 0],
@@ -360,13 +361,13 @@ mod tests {
         in_the_bucket.take(ENTRIES + 1).collect()
     }
 
-    /// An orbit of its own for each number.
+    /// Return a different orbit for each number.
     fn orbit(number: usize) -> [f64; INITIAL_NUMBERS] {
         let x = 0.125 * (1 + number) as f64;
         [0.1, 0.2, 0.3, 0.9, x, 2.0 * x, 3.0 * x, 4.0 * x]
     }
 
-    /// What one row has of its orbit.
+    /// Return the numbers of the orbit of one row.
     fn orbit_numbers(nonlinear: &mut NonlinearTerms<Pair>, row: usize) -> (Vec<f64>, Vec<f64>) {
         let gradient = &mut nonlinear.gradients[0];
         let initial_numbers = gradient.initial_numbers(row).to_vec();
@@ -375,10 +376,10 @@ mod tests {
         (initial_numbers, half_turn)
     }
 
-    /// A row finds an orbit and puts it down on a full shelf, in the place of the page that the row beside it is to read in the same
-    /// step, whichever of the two comes first.
+    /// One row inserts an orbit into a full bucket and replaces the entry that the other row reads in the same step, whichever of the
+    /// two comes first.
     #[test]
-    fn pages_are_read_before_one_is_put_down() {
+    fn entries_are_read_before_one_is_replaced() {
         let (keys, new) = (neighbours(), ENTRIES);
         let one_gradient = Parts {
             gradients: 1,
@@ -391,7 +392,7 @@ mod tests {
                 let mut nonlinear = NonlinearTerms::<Pair>::new(&one_gradient);
                 let mut expected = Vec::new();
                 for (number, key) in keys[..ENTRIES].iter().enumerate() {
-                    // Neither row finds it: both seek it, and put it down with the same numbers.
+                    // Neither row finds it: both compute it and insert it with the same numbers.
                     for row in 0..2 {
                         assert!(!nonlinear.look_up(row, || (*key, 1.0)));
                         nonlinear.gradients[0].restore(row, orbit(number));
@@ -413,7 +414,7 @@ mod tests {
                     orbit(new),
                     "entry {entry}"
                 );
-                // The new page is there, and the page that was read may be gone.
+                // The new entry is there, and the entry that was read may be gone.
                 assert!(nonlinear.look_up(seeker, || (keys[new], 1.0)));
                 displaced += usize::from(!nonlinear.look_up(reader, || (keys[entry], 1.0)));
             }
@@ -421,7 +422,7 @@ mod tests {
         }
     }
 
-    /// A law that sees space beside the orbit has the series in N; the attitude goes to the orbit's frame and back.
+    /// With another term that depends on the attitude the series are in N; otherwise the attitude goes to the orbit's frame and back.
     #[test]
     fn series_are_seen_from_the_orbit_if_nothing_else_sees_space() {
         let alone = Parts {

@@ -1,4 +1,4 @@
-//! The series of orbits at the starts of steps, for all motions that come by.
+//! A cache of the series of orbits at the starts of steps, for all motions on the same orbits.
 
 use std::array::from_fn;
 use std::mem::take;
@@ -7,41 +7,40 @@ use super::batch::Batch;
 use super::gravity_gradient::{GravityGradientSeries, INITIAL_NUMBERS};
 use crate::numerics::number::Number;
 
-/// How many shelves there are, as a power of two, and pages on each.
+/// The number of buckets, as a power of two, and of entries in each.
 const LOG2_BUCKETS: u32 = 10;
 pub(super) const ENTRIES: usize = 4;
-/// Of two to the power of 64, the golden section.
+/// The golden section of 2⁶⁴, for hashes.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
-/// How far units of rates may lie apart for numbers of one to be used in the other: no power of their ratio leaves the range of
-/// float64.
+/// The largest ratio of two units of rates for which numbers of one are used in the other: its powers do not overflow.
 const MAX_UNIT_RATIO: f64 = 1_048_576.0;
 
-/// A part of a step's length below which its end is rounded.
+/// The part of the length of a step to which its end is rounded.
 const GRAIN: f64 = 1.0 / 16.0;
 
-/// What tells one start of a step from another: what acts, and when.
+/// The key of an entry: the load, and the time at which a step begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct CacheKey {
-    /// The bits of the time since the start of the motion and of what rounding leaves out of it, and of that start.
+    /// The bits of the time since the start of the motion, of its rounding error, and of that start.
     pub(super) when: [u64; 3],
-    /// The address of the terms of the load, which outlive the almanac, and how many they are.
+    /// The address of the terms of the load, which outlive the cache, and their number.
     pub(super) terms: (usize, usize),
 }
 
-/// The orbits of a load at starts of steps, as numbers of [`GravityGradientSeries`]: found once for all motions on the same orbits.
+/// The orbits of a load at starts of steps, as numbers of [`GravityGradientSeries`]: computed once for all motions on the same orbits.
 ///
-/// They depend on the place alone, and on the unit of rates, which is a power of two, to the bit: so a motion is the same whether or
-/// not another one has been there before.
+/// Every bit of them depends only on the key and on the unit of rates, which is a power of two. So a motion has the same bits with and
+/// without an entry in the cache.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OrbitSeriesCache {
-    /// The marks of the pages' places, a shelf in a line of the cache; no shelves before the first page is put down.
+    /// The hashes of the keys, a bucket in one cache line of the processor; empty before the first insert.
     hashes: Vec<[u64; ENTRIES]>,
     entries: Vec<CacheEntry>,
-    /// How many there have been.
+    /// The number of inserts so far.
     inserted: usize,
 }
 
-/// Numbers in a unit of rates.
+/// The numbers of all orbits of a load, in a unit of rates.
 #[derive(Clone, Debug)]
 pub(super) struct CacheEntry {
     key: CacheKey,
@@ -50,7 +49,7 @@ pub(super) struct CacheEntry {
 }
 
 impl CacheKey {
-    /// A number that other places hardly have, and the shelf.
+    /// Compute the hash, and the bucket.
     #[inline(always)]
     pub(super) fn hash(&self) -> (u64, usize) {
         let mixed = self.when.iter().fold(self.terms.0 as u64, |sum, bits| {
@@ -61,7 +60,7 @@ impl CacheKey {
 }
 
 impl OrbitSeriesCache {
-    /// The number of the page of a place, if there is one.
+    /// Find the number of the entry of a key.
     #[inline(always)]
     pub(super) fn find(&self, key: &CacheKey, unit: f64) -> Option<usize> {
         let (hash, bucket) = key.hash();
@@ -73,13 +72,13 @@ impl OrbitSeriesCache {
         serves.then_some(number)
     }
 
-    /// The page of a number that was found.
+    /// Return the entry of a number from [`Self::find`].
     #[inline(always)]
     pub(super) fn entry(&self, number: usize) -> &CacheEntry {
         &self.entries[number]
     }
 
-    /// Gives each row the orbits of a page that was found, in its unit of rates.
+    /// Restore the orbits of each row from an entry, in the unit of rates of the row.
     #[inline(always)]
     pub(super) fn restore_all<L: Number, const R: usize>(
         &self,
@@ -94,16 +93,16 @@ impl OrbitSeriesCache {
         }
         let size = entry_length(order);
         for (which, gradient) in gradients.iter_mut().enumerate() {
-            let mut numbers_of: [&[f64]; R] = [&[]; R];
+            let mut stored: [&[f64]; R] = [&[]; R];
             for row in 0..R {
                 let (number, _) = known[row];
-                numbers_of[row] = &self.entries[number].numbers[which * size..][..size];
+                stored[row] = &self.entries[number].numbers[which * size..][..size];
             }
-            gradient.restore_all(&numbers_of, ratio);
+            gradient.restore_all(&stored, ratio);
         }
     }
 
-    /// Puts down the orbits of one row.
+    /// Insert the orbits of one row.
     #[inline(never)]
     pub(super) fn insert<L: Number, const R: usize>(
         &mut self,
@@ -137,7 +136,7 @@ impl OrbitSeriesCache {
 }
 
 impl CacheEntry {
-    /// Of no place.
+    /// Return an entry without a key.
     fn none() -> Self {
         let key = CacheKey {
             when: [u64::MAX; 3],
@@ -150,7 +149,7 @@ impl CacheEntry {
         }
     }
 
-    /// Gives one row the orbits at the start of the step, in a unit of rates.
+    /// Restore the orbits of one row at the start of a step, in a unit of rates.
     #[inline(never)]
     pub(super) fn restore<L: Number, const R: usize>(
         &self,
@@ -159,22 +158,22 @@ impl CacheEntry {
         row: usize,
         order: usize,
     ) {
-        let numbers_of = self.numbers.chunks_exact(entry_length(order));
-        for (gradient, numbers) in gradients.iter_mut().zip(numbers_of) {
+        let stored = self.numbers.chunks_exact(entry_length(order));
+        for (gradient, numbers) in gradients.iter_mut().zip(stored) {
             gradient.restore(row, from_fn(|i| numbers[i].into()));
             gradient.rescale(row, self.unit / unit);
         }
     }
 }
 
-/// How many numbers a page has of one orbit.
+/// Return the count of numbers of one orbit in an entry.
 #[inline(always)]
 fn entry_length(order: usize) -> usize {
     INITIAL_NUMBERS + 2 * order - 2
 }
 
-/// A step from `now` (as long ago as that is) made shorter by a sixteenth at most, so that it ends at a rounder time: motions on the
-/// same orbit meet there.
+/// Shorten a step from `now`, the time since the start, by a sixteenth at most, so that it ends at a round time: there motions on the
+/// same orbit find the same key.
 #[inline(always)]
 pub(super) fn round_step_end(now: (f64, f64), h: f64) -> f64 {
     let power = f64::from_bits(h.to_bits() & (0x7ff << 52));

@@ -12,7 +12,7 @@ use crate::numerics::number::Number;
 /// λ̇ = η² − λ² − ε,   η̇ = −2 λ η,   ε̇ = −3 λ ε
 /// ```
 ///
-/// and half the turn with a power of the distance, `c = r^{−3/4} e^{iθ/2} = a + ib`, obeys `ċ = (−¾ λ + ½ i η) c`. None of it
+/// and the half turn times a power of the distance, `c = r^{−3/4} e^{iθ/2} = a + ib`, obeys `ċ = (−¾ λ + ½ i η) c`. Nothing here
 /// depends on the body.
 #[derive(Clone, Debug)]
 #[repr(align(64))] // see Batch
@@ -38,32 +38,32 @@ impl<L: Number, const R: usize> OrbitSeries<Batch<L, R>> {
         }
     }
 
-    /// The rates λ, η and ε of one row at the start of a step.
+    /// Set the rates λ, η and ε of one row at the start of a step.
     pub(super) fn set(&mut self, row: usize, [radial, around, pull]: [L::Real; 3]) {
         self.radial[0].put(row, radial);
         self.around[0].put(row, around);
         self.pull[0].put(row, pull);
     }
 
-    /// The same for all rows.
+    /// Set the rates of all rows.
     #[inline(always)]
     pub(super) fn set_all(&mut self, [radial, around, pull]: [Batch<L, R>; 3]) {
         (self.radial[0], self.around[0], self.pull[0]) = (radial, around, pull);
     }
 
-    /// Those rates.
+    /// Return the rates of one row.
     pub(super) fn rates(&self, row: usize) -> [L::Real; 3] {
         [&self.radial, &self.around, &self.pull].map(|series| series[0].real(row))
     }
 
-    /// The coefficients of c from order 0 on.
+    /// Return the coefficients of c from order 0 on.
     #[inline(always)]
     pub(super) fn half_turn(&self) -> &[[Batch<L, R>; 2]; MAX_COUNT] {
         &self.half
     }
 
-    /// Takes the coefficients of c from order 1 on that other steps have found, of each row in a unit of rates that is `ratio` of its
-    /// own: pairs from a place in a slice to its end. Row beside row, since a register is stored in one go.
+    /// Set the coefficients of c from order 1 on: pairs in a slice for each row, from an index to its end, computed in a unit of rates
+    /// that is `ratio` of that of the row. All rows of an order are set together, because a register is stored at once.
     #[inline(always)]
     pub(super) fn put_half_turns(&mut self, known: &[&[f64]; R], from: usize, ratio: Batch<L, R>) {
         let mut power = ratio;
@@ -82,7 +82,7 @@ impl<L: Number, const R: usize> OrbitSeries<Batch<L, R>> {
         }
     }
 
-    /// The coefficients up to an order.
+    /// Compute the coefficients up to an order.
     #[inline(always)]
     pub(super) fn expand(&mut self, order: usize) {
         for k in 0..order {
@@ -114,7 +114,7 @@ impl<L: Number, const R: usize> OrbitSeries<Batch<L, R>> {
         }
     }
 
-    /// The rates λ, η, ε and c at a time after the start of the step.
+    /// Compute the rates λ, η, ε and c at a time after the start of the step.
     #[inline(always)]
     pub(super) fn after(&self, order: usize, h: Batch<L, R>) -> [Batch<L, R>; 5] {
         let mut sums = [Batch::new(0.0); 5];

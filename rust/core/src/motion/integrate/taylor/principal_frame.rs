@@ -1,4 +1,4 @@
-//! The principal frame of a motion, to the precision of its numbers.
+//! The principal frame of a motion, in the numbers of its run.
 
 use nalgebra::Matrix3;
 
@@ -19,7 +19,7 @@ pub(super) struct PrincipalFrame<X> {
     pub(super) moments: [X; 3],
     /// I₂ − I₃, I₃ − I₁, I₁ − I₂.
     pub(super) differences: [X; 3],
-    /// The elements 23, 31, 12 of the tensor: zero, but what is varied may be one of them.
+    /// The elements 23, 31, 12 of the tensor: zero, but they may carry derivatives.
     pub(super) products: [X; 3],
     /// Columns, in B.
     pub(super) axes: Matrix3<X>,
@@ -27,20 +27,20 @@ pub(super) struct PrincipalFrame<X> {
     pub(super) q_bp: [X; 4],
 }
 
-/// The numbers of a run: doubles, or of twice their precision.
+/// The numbers of a run: doubles, double-double, or doubles with derivatives.
 pub(super) trait Precision: Exact {
-    /// Whether an orbit goes from step to step by its own series: Kepler's equation is solved in doubles.
+    /// Whether an orbit is continued from step to step by its own series, because Kepler's equation is solved in doubles only.
     const CARRIES_ORBITS: bool;
-    /// The part of the fastest ω below which quadratic damping is left out: with it the error of ω, relative to the fastest, is
-    /// its cube, that of derivatives its square.
+    /// Quadratic damping is left out while |ω| is below this part of its largest value. The error of ω, relative to the largest, is
+    /// the cube of it; the error of derivatives is its square.
     const REST_SPEED: f64;
-    /// The same, as a part of ω̇ in units of rates: the powers of its reciprocal in a series are numbers. Quadratic damping is then
-    /// as small beside the other torques as its square.
+    /// Quadratic damping is also left out while |ω| is below this part of ω̇, in units of rates, so that the powers of the reciprocal
+    /// in a series do not overflow. Relative to the other torques the damping is then as small as the square of it.
     const REST_SPEED_BESIDE_TORQUES: f64;
-    /// The principal frame of what is simulated.
+    /// Compute the principal frame of the body of a task.
     fn principal(task: &Task<'_>, variables: Self::Variables) -> PrincipalFrame<Self>;
 
-    /// The frame where derivatives of the tensor of what turns freely, in these axes, take part.
+    /// Subtract the derivatives of the tensor of wheels that turn freely, in these axes.
     fn subtract_wheels(
         principal: PrincipalFrame<Self>,
         _turning: impl FnOnce(&PrincipalFrame<Self>) -> Matrix3<Self>,
@@ -48,7 +48,7 @@ pub(super) trait Precision: Exact {
         principal
     }
 
-    /// The magnitudes of the value and of each derivative.
+    /// Return the magnitudes of the value and of each derivative.
     fn magnitudes(self) -> [f64; WIDTH + 1] {
         let mut magnitudes = [0.0; WIDTH + 1];
         magnitudes[0] = self.rounded().abs();
@@ -73,7 +73,7 @@ impl Precision for f64 {
     }
 }
 
-/// What defines body and start is taken as exact: moments and axes, or the tensor; the direction of a quaternion.
+/// The numbers that define body and start are taken as exact: moments and axes, or the tensor; the direction of a quaternion.
 impl Precision for DoubleDouble {
     const CARRIES_ORBITS: bool = true;
     const REST_SPEED: f64 = 2e-6;
@@ -96,7 +96,7 @@ impl Precision for DoubleDouble {
     }
 }
 
-/// Of a body with a zero moment, which has no neighbours on one side, nothing about the tensor is varied.
+/// The tensor of a body with a zero moment has no derivatives: such a body has neighbours on one side only.
 impl Precision for Varied {
     const CARRIES_ORBITS: bool = false;
     const REST_SPEED: f64 = 1e-8;
@@ -119,7 +119,7 @@ impl Precision for Varied {
             axes: plain.axes.map(Self::constant),
             q_bp: plain.q_bp.map(Self::constant),
         };
-        // Zero, but its derivatives are not.
+        // The values are zero, the derivatives are not.
         let along = [0, 1, 2].map(|n| variable(0.0, MOMENTS + n));
         let [yz, zx, xy] = [0, 1, 2].map(|n| variable(0.0, PRODUCTS + n));
         let [x, y, z] = along;
@@ -153,7 +153,7 @@ impl Precision for Varied {
 }
 
 impl PrincipalFrame<Varied> {
-    /// Adds the derivatives of a tensor in these axes.
+    /// Add the derivatives of a tensor in these axes.
     fn add(&mut self, tensor: &Matrix3<Varied>) {
         let slopes = |x: Varied| Varied { value: 0.0, ..x };
         for n in 0..3 {
@@ -166,7 +166,7 @@ impl PrincipalFrame<Varied> {
     }
 }
 
-/// (x, y, z, w) of a rotation matrix, from the largest of the four.
+/// Compute (x, y, z, w) of a rotation matrix, from the largest of the four.
 ///
 /// Source: Shepperd, Journal of Guidance and Control 1 (1978) 223.
 pub(super) fn quaternion_of_matrix<X: Real>(m: &Matrix3<X>) -> [X; 4] {

@@ -1,4 +1,4 @@
-//! The motions of tasks: of one, of many on all cores, of one with its derivatives.
+//! The motions of tasks: one task, many tasks on all cores, one task with derivatives.
 
 use std::iter::once;
 use std::ops::{ControlFlow, Range};
@@ -25,10 +25,10 @@ use crate::numerics::lane::Lane;
 use crate::numerics::threads::{fill_blocks, locked, thread_count};
 use crate::numerics::twofold::Twofold;
 
-/// The motion of `task` under `terms`.
+/// Compute the motion of `task` under `terms`.
 ///
 /// About every 64 steps `watch` gets the fraction done and may stop the run.
-/// What is wrong with the times ends the run before its first step.
+/// An error in the times ends the run before its first step.
 pub fn solve_one(
     task: &Task<'_>,
     terms: &[Term],
@@ -39,7 +39,7 @@ pub fn solve_one(
     run
 }
 
-/// One motion, in the numbers that its tolerance needs.
+/// Compute one motion, in the numbers that its tolerance needs.
 fn solve(
     task: &Task<'_>,
     terms: &[Term],
@@ -50,7 +50,7 @@ fn solve(
     let subject = &task.subject;
     let parts = parts::<f64>(terms, subject, Fixed, !subject.pivoted);
     let settings = choose_settings(task, parts);
-    // How the run ended stands in it.
+    // The run contains how it ended.
     if task.tolerance.is_beyond_doubles() {
         let jobs = &mut prepare_job(task, terms, run).into_iter();
         let observer = observer.map(|observer| observer as Observer);
@@ -72,7 +72,7 @@ fn solve(
     }
 }
 
-/// As [`solve_one`], with every step shown to `observer`, which may stop the run, as soon as it is made.
+/// Compute the motion of `task` under `terms`; `observer` gets every step as soon as it is made, and may stop the run.
 pub(crate) fn solve_with_observer(
     task: &Task<'_>,
     terms: &[Term],
@@ -97,17 +97,17 @@ pub(crate) fn solve_with_observer(
     run
 }
 
-/// The most motions that a thread takes at a time.
+/// The largest number of motions that a thread takes at a time.
 const MOST: usize = 1024;
-/// Fewer motions than this are sooner done one by one.
+/// Fewer motions than this take less time one by one.
 const FEW: usize = 4;
 
-/// The motions of many tasks, each under its own terms, into `runs`; on all cores, eight side by side in the lanes of each,
-/// or one by one where doubles do not serve the tolerance. Every motion has the bits of [`solve_one`].
+/// Compute the motions of many tasks, each under its own terms, into `runs`: on all cores, with eight side by side in the lanes of
+/// each, or one by one if the tolerance needs more than doubles. Every motion has the bits of [`solve_one`].
 ///
-/// `task` gives the tasks and `terms` what acts in each. They may differ in body, state and numbers; times, tolerance,
-/// whether the body is pivoted and the kinds of terms are the same for all. Every thread asks `watch` about every 64 steps, with the fraction of
-/// motions that were begun; it may stop the run.
+/// `task` returns the tasks, and `terms` the load of each. They may differ in body, state and numbers. Times, tolerance, the kinds of
+/// terms, and whether the body is pivoted are the same for all. Every thread calls `watch` about every 64 steps with the fraction of
+/// motions that have begun; it may stop the run.
 ///
 /// # Examples
 ///
@@ -165,7 +165,7 @@ pub fn solve_many<'a, E: From<Error> + Send>(
         ask: &ask,
         caches: &Mutex::default(),
     };
-    // Where a run is stopped, what was done by then is kept.
+    // If the run is stopped, the motions that were computed remain.
     let _ended = fill_blocks(runs, block, &mut |_| ask(), |first, slots| {
         let (runs, flow) = tasks.solve(first..first + slots.len(), in_double_double);
         for (slot, run) in slots.iter_mut().zip(runs) {
@@ -179,18 +179,18 @@ pub fn solve_many<'a, E: From<Error> + Send>(
     });
 }
 
-/// What is asked of the tasks of a call, and told of them.
+/// The tasks of a call, and what its threads share.
 struct Tasks<'a, 'b> {
     task: &'b (dyn Fn(usize) -> Task<'a> + Sync),
     terms: &'b (dyn Fn(usize) -> &'a [Term] + Sync),
     begun: &'b AtomicUsize,
     ask: &'b (dyn Fn() -> ControlFlow<()> + Sync),
-    /// Those that no thread has in hand.
+    /// The caches that no thread uses at present.
     caches: &'b Mutex<Vec<OrbitSeriesCache>>,
 }
 
 impl Tasks<'_, '_> {
-    /// The motions of some of the tasks. It knows nothing of its caller's error, so that the series are compiled once.
+    /// Compute the motions of some of the tasks. The type of the caller's error does not occur here, so the series are compiled once.
     fn solve(
         &self,
         some: Range<usize>,
@@ -243,16 +243,16 @@ impl Tasks<'_, '_> {
     }
 }
 
-/// Motions that a thread takes at a time: many, since lanes idle at the end of a block, but many blocks too, since the first is done
-/// before the others begin.
+/// Choose the number of motions that a thread takes at a time: large, because lanes are idle at the end of a block, but with many
+/// blocks, because the first one is computed before the others begin.
 fn block(count: usize) -> usize {
     let share = count.div_ceil(16 * thread_count());
     share.next_multiple_of(ROWS).clamp(2 * ROWS, MOST)
 }
 
-/// Runs `task`, which carries what `terms` carry along, under these to its last time; `sink` gets ω and (x, y, z, w) in B and the
-/// states of the load at each time, by the number of the time. Tolerances do not matter. `watch` gets the fraction done and may
-/// stop it.
+/// Compute the motion of `task` under `terms` with its derivatives by the variables of a block. The task contains the states of the
+/// terms. `sink` gets the number of each time, ω and (x, y, z, w) in B, and the states of the load. The tolerance does not matter.
+/// `watch` gets the fraction done and may stop the run.
 ///
 /// # Errors
 /// When a term cannot act, the motion cannot go on, or [`Error::Stopped`].
@@ -276,7 +276,7 @@ pub(in crate::motion::integrate) fn solve_variational(
         next = k + 1;
         sink(k, state, own);
     };
-    // The path of the body is left out.
+    // The path of the body is not part of the motion here.
     let parts = parts::<Varied>(terms, &task.subject, block, false);
     let settings = Settings::of_derivatives(ORDER, parts);
     let job = Job {
@@ -293,7 +293,7 @@ pub(in crate::motion::integrate) fn solve_variational(
     };
     match run.end {
         End::Complete => Ok(()),
-        // The motion goes on where its derivatives do not.
+        // The motion is finite, its derivatives are not.
         End::Failed(Error::Motion(MotionFault::NotFiniteMotion { .. }))
             if run.phase.is_finite() =>
         {
@@ -305,7 +305,7 @@ pub(in crate::motion::integrate) fn solve_variational(
     }
 }
 
-/// Out of line: without optimization the three take a megabyte of the stack each.
+/// Run the job with this number of directions. Not inlined: without optimization each of the three takes a megabyte of the stack.
 #[inline(never)]
 fn drive_directions<const B: usize>(
     settings: Settings,
@@ -326,7 +326,7 @@ fn choose_settings(task: &Task<'_>, parts: Parts) -> Settings {
     Settings::new(tolerance.relative, tolerance.absolute, highest, parts)
 }
 
-/// The job of a motion, if there is anything to do and nothing against it.
+/// Prepare the job of a motion; none if the run ends at once.
 fn prepare_job<'a, X: Precision<Variables = Fixed>>(
     task: &Task<'a>,
     terms: &'a [Term],
@@ -359,7 +359,7 @@ fn prepare_job<'a, X: Precision<Variables = Fixed>>(
     }
 }
 
-/// The jobs of `runs`, the first of which is of the task `first`.
+/// Prepare the jobs of `runs`, the first of which belongs to the task `first`.
 fn prepare_jobs<'a, X: Precision<Variables = Fixed>>(
     first: usize,
     runs: &'a mut [Option<Run<Error>>],
@@ -371,10 +371,10 @@ fn prepare_jobs<'a, X: Precision<Variables = Fixed>>(
     })
 }
 
-/// Motions side by side: a register of the widest machines.
+/// The number of motions side by side: a register of the widest machines.
 const ROWS: usize = 8;
 
-/// Motions one after the other in numbers of twice the precision.
+/// Runs motions one after the other in double-double.
 struct InDoubleDouble<'a, 'b> {
     settings: Settings,
     jobs: &'b mut dyn Iterator<Item = Job<'a, DoubleDouble>>,
@@ -408,7 +408,7 @@ impl Kernel for InDoubleDouble<'_, '_> {
     }
 }
 
-/// Motions one after the other, the lanes over the components of each.
+/// Runs motions one after the other in doubles, the components of each in the lanes.
 struct OneByOne<'a, 'b> {
     settings: Settings,
     jobs: &'b mut dyn Iterator<Item = Job<'a, f64>>,
@@ -436,7 +436,7 @@ impl Kernel for OneByOne<'_, '_> {
     }
 }
 
-/// Motions side by side, the lanes over the motions.
+/// Runs motions side by side, one in each lane.
 struct SideBySide<'a, 'b> {
     settings: Settings,
     jobs: &'b mut dyn Iterator<Item = Job<'a, f64>>,
@@ -445,7 +445,7 @@ struct SideBySide<'a, 'b> {
 }
 
 impl SideBySide<'_, '_> {
-    /// Runs them, in a function for each number of directions: all in one take four megabytes of the stack without
+    /// Run them, in a separate function for each number of directions: all in one take four megabytes of the stack without
     /// optimization.
     fn run(self) -> ControlFlow<()> {
         match self.settings.parts.directions {
@@ -456,7 +456,7 @@ impl SideBySide<'_, '_> {
     }
 }
 
-/// With this number of directions.
+/// Runs motions side by side with this number of directions.
 struct Directed<'a, 'b, const B: usize>(SideBySide<'a, 'b>);
 
 impl<const B: usize> Kernel for Directed<'_, '_, B> {

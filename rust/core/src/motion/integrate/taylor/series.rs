@@ -18,43 +18,41 @@
 //! its parts are the first less the second, and the first plus the third.
 //! (Gauss's way; Knuth, The Art of Computer Programming 2, §4.6.4.)
 //!
-//! There are two ways through the sums in doubles: [`SingleMotionSeries`](super::single_series::SingleMotionSeries) puts the components of one motion in the
-//! lanes, [`BatchSeries`](super::batch_series::BatchSeries) the same component of several. They add the same products in the same order,
-//! so a motion has the same bits either way. In numbers of twice the precision there is [`DoubleDoubleSeries`](super::double_double_series::DoubleDoubleSeries), which
-//! has all twelve.
+//! In doubles the sums are computed in two ways. [`SingleMotionSeries`](super::single_series::SingleMotionSeries) puts the
+//! components of one motion in the lanes. [`BatchSeries`](super::batch_series::BatchSeries) puts the same component of several
+//! motions in the lanes. Both add the same products in the same order, so a motion has the same bits in both.
+//! [`DoubleDoubleSeries`](super::double_double_series::DoubleDoubleSeries), for numbers of twice the precision, computes all
+//! twelve products.
 //!
-//! That order takes the newest coefficients, on which the processor may still be busy, last: from the middle outward, first
-//! the product of order j < k/2 with k − j, then that of k − j with j. Directions are made of q: see
-//! below.
+//! The newest coefficients come last in a sum, because the processor may still be computing them. So a sum goes from the
+//! middle outward: first the product of order j < k/2 with k − j, then that of k − j with j.
 //!
 //! # Directions
 //!
-//! The directions of space as seen from the body, as squares of series.
-//!
-//! The direction `e_n` would obey `γ̇ = γ × ω`: six products of series. With |q| = 1 it is made of six squares, and the sum for
-//! the square of a series is only half as long as that for a product. With n, a, b = 1, 2, 3 and cyclic, its components in
-//! principal axes are
+//! The direction `e_n` of space, as seen from the body, obeys `γ̇ = γ × ω`: six products of series. With |q| = 1 it can be
+//! written with six squares, and the sum for the square of a series is half as long as that for a product. With n, a, b =
+//! 1, 2, 3 and cyclic, its components in principal axes are
 //!
 //! ```text
 //! n: 1 − 2 (q_a² + q_b²),   a: (q_n + q_a)² + (w − q_b)² − 1,   b: (q_n + q_b)² + (w + q_a)² − 1
 //! ```
 //!
 //! The coefficient of order k of u² is twice the sum of `u_j u_{k−j}` over j < k/2, and for even k the square in the middle.
-//! The sums begin in the middle, so that the newest coefficients are last.
+//! Here too the sums begin in the middle.
 
 use super::batch::{Batch, cross_term};
 use crate::numerics::lane::Lane;
 use crate::numerics::number::Number;
 
-/// The highest order of a series in doubles, and the number of its coefficients. Even, since
+/// The highest order of a series in doubles, and the number of its coefficients. The order is even, because
 /// [`SingleMotionSeries`](super::single_series::SingleMotionSeries) sums two orders at a time.
 pub(super) const MAX_ORDER_DOUBLE: usize = 26;
 pub(super) const COUNT: usize = MAX_ORDER_DOUBLE + 1;
-/// The highest order of a series in numbers of twice the precision, and room for the coefficients of any series.
+/// The highest order of a series in double-double, and the largest number of coefficients of any series.
 pub(super) const MAX_ORDER_DOUBLE_DOUBLE: usize = 40;
 pub(super) const MAX_COUNT: usize = MAX_ORDER_DOUBLE_DOUBLE + 1;
 
-/// 1/k.
+/// The numbers 1/k.
 pub(super) const RECIPROCALS: [f64; COUNT] = {
     let mut reciprocals = [0.0; COUNT];
     let mut k = 1;
@@ -74,43 +72,43 @@ pub(super) struct Coefficient<T, const B: usize> {
     pub(super) g: [[T; 3]; B],
 }
 
-/// The series of a motion, or of several.
+/// The series of one motion or of several: coefficients of all orders, computed one order after the other.
 pub(super) trait Series<T, const B: usize> {
-    /// All zero.
+    /// Return a series whose coefficients are all zero.
     fn new() -> Self;
-    /// Sets the coefficient of order zero.
+    /// Set the coefficient of order zero.
     fn start(&mut self, state: &Coefficient<T, B>);
-    /// Says which component of ω is constant in all motions, if it is the first or the third: its products of orders above
-    /// zero, which are zero, may be left out.
+    /// Set which component of ω is constant in all motions: the first, the third or none. Its coefficients of orders above zero
+    /// are zero, so their products may be left out.
     fn set_constant_component(&mut self, _component: Option<usize>) {}
-    /// Keeps each step so short that derivatives too are as good as the series of the motion.
+    /// Shorten each step until the series of the derivatives are as accurate as those of the motion.
     fn limit(&mut self, _steps: &mut [f64]) {}
-    /// Comes to another unit of rates: `ratio` of the old one to the new one.
+    /// Change the unit of rates; `ratio` is the old unit over the new one.
     fn rescale(&mut self, _ratio: f64) {}
-    /// The coefficient of order `k`; the directions are there once the sums of that order are.
+    /// Return the coefficient of order `k`. Its directions are known once the sums of that order are computed.
     fn get(&self, k: usize) -> Coefficient<T, B>;
-    /// What the polynomials of a step, of even order, add to the state within the time `h`: Horner's rule in h², for the even and
-    /// the odd powers side by side, since each product waits for the one before.
+    /// Compute the change of the state within the time `h`. The order is even. Horner's rule in h² runs for even and odd powers
+    /// side by side, because each product waits for the one before.
     fn increment(&self, order: usize, h: T) -> [T; 7];
-    /// The sums of products of order `k`.
+    /// Sums of products of one order.
     type Sums;
-    /// Those of order `k`, when the coefficients up to k are set; asked for in order.
+    /// Compute the sums of order `k` from the coefficients up to k. Called for one order after the other.
     fn sums(&mut self, k: usize) -> Self::Sums;
-    /// Those of ω₂ω₃, ω₃ω₁ and ω₁ω₂.
+    /// Return the sums of ω₂ω₃, ω₃ω₁ and ω₁ω₂.
     fn spins(sums: &Self::Sums) -> [T; 3];
-    /// Sets the coefficients of order k + 1 from the sums and ω̇'s coefficient of order `k`.
+    /// Compute the coefficients of order k + 1 from the sums and the coefficient of ω̇, both of order `k`.
     fn extend(&mut self, k: usize, sums: &Self::Sums, acceleration: &[T; 3]);
 }
 
-/// The axis of space that is direction `b` of `B`.
+/// Return the axis of space that is direction `b` of `B`.
 pub(super) const fn axis<const B: usize>(b: usize) -> usize {
     if B == 1 { 2 } else { b }
 }
 
-/// The numbers u for each axis n, and two that are not used.
+/// The six bases u of the squares for each axis n. The last two of eight are not used.
 pub(super) const ROOTS: [PairSums; 3] = [roots_of(0), roots_of(1), roots_of(2)];
 
-/// Eight numbers made of four: each is `x[first] + sign x[second]`.
+/// Eight sums of pairs of four numbers: `x[first] + sign x[second]`.
 pub(super) struct PairSums {
     pub(super) first: [usize; 8],
     pub(super) second: [usize; 8],
@@ -126,14 +124,14 @@ const fn roots_of(n: usize) -> PairSums {
     }
 }
 
-/// The numbers u of the axis n.
+/// Compute the bases u of the squares for the axis n.
 #[inline(always)]
 pub(super) fn roots<L: Lane, const R: usize>(n: usize, q: &[Batch<L, R>; 4]) -> [Batch<L, R>; 6] {
     let (a, b, n, w) = (q[(n + 1) % 3], q[(n + 2) % 3], q[n], q[3]);
     [a, b, n + a, w - b, n + b, w + a]
 }
 
-/// A direction from half of each of the three sums of squares, of an order above zero.
+/// Compute a direction, of an order above zero, from half of each of its three sums of squares.
 #[inline(always)]
 pub(super) fn from_squares<L: Lane, const R: usize>(
     n: usize,
@@ -147,7 +145,7 @@ pub(super) fn from_squares<L: Lane, const R: usize>(
     direction
 }
 
-/// Adds the products of two orders.
+/// Add the products of two orders.
 #[inline(always)]
 pub(super) fn add_squares<L: Lane, const R: usize>(
     sums: [Batch<L, R>; 6],
@@ -171,7 +169,7 @@ pub(super) fn halved<L: Lane, const R: usize>(roots: &[Batch<L, R>; 6]) -> [Batc
     [a * half, b * half, c * half, d * half, e * half, f * half]
 }
 
-/// A direction fixed in space as seen from the body: `Rᵀ e` for the attitude (x, y, z, w).
+/// Compute the components in the body of a direction fixed in space: `Rᵀ e` for the attitude (x, y, z, w).
 #[inline(always)]
 pub(super) fn direction_in_body<L: Number, const R: usize>(
     q: &[Batch<L, R>; 4],
@@ -188,7 +186,7 @@ pub(super) fn direction_in_body<L: Number, const R: usize>(
     direction
 }
 
-/// [`Series::increment`] from the coefficients.
+/// Compute [`Series::increment`] from the coefficients.
 #[inline(always)]
 pub(super) fn increment<L: Number, const R: usize, const B: usize>(
     series: &impl Series<Batch<L, R>, B>,

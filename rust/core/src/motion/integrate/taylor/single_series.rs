@@ -1,4 +1,4 @@
-//! One motion, the lanes over its components.
+//! The series of one motion in doubles, its components in the lanes.
 
 use std::hint::black_box;
 
@@ -18,7 +18,7 @@ impl<L: Lane, const W: usize> Components<L, W> {
         Self([L::new(0.0); W])
     }
 
-    /// `self + one · other`, each number by itself.
+    /// Compute `self + one · other` for each number.
     #[inline(always)]
     fn plus_products(mut self, one: &Self, other: &Self) -> Self {
         for i in 0..W {
@@ -27,7 +27,7 @@ impl<L: Lane, const W: usize> Components<L, W> {
         self
     }
 
-    /// `self · factor + other`, each number by itself.
+    /// Compute `self · factor + other` for each number.
     #[inline(always)]
     fn times_plus(mut self, factor: L, other: &Self) -> Self {
         for i in 0..W {
@@ -46,12 +46,12 @@ impl<L: Lane, const W: usize> Components<L, W> {
 }
 
 impl<L: Lane> Components<L, 4> {
-    /// What `mix` makes of these; its signs as [`Signs`] has them.
+    /// Compute the sums of pairs, with the signs from [`Signs`].
     #[inline(always)]
-    fn mixed(&self, mix: &PairSums, signs: &Components<L, 8>) -> Components<L, 8> {
+    fn mixed(&self, pairs: &PairSums, signs: &Components<L, 8>) -> Components<L, 8> {
         let mut row = Components::new();
         for i in 0..8 {
-            row.0[i] = signs.0[i].mul_add(self.0[mix.second[i]], self.0[mix.first[i]]);
+            row.0[i] = signs.0[i].mul_add(self.0[pairs.second[i]], self.0[pairs.first[i]]);
         }
         row
     }
@@ -63,13 +63,13 @@ const LEFT: PairSums = PairSums {
     second: [2, 2, 1, 1, 2, 3, 0, 1],
     signs: [1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
 };
-/// What they are multiplied with: ω₁ four times, then (ω₁ + ω₂, ω₂ − ω₁) twice.
+/// The other factors: ω₁ four times, then (ω₁ + ω₂, ω₂ − ω₁) twice.
 const RIGHT: PairSums = PairSums {
     first: [0, 0, 0, 0, 0, 1, 0, 1],
     second: [0, 0, 0, 0, 1, 0, 1, 0],
     signs: [0.0, 0.0, 0.0, 0.0, 1.0, -1.0, 1.0, -1.0],
 };
-/// The signs with which the products of these, and of (y, x, w, z) with ω₃, make q∘ω.
+/// The signs of these products, and of those of (y, x, w, z) with ω₃, in q∘ω.
 const TURNED: [[f64; 4]; 3] = [
     [1.0, 1.0, -1.0, -1.0],
     [-1.0, 1.0, 1.0, -1.0],
@@ -106,15 +106,15 @@ impl<L: Lane, const B: usize> Signs<L, B> {
                 signs.turned[n].0[i] = L::new(TURNED[n][i]);
             }
         }
-        // Not known to the compiler, which would make a register of eight numbers of one kind into pieces of several, and
-        // store the pieces: whoever loads the whole after that has to wait.
+        // Hidden from the compiler: it would split a register of eight numbers into pieces and store the pieces, and the next
+        // load of the whole register would have to wait.
         black_box(signs)
     }
 }
 
-/// One order of [`SingleMotionSeries`]: two rows of factors, so that products of two orders are a row of one by the other of the other,
-/// each in the place where q∘ω has it; then a square that is not used, and those of ω₂ω₃, ω₃ω₁ and ω₁ω₂. The last two are loaded
-/// together: what lies across two places that were stored apart would have to wait until both are in the cache.
+/// One order of [`SingleMotionSeries`]: two rows of factors. The products of two orders are the left row of one times the right
+/// row of the other, each product at its place in q∘ω; then follow one that is not used, and ω₂ω₃, ω₃ω₁ and ω₁ω₂. Numbers that are
+/// loaded together are also stored together: a register across two separate stores would have to wait until both are in the cache.
 #[derive(Clone, Copy, Debug)]
 struct Order<L, const B: usize> {
     /// (x, y, z, w) of the attitude, ω, and zero.
@@ -159,11 +159,11 @@ impl<L: Lane, const B: usize> Order<L, B> {
     }
 }
 
-/// One motion, the lanes over its components.
+/// The series of one motion, its components in the lanes.
 #[derive(Clone, Debug)]
 pub(super) struct SingleMotionSeries<L, const B: usize> {
     orders: [Order<L, B>; COUNT],
-    /// The sums of an even order and of the odd one after it, as far as they go before its forerunner is known.
+    /// The sums of an even order and of the odd one after it, without the products that need the newest coefficient.
     partial: [SingleMotionSums<L, B>; 2],
     signs: Signs<L, B>,
 }
@@ -296,7 +296,7 @@ impl<L: Lane, const B: usize> Series<Batch<L, 1>, B> for SingleMotionSeries<L, B
             }
             self.partial = [sums, ahead];
         }
-        // The compiler is not to know which: it would take apart the sums, which are whole registers.
+        // Hidden from the compiler: it would split the sums, which are whole registers.
         let mut sums = self.partial[black_box(k % 2)];
         if k == 0 {
             sums.add(&orders[0], &orders[0]);

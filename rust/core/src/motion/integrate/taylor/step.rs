@@ -1,4 +1,4 @@
-//! One step: how long it may be, and the state at its end or anywhere within it.
+//! One step: its length, the state at its end or within it, and the finished step as polynomials in time.
 
 use std::ops::{ControlFlow, Index, IndexMut};
 
@@ -10,15 +10,15 @@ use crate::motion::state::Phase;
 use crate::numerics::double_double::two_sum;
 use crate::numerics::number::Number;
 
-/// ω in principal axes and (x, y, z, w) of the attitude. The attitude begins at a place of its own: a register that held numbers
-/// of both would be loaded across two places that were stored apart, and would have to wait until both are in the cache.
+/// ω in principal axes and (x, y, z, w) of the attitude. The attitude is aligned separately: a register with numbers of both would
+/// be loaded across two separate stores, and would have to wait until both are in the cache.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MotionState<T> {
     omega: [T; 3],
     attitude: Aligned<[T; 4]>,
 }
 
-/// At a place where a register of four numbers is loaded at once.
+/// Aligned such that four numbers are loaded as one register.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 struct Aligned<T>(T);
@@ -32,7 +32,7 @@ impl<T: Copy> MotionState<T> {
         }
     }
 
-    /// All seven.
+    /// Return all seven numbers.
     #[inline(always)]
     pub(super) fn components(&self) -> [T; 7] {
         let ([w0, w1, w2], [x, y, z, w]) = (self.omega, self.attitude.0);
@@ -62,7 +62,7 @@ impl<T> IndexMut<usize> for MotionState<T> {
     }
 }
 
-/// The state, with what rounding has left out of each number so far.
+/// The state, and the rounding error of each number so far.
 #[derive(Clone, Debug)]
 pub(super) struct Compensated<T> {
     pub(super) value: MotionState<T>,
@@ -79,12 +79,12 @@ impl<L: Number, const R: usize> Compensated<Batch<L, R>> {
         }
     }
 
-    /// Adds the increments of a step, then puts the quaternion back to unit length: at once, since in a step of more than
-    /// half a turn what is left of the length would grow, by `1 − cos(ω h/2)`.
+    /// Add the increments of a step, then normalize the quaternion. It is normalized after every step: in a step of more than half
+    /// a turn an error of the length would grow, by `1 − cos(ω h/2)`.
     #[inline(always)]
     pub(super) fn add(&mut self, increment: &[Batch<L, R>; 7]) {
         let (value, rest) = (&mut self.value, &mut self.rest);
-        // Written out, since a loop would be vectorised across the numbers instead of the rows.
+        // Written out: a loop would be vectorised across the numbers instead of the rows.
         let ([v0, v1, v2], [r0, r1, r2]) = (&mut value.omega, &mut rest.omega);
         compensate(v0, r0, increment[0]);
         compensate(v1, r1, increment[1]);
@@ -95,7 +95,7 @@ impl<L: Number, const R: usize> Compensated<Batch<L, R>> {
         compensate(q1, r1, increment[4]);
         compensate(q2, r2, increment[5]);
         compensate(q3, r3, increment[6]);
-        // ½ (1 − |q|²), with the rest: the first-order correction.
+        // The first-order correction ½ (1 − |q|²), with the rounding errors.
         let mut lack = Batch::new(1.0);
         for i in 0..4 {
             lack = (-q[i]).mul_add(q[i] + left_out[i] + left_out[i], lack);
@@ -107,7 +107,7 @@ impl<L: Number, const R: usize> Compensated<Batch<L, R>> {
         }
     }
 
-    /// The state of one row.
+    /// Return the state of one row.
     pub(super) fn now(&self, row: usize) -> [L::Real; 7] {
         let mut state = [L::Real::default(); 7];
         for i in 0..7 {
@@ -116,7 +116,7 @@ impl<L: Number, const R: usize> Compensated<Batch<L, R>> {
         state
     }
 
-    /// The state of one row moved by `increment`: to the bit what [`Self::add`] would make of it.
+    /// Compute the state of one row after `increment`, with the same bits as by [`Self::add`].
     #[inline(always)]
     pub(super) fn moved(&self, increment: &[Batch<L, R>; 7], row: usize) -> [L::Real; 7] {
         let mut end = self.clone();
@@ -125,7 +125,7 @@ impl<L: Number, const R: usize> Compensated<Batch<L, R>> {
     }
 }
 
-/// Adds an increment to a value and to what rounding has left out of it.
+/// Add an increment to a value and its rounding error.
 #[inline(always)]
 pub(super) fn compensate<L: Number, const R: usize>(
     value: &mut Batch<L, R>,
@@ -135,10 +135,10 @@ pub(super) fn compensate<L: Number, const R: usize>(
     (*value, *rest) = two_sum(*value, increment + *rest);
 }
 
-/// The longest step for which the last two terms of the series are `tolerance` (as a logarithm to base 2) at most:
-/// those of ω relative to `scale`, those of the attitude to one, in the norm of the largest magnitude.
+/// Compute the longest step for which the last two terms of the series are at most `tolerance` (a logarithm to base 2): those of
+/// ω relative to `scale`, those of the attitude relative to one, in the maximum norm.
 ///
-/// Not finite where a coefficient is not.
+/// The step is not finite if a coefficient is not.
 /// Source: Jorba & Zou, Experimental Mathematics 14 (2005) 99.
 #[inline(always)]
 pub(super) fn longest_step<L: Number, const R: usize, const B: usize>(
@@ -157,7 +157,7 @@ pub(super) fn longest_step<L: Number, const R: usize, const B: usize>(
     steps
 }
 
-/// The logarithm of the step for which the term of this order is as large as allowed.
+/// Compute the logarithm of the step for which the term of this order has the size allowed.
 #[inline(always)]
 fn log2_step_of<L: Number, const R: usize, const B: usize>(
     at: &Coefficient<Batch<L, R>, B>,
@@ -178,17 +178,17 @@ fn log2_step_of<L: Number, const R: usize, const B: usize>(
         largest = if q > largest { q } else { largest };
         sum += q;
     }
-    // What is not a number is lost among the largest, but not in the sum.
+    // A NaN is lost in the maximum, but not in the sum.
     log2_step(largest, order, tolerance) + 0.0 * sum
 }
 
-/// The same for a term of this size at one unit of time.
+/// Compute the logarithm of the step for which a term, of this size after one unit of time, has the size allowed.
 #[inline(always)]
 pub(super) fn log2_step(size: f64, order: usize, tolerance: f64) -> f64 {
     (tolerance - log2(size)) * (1.0 / order as f64)
 }
 
-/// Binary logarithm to a hundredth, ample for the length of a step; the same bits on every machine. That of zero is −1023.
+/// Compute the binary logarithm to a hundredth, enough for the length of a step; the same bits on every machine. For zero: −1023.
 #[inline(always)]
 fn log2(x: f64) -> f64 {
     let bits = x.to_bits();
@@ -197,7 +197,7 @@ fn log2(x: f64) -> f64 {
     f64::from(exponent) + (mantissa - 1.0) * (1.693 - 0.3465 * mantissa)
 }
 
-/// Two to the power x to a hundredth, for |x| up to a thousand.
+/// Compute two to the power x to a hundredth, for |x| up to a thousand.
 #[inline(always)]
 pub(super) fn exp2(x: f64) -> f64 {
     let x = if x > 1000.0 { 1000.0 } else { x };
@@ -210,22 +210,22 @@ pub(super) fn exp2(x: f64) -> f64 {
     power * (1.0 + part * (0.6565 + 0.3435 * part))
 }
 
-/// A step: polynomials in the time since its start, in body axes and real units.
+/// A finished step: polynomials in the time since its start, in body axes and real units.
 #[derive(Clone, Debug)]
 pub(crate) struct Step {
-    /// When it begins and ends, since the start of the motion.
+    /// Its start and its end, since the start of the motion.
     pub(crate) ends: [f64; 2],
-    /// What rounding left out of its beginning.
+    /// The rounding error of its start.
     pub(super) rest: f64,
-    /// The unit of rates: its polynomials are in time times this.
+    /// The unit of rates: the polynomials are in time times this unit.
     pub(super) unit: f64,
-    /// ω and (x, y, z, w), from order 1 on; before those the state at the start, and what rounding left out of it.
+    /// ω and (x, y, z, w): the state at the start, its rounding error, and the coefficients from order 1 on.
     pub(super) state: [f64; 7],
     pub(super) change: [f64; 7],
     pub(super) series: Vec<[f64; 7]>,
-    /// Position and velocity, where they do not go on evenly.
+    /// Coefficients of position and velocity; none if the velocity is constant.
     pub(super) path: Vec<[f64; 6]>,
-    /// The states of the load, from order 0 on, and what rounding left out at the start.
+    /// Coefficients of the states of the load from order 0 on, and the rounding errors at the start.
     pub(super) own: Vec<Vec<f64>>,
     pub(super) own_change: Vec<f64>,
     /// Position and velocity at the start of the motion.
@@ -233,7 +233,7 @@ pub(crate) struct Step {
 }
 
 impl Step {
-    /// The state at a time since the start of the motion.
+    /// Compute the state at a time since the start of the motion.
     pub(crate) fn at(&self, elapsed: f64) -> Phase {
         let within = ((elapsed - self.ends[0]) - self.rest) * self.unit;
         let mut sum = [0.0; 7];
@@ -280,7 +280,7 @@ impl Step {
         [Vector3::new(x, y, z), Vector3::new(u, v, w) * self.unit]
     }
 
-    /// How far it turns, about, in radians.
+    /// Estimate the angle by which the body turns in the step, in radians.
     pub(crate) fn turn(&self) -> f64 {
         let speed = |phase: &Phase| phase.omega.norm();
         let fastest = speed(&self.at(self.ends[0])).max(speed(&self.at(self.ends[1])));
@@ -288,7 +288,7 @@ impl Step {
     }
 }
 
-/// Gets each step of a motion as it is made, and whether the motion has ended with it; may stop the run.
+/// A function that gets each step of a motion as it is made, and whether the motion ended with it. It may stop the run.
 pub(super) type Observer<'a> = &'a mut dyn FnMut(Step, bool) -> ControlFlow<()>;
 
 #[cfg(test)]

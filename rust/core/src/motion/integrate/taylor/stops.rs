@@ -1,9 +1,8 @@
-//! What a motion comes to: outputs, breaks of its load, changes of its law.
+//! Stops within a step: outputs, breaks of the load, switches of its law.
 //!
-//! The law of a motion changes at the zeros of its switching functions.
-//! These are the scalar part of each feedback's error and, under quadratic damping, `ω(0)·ω(t)`, which passes through zero with
-//! ω. Both are linear in the state, so that their series are known with it, and all their zeros within a step are
-//! found, however many and however close.
+//! The law of a motion switches at the zeros of its switching functions. These are the scalar part of the error of each feedback and,
+//! under quadratic damping, `ω(0)·ω(t)`, which passes through zero with ω. Both are linear in the state. So their series are known,
+//! and all their zeros within a step are found, even if they are many or close to each other.
 
 use super::batch::Batch;
 use super::driver::{Landing, Lanes, MAX_RATE, Stop, effort, next_stop};
@@ -16,14 +15,14 @@ use crate::motion::problem::limits::HELD;
 use crate::numerics::number::{Number, Real};
 use crate::numerics::sign_changes::sign_changes;
 
-/// How far behind the zero of its series, relative to the step, a function is asked for its sign.
+/// The largest distance behind a zero of the series, relative to the step, at which the sign of a function is checked.
 const HIDDEN_BY_ROUNDING: f64 = 1e-9;
 
-/// What a motion comes to within a step.
+/// The next stop of a motion within a step.
 enum Arrival<X> {
-    /// An output, at this time since the start of the step.
+    /// An output at this time since the start of the step.
     Output(X),
-    /// A break, after this time.
+    /// A break after this time.
     Break(f64),
     Nothing,
     End,
@@ -34,7 +33,7 @@ where
     L: Number<Real: Precision>,
     S: Series<Batch<L, R>, B>,
 {
-    /// Serves what a motion comes to within the step `h`: the step that is left, and what it lands on.
+    /// Record the outputs of a motion within the step `h`. Return the length of the step, up to a break or a switch, and its landing.
     #[inline(always)]
     pub(super) fn serve_stops(&mut self, row: usize, h: f64) -> (f64, Landing) {
         let (mut h, landing) = if self.settings.parts.may_flip() {
@@ -43,7 +42,7 @@ where
             (h, Landing::None)
         };
         if landing == Landing::Switch && self.is_sticking(row, h) {
-            h = 0.0; // which advances nothing: an error
+            h = 0.0; // a step without length is an error
         }
         loop {
             let time = match self.next_arrival(row, h) {
@@ -57,7 +56,7 @@ where
         }
     }
 
-    /// What a motion comes to next in a step as long as `h`.
+    /// Return the next stop of a motion in a step of length `h`.
     #[inline(never)]
     fn next_arrival(&mut self, row: usize, h: f64) -> Arrival<L::Real> {
         let gap = self.gap(row);
@@ -85,7 +84,7 @@ where
         }
     }
 
-    /// Gives a sample to a motion; after the last one it ends.
+    /// Record a sample of a motion; after the last sample the motion ends.
     #[inline(never)]
     fn record_sample(
         &mut self,
@@ -100,7 +99,7 @@ where
         let phase = motion.job.equations.phase(state, auxiliary, now);
         let run = &mut *motion.job.run;
         if !phase.is_finite() {
-            // It came to the last state that is one.
+            // The run ends at its last finite sample.
             let before = run.samples.len() - 1;
             run.effort = effort(motion.steps);
             run.time = motion.job.equations.time_of(before);
@@ -131,8 +130,7 @@ where
         }
     }
 
-    /// After a step: past a break or a flip the equations are others, and a motion that has become much faster takes
-    /// another unit.
+    /// Finish a step: change the equations after a break or a switch, and the unit of a motion that has become much faster.
     #[inline(never)]
     pub(super) fn finish_step(&mut self, row: usize, landing: Landing) {
         let mut state = self.state.now(row);
@@ -172,8 +170,8 @@ where
         }
     }
 
-    /// Whether the law of a motion, which changes after the step `h`, has changed on one spot again and again: then it holds the
-    /// body there.
+    /// Return whether the law of a motion, which switches after the step `h`, has switched many times without a step between: then it
+    /// holds the body there.
     fn is_sticking(&mut self, row: usize, h: f64) -> bool {
         let least = (4.0 * f64::EPSILON * self.now[row].0.abs()).max(f64::MIN_POSITIVE);
         let Some(motion) = &mut self.motions[row] else {
@@ -187,25 +185,25 @@ where
         motion.switches_without_step > HELD
     }
 
-    /// The step `h` of one row, or what is left of it until the law changes.
+    /// Return the length of the step of one row: `h`, or the time until the law switches.
     #[inline(always)]
     fn until_switch(&self, row: usize, h: f64) -> (f64, Landing) {
-        for place in self.switch_times(row, h) {
-            // The state itself has to show the change, here or some last digits later; where rounding hides it, there is none.
-            let (mut time, mut later) = (place, f64::EPSILON * place.max(f64::EPSILON * h));
+        for zero in self.switch_times(row, h) {
+            // The state itself must have the new sign, here or a few last digits later. If rounding hides it, there is no switch.
+            let (mut time, mut later) = (zero, f64::EPSILON * zero.max(f64::EPSILON * h));
             while time <= h && later <= HIDDEN_BY_ROUNDING * h {
                 let (state, _) = self.within(row, L::Real::from(time * self.direction[row]));
                 if self.has_switched(row, &state) {
                     return (time, Landing::Switch);
                 }
-                time = place + later;
+                time = zero + later;
                 later *= 2.0;
             }
         }
         (h, Landing::None)
     }
 
-    /// The times within the step `h` of one row at which the series of its switching functions pass through zero, ascending.
+    /// Find the zeros of the series of the switching functions within the step `h` of one row: times, ascending.
     #[inline(never)]
     fn switch_times(&self, row: usize, h: f64) -> Vec<f64> {
         let mut switch_times = Vec::new();
@@ -219,7 +217,7 @@ where
         let length = h.min(left);
         // The shortest step that advances the time.
         let least = 2.0 * f64::EPSILON * now.0.abs();
-        // A step that is not a number, or advances nothing, is an error elsewhere.
+        // A step that is NaN, or does not advance the time, is an error elsewhere.
         if !(h.is_finite() && length > least) {
             return switch_times;
         }
@@ -250,12 +248,12 @@ where
         }
         switch_times.sort_by(f64::total_cmp);
         (switch_times.into_iter())
-            .map(|place| (place * length).max(least).max(f64::MIN_POSITIVE))
+            .map(|zero| (zero * length).max(least).max(f64::MIN_POSITIVE))
             .collect()
     }
 
-    /// Whether a feedback has another sign in the `state` later in the step than at its start, or ω has passed through zero
-    /// under quadratic damping.
+    /// Return whether a feedback has changed its sign between the start of the step and `state`, or ω has passed through zero under
+    /// quadratic damping.
     #[inline(never)]
     fn has_switched(&self, row: usize, state: &[L::Real; 7]) -> bool {
         let motion = self.motions[row].as_ref();

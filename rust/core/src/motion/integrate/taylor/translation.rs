@@ -1,4 +1,4 @@
-//! The path of a free body under forces: `m v̇ = F`, with F constant in space and in the body.
+//! The translation of a free body under forces: `m v̇ = F`, with parts of F constant in space and in the body.
 
 use super::batch::Batch;
 use super::linear_terms::LinearTerms;
@@ -27,7 +27,7 @@ impl<L: Number, const R: usize> Translation<Batch<L, R>> {
         }
     }
 
-    /// Sets position and velocity of one row.
+    /// Set position and velocity of one row.
     pub(super) fn set(&mut self, row: usize, place: &[f64; 6]) {
         for i in 0..6 {
             self.value[i].set(row, place[i]);
@@ -35,7 +35,7 @@ impl<L: Number, const R: usize> Translation<Batch<L, R>> {
         }
     }
 
-    /// Multiplies the velocity of one row, which comes to another unit.
+    /// Change the unit of rates of one row: multiply the velocity by `ratio`.
     pub(super) fn rescale(&mut self, row: usize, ratio: f64) {
         for i in 3..6 {
             let (value, rest) = (self.value[i].real(row), self.rest[i].real(row));
@@ -44,7 +44,7 @@ impl<L: Number, const R: usize> Translation<Batch<L, R>> {
         }
     }
 
-    /// The series of the acceleration: `R f` has the components `γ_i·f` with the axes γ of space, which are there when a
+    /// Compute the series of the acceleration. `R f` has the components `γ_i·f` with the axes γ of space, which the series contain if a
     /// force is constant in the body.
     #[inline(always)]
     pub(super) fn expand<const B: usize>(
@@ -71,7 +71,7 @@ impl<L: Number, const R: usize> Translation<Batch<L, R>> {
         }
     }
 
-    /// What the series add to position and velocity within the time `h`.
+    /// Compute the change of position and velocity within the time `h`.
     #[inline(always)]
     pub(super) fn increment(&self, order: usize, h: Batch<L, R>) -> [Batch<L, R>; 6] {
         let mut sums = [Batch::new(0.0); 6];
@@ -99,7 +99,7 @@ impl<L: Number, const R: usize> Translation<Batch<L, R>> {
         }
     }
 
-    /// Position and velocity of one row.
+    /// Return position and velocity of one row.
     pub(super) fn now(&self, row: usize) -> [L::Real; 6] {
         let mut place = [L::Real::default(); 6];
         for i in 0..6 {
@@ -108,7 +108,7 @@ impl<L: Number, const R: usize> Translation<Batch<L, R>> {
         place
     }
 
-    /// The coefficients of position and velocity of one row in the step that began at `start`.
+    /// Return the coefficients of position and velocity of one row in the step that began at `start`.
     pub(super) fn path(&self, row: usize, order: usize, start: &[L::Real; 6]) -> Vec<[f64; 6]> {
         let mut path = vec![[0.0; 6]; order + 2];
         path[0] = start.map(L::Real::rounded);
@@ -123,7 +123,7 @@ impl<L: Number, const R: usize> Translation<Batch<L, R>> {
         path
     }
 
-    /// Position and velocity of one row moved by `increment`.
+    /// Compute position and velocity of one row after `increment`.
     #[inline(always)]
     pub(super) fn moved(&self, increment: &[Batch<L, R>; 6], row: usize) -> [L::Real; 6] {
         let mut place = [L::Real::default(); 6];

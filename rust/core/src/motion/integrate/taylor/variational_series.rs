@@ -1,7 +1,7 @@
 //! The series of one motion in numbers with derivatives.
 //!
-//! Series of such numbers obey the same recurrences as those of plain ones, and what comes out are the series of the motion and
-//! of the linearised equations, with all that depends on the varied numbers. Steps are as long as the series of both allow.
+//! Numbers with derivatives obey the same recursion as plain ones. The result is the series of the motion together with the series
+//! of the variational equations. Steps are as long as both allow.
 
 use super::batch::Batch;
 use super::series::{Coefficient, Series, increment};
@@ -25,7 +25,7 @@ pub(super) struct VariedCoefficients {
 }
 
 impl VariedCoefficients {
-    /// All zero.
+    /// Return coefficients that are all zero.
     pub(super) fn new() -> Self {
         Self {
             values: [0.0; ORDER + 1],
@@ -33,7 +33,7 @@ impl VariedCoefficients {
         }
     }
 
-    /// Sets the coefficient of order `k` to a number times a factor.
+    /// Set the coefficient of order `k` to a number times a factor.
     #[inline(always)]
     pub(super) fn set(&mut self, k: usize, number: &Varied, factor: f64) {
         self.values[k] = number.value * factor;
@@ -42,7 +42,7 @@ impl VariedCoefficients {
         }
     }
 
-    /// The coefficient of order `k`.
+    /// Return the coefficient of order `k`.
     #[inline(always)]
     pub(super) fn get(&self, k: usize) -> Varied {
         Varied {
@@ -54,7 +54,7 @@ impl VariedCoefficients {
 
 type One = Batch<Varied, 1>;
 
-/// One motion with its derivatives: the rows of ω, of (x, y, z, w), of each direction.
+/// The series of one motion with derivatives: of ω, of (x, y, z, w), and of each direction.
 pub(super) struct VariationalSeries<const B: usize> {
     w: [VariedCoefficients; 3],
     q: [VariedCoefficients; 4],
@@ -98,7 +98,7 @@ impl<const B: usize> Series<One, B> for VariationalSeries<B> {
         ];
         for h in steps {
             for most in longest {
-                // Not a number wherever one of them is not.
+                // NaN if one of the two is NaN.
                 *h = if most >= *h { *h } else { most };
             }
         }
@@ -199,7 +199,7 @@ impl<const B: usize> Kernel for SumsOfProducts<'_, B> {
     }
 }
 
-/// The coefficient of order `k` of a sum of products of two rows, each with a sign.
+/// Compute the coefficient of order `k` of a sum of products of two series, each with a sign.
 #[inline(always)]
 fn product<L: Lane, const N: usize>(
     k: usize,
@@ -226,35 +226,36 @@ fn product<L: Lane, const N: usize>(
     sum
 }
 
-/// The last terms of a series, relative to the largest that the series has been.
+/// Size of the last terms of a series, relative to the largest value of the series so far.
 const LAST_TERM: f64 = 1e-17;
-/// The first coefficients, which tell how large a derivative that is zero at the start is going to be.
+/// Number of first coefficients from which the size of a derivative within the step is estimated: at the start it may be zero.
 const FIRST: usize = 5;
-/// Rounds in which the step is found: each is closer by a factor of five or more.
+/// Iterations for the step: each reduces the error by a factor of five or more.
 const ROUNDS: usize = 4;
 
-/// How large some numbers and their derivatives by each variable have been so far.
+/// The largest sizes so far of some numbers and of their derivatives by each variable, which the last terms of their series are
+/// compared with.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ConvergenceRadius {
     sizes: [f64; WIDTH + 1],
 }
 
 impl ConvergenceRadius {
-    /// Comes to another unit: `ratio` of the old one to the new one.
+    /// Change the unit; `ratio` is the old unit over the new one.
     pub(super) fn rescale(&mut self, ratio: f64) {
         self.sizes = self.sizes.map(|size| size * ratio);
     }
 
-    /// The longest step for which the last two terms of the series are small enough; infinite where they are zero, not a number
-    /// where they are not. Rounded to a few bits, so that it is the same on every machine.
+    /// Compute the longest step for which the last two terms of the series are small enough. It is infinite if they are zero, and
+    /// NaN if one of them is not finite. It is rounded to a few bits, so that it is the same on every machine.
     ///
-    /// What counts as large is what has been so far, or will be within the step: so that is found in a few rounds.
+    /// Terms are compared with the largest size so far or within the step. The latter depends on the step, hence the iteration.
     /// Source: Jorba & Zou, Experimental Mathematics 14 (2005) 99.
     pub(super) fn longest_step(&mut self, rows: &[VariedCoefficients]) -> f64 {
         self.longest_step_of(&|k| sizes(rows, k))
     }
 
-    /// The same, from the sums of magnitudes of the coefficients of each order.
+    /// Compute [`Self::longest_step`] from the sums of magnitudes of the coefficients of each order.
     pub(super) fn longest_step_of(&mut self, sizes: &dyn Fn(usize) -> [f64; WIDTH + 1]) -> f64 {
         let first: [_; FIRST] = std::array::from_fn(sizes);
         for (most, size) in self.sizes.iter_mut().zip(first[0]) {
@@ -291,7 +292,7 @@ impl ConvergenceRadius {
     }
 }
 
-/// The sums of magnitudes of the coefficients of order `k`: of the values, and of each derivative.
+/// Compute the sums of magnitudes of the coefficients of order `k`: of the values, and of each derivative.
 fn sizes(rows: &[VariedCoefficients], k: usize) -> [f64; WIDTH + 1] {
     let mut sizes = [0.0; WIDTH + 1];
     for number in rows.iter().map(|row| row.get(k)) {
