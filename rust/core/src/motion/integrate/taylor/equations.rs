@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Matrix3x4, Quaternion, UnitQuaternion, Vector3, Vector4}
 
 use super::linear_terms::LinearTerms;
 use super::orbit_cache::CacheKey;
-use super::principal_frame::{Precision, PrincipalFrame};
+use super::principal_frame::{Precision, PrincipalInertia};
 use crate::error::{Error, MotionFault};
 use crate::mass::validity::ROUNDING;
 use crate::motion::kinematics::Frame;
@@ -637,7 +637,7 @@ impl<X: Real> Switch<X> {
 fn free_wheel_tensor<X: Precision>(
     task: &Task<'_>,
     terms: &[Term],
-    principal: &PrincipalFrame<X>,
+    principal: &PrincipalInertia<X>,
     variables: X::Variables,
     firsts: &[usize],
 ) -> Matrix3<X> {

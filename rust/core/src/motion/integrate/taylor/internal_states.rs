@@ -22,7 +22,7 @@ use crate::numerics::number::Number;
 #[derive(Clone, Debug)]
 #[repr(align(64))] // see Batch
 pub(super) struct InternalStates<T> {
-    states: Vec<InternalState<T>>,
+    states: Vec<StateSeries<T>>,
     /// Σ z g.
     momentum: [[T; 3]; MAX_COUNT],
     inverse_moments: [T; 3],
@@ -31,7 +31,7 @@ pub(super) struct InternalStates<T> {
 /// One state.
 #[derive(Clone, Debug)]
 #[repr(align(64))] // see Batch
-struct InternalState<T> {
+struct StateSeries<T> {
     value: T,
     rest: T,
     series: [T; MAX_COUNT],
@@ -53,7 +53,7 @@ impl<L: Number<Real: Precision>, const R: usize> InternalStates<Batch<L, R>> {
     /// Return `count` states, all zero.
     pub(super) fn new(count: usize) -> Self {
         let zero = Batch::new(0.0);
-        let none = InternalState {
+        let none = StateSeries {
             value: zero,
             rest: zero,
             series: [zero; MAX_COUNT],
@@ -338,7 +338,7 @@ impl<N: Number<Real: Precision>, S: Series<Batch<N, R>, B>, const R: usize, cons
     }
 }
 
-impl<L: Number, const R: usize> InternalState<Batch<L, R>> {
+impl<L: Number, const R: usize> StateSeries<Batch<L, R>> {
     /// Compute the change within the time `h`, as [`increment`](super::series::increment) does.
     #[inline(always)]
     fn increment(&self, order: usize, h: Batch<L, R>) -> Batch<L, R> {

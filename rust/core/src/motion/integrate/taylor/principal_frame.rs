@@ -14,7 +14,7 @@ use crate::numerics::quaternion::normalized;
 
 /// Moments and axes about the reference point.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct PrincipalFrame<X> {
+pub(super) struct PrincipalInertia<X> {
     /// I₁ ≤ I₂ ≤ I₃.
     pub(super) moments: [X; 3],
     /// I₂ − I₃, I₃ − I₁, I₁ − I₂.
@@ -38,13 +38,13 @@ pub(super) trait Precision: Exact {
     /// in a series do not overflow. Relative to the other torques the damping is then as small as the square of it.
     const REST_SPEED_BESIDE_TORQUES: f64;
     /// Compute the principal frame of the body of a task.
-    fn principal(task: &Task<'_>, variables: Self::Variables) -> PrincipalFrame<Self>;
+    fn principal(task: &Task<'_>, variables: Self::Variables) -> PrincipalInertia<Self>;
 
     /// Subtract the derivatives of the tensor of wheels that turn freely, in these axes.
     fn subtract_wheels(
-        principal: PrincipalFrame<Self>,
-        _turning: impl FnOnce(&PrincipalFrame<Self>) -> Matrix3<Self>,
-    ) -> PrincipalFrame<Self> {
+        principal: PrincipalInertia<Self>,
+        _turning: impl FnOnce(&PrincipalInertia<Self>) -> Matrix3<Self>,
+    ) -> PrincipalInertia<Self> {
         principal
     }
 
@@ -61,9 +61,9 @@ impl Precision for f64 {
     const REST_SPEED: f64 = 2e-6;
     const REST_SPEED_BESIDE_TORQUES: f64 = 1e-10;
 
-    fn principal(task: &Task<'_>, _: Fixed) -> PrincipalFrame<Self> {
+    fn principal(task: &Task<'_>, _: Fixed) -> PrincipalInertia<Self> {
         let axes = *task.euler.axes();
-        PrincipalFrame {
+        PrincipalInertia {
             moments: task.euler.moments(),
             differences: task.euler.differences(),
             products: [0.0; 3],
@@ -79,14 +79,14 @@ impl Precision for DoubleDouble {
     const REST_SPEED: f64 = 2e-6;
     const REST_SPEED_BESIDE_TORQUES: f64 = 1e-7;
 
-    fn principal(task: &Task<'_>, _: Fixed) -> PrincipalFrame<Self> {
+    fn principal(task: &Task<'_>, _: Fixed) -> PrincipalInertia<Self> {
         let refined = match &task.casing {
             Some(casing) => **casing,
             None => RefinedPrincipal::about(task.body, &task.subject.point),
         };
         let [i1, i2, i3] = refined.moments;
         let axes = refined.axes();
-        PrincipalFrame {
+        PrincipalInertia {
             moments: refined.moments,
             differences: [i2 - i3, i3 - i1, i1 - i2],
             products: [Self::default(); 3],
@@ -102,7 +102,7 @@ impl Precision for Varied {
     const REST_SPEED: f64 = 1e-8;
     const REST_SPEED_BESIDE_TORQUES: f64 = 1e-10;
 
-    fn principal(task: &Task<'_>, block: Block) -> PrincipalFrame<Self> {
+    fn principal(task: &Task<'_>, block: Block) -> PrincipalInertia<Self> {
         let plain = <f64 as Precision>::principal(task, Fixed);
         let is_massless = plain.moments.contains(&0.0);
         let variable = |value: f64, column: usize| {
@@ -112,7 +112,7 @@ impl Precision for Varied {
                 block.number(value, column)
             }
         };
-        let mut principal = PrincipalFrame {
+        let mut principal = PrincipalInertia {
             moments: plain.moments.map(Self::constant),
             differences: plain.differences.map(Self::constant),
             products: [Self::constant(0.0); 3],
@@ -135,9 +135,9 @@ impl Precision for Varied {
     }
 
     fn subtract_wheels(
-        mut principal: PrincipalFrame<Self>,
-        turning: impl FnOnce(&PrincipalFrame<Self>) -> Matrix3<Self>,
-    ) -> PrincipalFrame<Self> {
+        mut principal: PrincipalInertia<Self>,
+        turning: impl FnOnce(&PrincipalInertia<Self>) -> Matrix3<Self>,
+    ) -> PrincipalInertia<Self> {
         let turning = turning(&principal);
         principal.add(&(-turning));
         principal
@@ -152,7 +152,7 @@ impl Precision for Varied {
     }
 }
 
-impl PrincipalFrame<Varied> {
+impl PrincipalInertia<Varied> {
     /// Add the derivatives of a tensor in these axes.
     fn add(&mut self, tensor: &Matrix3<Varied>) {
         let slopes = |x: Varied| Varied { value: 0.0, ..x };
