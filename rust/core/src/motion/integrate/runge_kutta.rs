@@ -1,19 +1,84 @@
-//! What Runge-Kutta methods have in common: the way from the start to the end, and what a run asks of them.
+//! The common parts of Runge-Kutta methods: the equations, the progress of an integration, the first step.
 
 use nalgebra::SVector;
 
-use super::first_step::first_step;
-use super::system::{Compensated, System};
 use crate::error::{Error, MotionFault};
-use crate::numerics::double_double::fast_two_sum;
+use crate::numerics::double_double::{fast_two_sum, two_sum};
 
-/// How far an integration has come.
+/// The equations that a stepper solves.
+pub(crate) trait System<const N: usize> {
+    /// The error of an evaluation of the equations, beside those of the stepper itself.
+    type Error: From<Error>;
+
+    /// Compute `f(t, y)` into `slope`, all numbers of it. It is not returned: a copy would have to wait until it is written.
+    ///
+    /// # Errors
+    /// Ends the integration and comes back to the caller as it is.
+    fn derivative(
+        &mut self,
+        t: f64,
+        y: &SVector<f64, N>,
+        slope: &mut SVector<f64, N>,
+    ) -> Result<(), Self::Error>;
+
+    /// Compute the size of `error` in a step from `y` to `y_new`, in units of the error allowed: a step with at most one is accepted.
+    fn error_norm(
+        &self,
+        y: &SVector<f64, N>,
+        y_new: &SVector<f64, N>,
+        error: &SVector<f64, N>,
+    ) -> f64;
+
+    /// Called with each accepted state: project it onto its manifold, and store what the system needs of it.
+    fn accept(&mut self, y: &mut Compensated<N>);
+}
+
+/// A state with the rounding errors of its increments, so that a sum of many small steps is as accurate as one of few large steps.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Compensated<const N: usize> {
+    /// The rounded state.
+    pub value: SVector<f64, N>,
+    /// The rounding error so far.
+    rest: SVector<f64, N>,
+}
+
+impl<const N: usize> Compensated<N> {
+    /// Return the state `value` without rounding error.
+    #[must_use]
+    #[inline]
+    pub(crate) fn new(value: SVector<f64, N>) -> Self {
+        Self {
+            value,
+            rest: SVector::zeros(),
+        }
+    }
+
+    /// Return the state with `increment` added.
+    #[must_use]
+    #[inline]
+    pub(crate) fn plus(&self, increment: &SVector<f64, N>) -> Self {
+        let mut sum = *self;
+        for i in 0..N {
+            (sum.value[i], sum.rest[i]) = two_sum(self.value[i], increment[i] + self.rest[i]);
+        }
+        sum
+    }
+
+    /// Return the rounding error of `value`.
+    #[must_use]
+    #[inline]
+    pub(crate) fn rest(&self) -> &SVector<f64, N> {
+        &self.rest
+    }
+}
+
+/// The progress of an integration.
 #[derive(Clone, Debug)]
 pub(crate) struct Progress<const N: usize> {
     /// The time at which it starts, and the time from there to the end, negative backward in time.
     pub(super) start: f64,
     pub(super) span: f64,
-    /// Time since the start, and what rounding has left out of it.
+    /// Time since the start, and its rounding error.
     pub(super) elapsed: (f64, f64),
     pub(super) state: Compensated<N>,
     /// The step to try next.
@@ -25,8 +90,8 @@ pub(crate) struct Progress<const N: usize> {
 }
 
 impl<const N: usize> Progress<N> {
-    /// At the state `y` at time `start`, and the slope there; the first step is `step`, or one that suits a method whose error is of
-    /// the order 1/`exponent`.
+    /// Begin in the state `y` at time `start`; return the slope there too. The first step is `step`, or one that is chosen for a method
+    /// whose error is of the order 1/`exponent`.
     pub(super) fn new<S: System<N>>(
         system: &mut S,
         [start, end]: [f64; 2],
@@ -61,7 +126,7 @@ impl<const N: usize> Progress<N> {
         Ok((progress, slope))
     }
 
-    /// The slope in the state `y` at a time since the start, into `slope`.
+    /// Compute the slope in the state `y` at a time since the start.
     #[inline]
     pub(super) fn slope<S: System<N>>(
         &mut self,
@@ -74,7 +139,7 @@ impl<const N: usize> Progress<N> {
         system.derivative(self.start + elapsed, y, slope)
     }
 
-    /// The step to try, and whether it is the last one.
+    /// Return the step to try, and whether it is the last one.
     ///
     /// # Errors
     /// [`MotionFault::StepTooSmall`].
@@ -89,7 +154,7 @@ impl<const N: usize> Progress<N> {
         Ok((h, is_last))
     }
 
-    /// Goes on by an accepted step `h`.
+    /// Advance the time by an accepted step `h`.
     #[inline]
     pub(super) fn advance(&mut self, h: f64, is_last: bool) {
         self.elapsed = if is_last {
@@ -100,7 +165,7 @@ impl<const N: usize> Progress<N> {
         self.steps += 1;
     }
 
-    /// After a step that was refused for its `error`: that the next one still advances the time.
+    /// Check, after a step that was rejected for its `error`, that the next one advances the time.
     ///
     /// # Errors
     /// [`MotionFault::NotFiniteMotion`], [`MotionFault::StepTooSmall`].
@@ -128,10 +193,10 @@ impl<const N: usize> Progress<N> {
 
 /// A Runge-Kutta method under way.
 pub(crate) trait RungeKutta<const N: usize>: Sized {
-    /// At the state `y` at time `start`, on the way to `end`, with `step` to try first or one of its own choice.
+    /// Begin in the state `y` at time `start`, toward `end`; the first step is `step`, or the method chooses it.
     ///
     /// # Errors
-    /// What the equations refuse at the start; a slope there that is not finite.
+    /// Errors of the equations at the start; a slope there that is not finite.
     fn new<S: System<N>>(
         system: &mut S,
         start: f64,
@@ -140,47 +205,82 @@ pub(crate) trait RungeKutta<const N: usize>: Sized {
         step: Option<f64>,
     ) -> Result<Self, S::Error>;
 
-    /// How far it has come.
+    /// Return the progress.
     fn progress(&self) -> &Progress<N>;
 
-    /// One accepted step toward the end.
+    /// Make one accepted step toward the end.
     ///
     /// # Errors
-    /// What the equations refuse; a step too small to advance the time.
+    /// Errors of the equations; a step too small to advance the time.
     fn advance<S: System<N>>(&mut self, system: &mut S) -> Result<(), S::Error>;
 
-    /// The state within the last accepted step, at a time since the start.
+    /// Compute the state within the last accepted step, at a time since the start.
     ///
     /// # Errors
-    /// What the equations refuse, where it takes more evaluations.
+    /// Errors of the equations, if more evaluations are necessary.
     fn within<S: System<N>>(
         &mut self,
         system: &mut S,
         elapsed: f64,
     ) -> Result<SVector<f64, N>, S::Error>;
 
-    /// Time since the start.
+    /// Return the time since the start.
     #[inline]
     fn elapsed(&self) -> f64 {
         self.progress().elapsed.0
     }
 
-    /// The step that would be tried next.
+    /// Return the step to try next.
     #[inline]
     fn step(&self) -> f64 {
         self.progress().step
     }
 
-    /// Whether the end is reached.
+    /// Return whether the end is reached.
     #[cfg(test)]
     #[inline]
     fn is_finished(&self) -> bool {
         self.elapsed() == self.progress().span
     }
 
-    /// The state now.
+    /// Return the present state.
     #[inline]
     fn state(&self) -> &SVector<f64, N> {
         &self.progress().state.value
     }
+}
+
+/// Choose the first step, at most `span` and with its sign, for a method whose error is of the order 1/`exponent`, from the sizes of
+/// state, slope and change of slope; with one evaluation of the equations.
+///
+/// `y`, `slope`: the state and `f(start, y)`. Source: Hairer, Nørsett & Wanner, Solving ODEs I, §II.4.
+///
+/// # Errors
+/// Errors of the equations.
+fn first_step<S: System<N>, const N: usize>(
+    system: &mut S,
+    start: f64,
+    span: f64,
+    y: &SVector<f64, N>,
+    slope: &SVector<f64, N>,
+    exponent: f64,
+) -> Result<f64, S::Error> {
+    let (size, speed) = (system.error_norm(y, y, y), system.error_norm(y, y, slope));
+    let trial = if speed > 0.0 && speed.is_finite() {
+        0.01 * size / speed
+    } else {
+        1e-3 * span.abs()
+    };
+    let trial = trial.min(span.abs()).copysign(span);
+    let there = y + slope * trial;
+    let mut later = SVector::zeros();
+    system.derivative(start + trial, &there, &mut later)?;
+    let bend = system.error_norm(y, &there, &(later - slope)) / trial.abs();
+    let fastest = speed.max(bend);
+    let step = if fastest > 0.0 && fastest.is_finite() {
+        (0.01 / fastest).powf(exponent).min(100.0 * trial.abs())
+    } else {
+        trial.abs()
+    };
+    Ok(step.min(span.abs()).copysign(span))
 }

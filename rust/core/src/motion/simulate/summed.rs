@@ -7,7 +7,7 @@ use super::events::Events;
 use super::lookout::Lookout;
 use super::stepper::Dense;
 use crate::error::Error;
-use crate::motion::integrate::taylor::{Step, solve_seen};
+use crate::motion::integrate::taylor::{Step, solve_with_observer};
 use crate::motion::loads::Term;
 use crate::motion::problem::limits::check_steps;
 use crate::motion::problem::{End, Run, Task};
@@ -28,7 +28,7 @@ pub(super) fn solve<E: From<Error>>(
     };
     // Looks for events within a step of many turns count as steps.
     let (most, mut looks) = (task.tolerance.most_steps, 0);
-    let mut run = solve_seen(task, terms, &mut |step| {
+    let mut run = solve_with_observer(task, terms, &mut |step| {
         let mut summed = Summed {
             step,
             error: PhantomData,

@@ -1,4 +1,4 @@
-//! In which order and for how long a step drifts and is kicked.
+//! The compositions of drifts and kicks in a step.
 
 /// A symmetric composition of drifts and kicks that begins and ends with a drift.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,7 +51,7 @@ impl Scheme {
     /// All of them, those of fewest kicks first.
     pub(crate) const ALL: [Self; 3] = [Self::Strang, Self::NearlyFree864, Self::RungeKuttaNystrom6];
 
-    /// Kicks in a step.
+    /// Return the number of kicks in a step.
     #[must_use]
     pub(crate) fn kicks(self) -> usize {
         match self {
@@ -61,7 +61,7 @@ impl Scheme {
         }
     }
 
-    /// The order of what a step errs by, for a load that is not weak.
+    /// Return the order of the method, for a load that is not weak.
     #[must_use]
     pub(crate) fn order(self) -> i32 {
         match self {
@@ -71,7 +71,7 @@ impl Scheme {
         }
     }
 
-    /// How long the drift before kick i is, or the last one, in steps.
+    /// Return the length of the drift before kick i, or of the last drift, relative to the step.
     #[must_use]
     pub(crate) fn drift(self, i: usize) -> f64 {
         let i = i.min(self.kicks() - i);
@@ -82,7 +82,7 @@ impl Scheme {
         }
     }
 
-    /// How strong kick i is, in steps.
+    /// Return the strength of kick i, relative to the step.
     #[must_use]
     pub(crate) fn kick(self, i: usize) -> f64 {
         let i = i.min(self.kicks() - 1 - i);

@@ -1,9 +1,8 @@
-//! Torques that are not linear in ω, by the formulas that their laws state.
+//! Torques that are not linear in ω, from the formulas that their laws state.
 
-use super::frame::Precision;
-use super::pack::{Lined, Pack};
-use super::series::Series;
-use super::twin::COUNT;
+use super::batch::{Batch, CacheAligned};
+use super::principal_frame::Precision;
+use super::series::{MAX_COUNT, Series};
 use crate::motion::loads::{Formula, Step};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
@@ -11,26 +10,26 @@ use crate::numerics::number::{Number, Real};
 
 /// The coefficients of a scalar.
 #[derive(Clone, Debug)]
-#[repr(align(64))] // see Pack
-struct Scalar<T>([T; COUNT]);
+#[repr(align(64))] // see Batch
+struct Scalar<T>([T; MAX_COUNT]);
 
 /// The coefficients of a vector.
 #[derive(Clone, Debug)]
-#[repr(align(64))] // see Pack
-struct Vector<T>([[T; 3]; COUNT]);
+#[repr(align(64))] // see Batch
+struct Vector<T>([[T; 3]; MAX_COUNT]);
 
 /// A formula, and the coefficients of its scalars and vectors.
 #[derive(Clone, Debug)]
-#[repr(align(64))] // see Pack
-struct Worked<T> {
+#[repr(align(64))] // see Batch
+struct FormulaSeries<T> {
     steps: Vec<Step>,
     vector: usize,
-    /// The matrix over the moments: zero in a row in which the formula does not act.
+    /// The matrix over the moments; zero in a row without this formula.
     matrix: [[T; 3]; 3],
     scalars: Vec<Scalar<T>>,
-    /// Those after ω.
+    /// The vectors after ω.
     vectors: Vec<Vector<T>>,
-    /// The number of |ω|, if it is in the formula.
+    /// Index of the scalar |ω|, if the formula contains it.
     speed: Option<usize>,
     /// Whether the vector is |ω| ω.
     is_quadratic: bool,
@@ -38,7 +37,7 @@ struct Worked<T> {
     half_over_speed: T,
 }
 
-/// Those that act in one of the rows; most loads have none.
+/// The formulas of all rows; most loads have none.
 ///
 /// With `u = ω·ω` and `s = |ω| = √u`, from s s = u
 ///
@@ -46,57 +45,58 @@ struct Worked<T> {
 /// s_k = (u_k − Σ_{0<j<k} s_j s_{k−j})/2s₀
 /// ```
 ///
-/// Rounding in s grows as `1/s(t)` does, so a step does not go as far as ω would take to zero at its present rate. Where ω
-/// passes through zero all the same the step ends, and at ω = 0 there is no series, and of |ω| ω no second derivative: below
-/// [`STILL`](Precision::STILL) of the fastest ω, or the same [beside torques](Precision::STILL_BESIDE_TORQUES), the speed counts as
-/// zero, in steps over which what it does stays below rounding.
+/// Rounding errors in s grow as `1/s(t)`, so a step is shorter than the time in which ω would come to zero at its present rate. If ω
+/// passes through zero nevertheless, the step ends there. At ω = 0, s has no series, and |ω| ω has no second derivative: below
+/// [`REST_SPEED`](Precision::REST_SPEED) of the largest ω, or below that
+/// [beside torques](Precision::REST_SPEED_BESIDE_TORQUES), the speed counts as zero, in steps so short that the error stays below
+/// rounding.
 #[derive(Clone, Debug)]
-#[repr(align(64))] // see Pack
+#[repr(align(64))] // see Batch
 pub(super) struct Formulas<T> {
-    worked: Vec<Worked<T>>,
-    /// The speed below which a row is still.
-    still: T,
+    formulas: Vec<FormulaSeries<T>>,
+    /// The speed below which a row counts as at rest.
+    rest_speed: T,
 }
 
-impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
+impl<L: Number<Real: Precision>, const R: usize> Formulas<Batch<L, R>> {
     pub(super) fn new() -> Self {
-        let zero = Pack::new(0.0);
+        let zero = Batch::new(0.0);
         Self {
-            worked: Vec::new(),
-            still: zero,
+            formulas: Vec::new(),
+            rest_speed: zero,
         }
     }
 
-    /// Takes those of one row, each with its matrix over the moments.
+    /// Set the formulas of one row, each with its matrix over the moments.
     pub(super) fn set<'a>(
         &mut self,
         row: usize,
         formulas: impl Iterator<Item = (&'a Formula<L::Real>, [[L::Real; 3]; 3])>,
     ) {
-        self.vacate(row);
-        let mut taken = vec![false; self.worked.len()];
+        self.clear(row);
+        let mut taken = vec![false; self.formulas.len()];
         for (formula, matrix) in formulas {
-            let fits = |(i, worked): (usize, &Worked<_>)| {
-                !taken[i] && worked.steps == formula.steps && worked.vector == formula.vector
+            let fits = |(i, known): (usize, &FormulaSeries<_>)| {
+                !taken[i] && known.steps == formula.steps && known.vector == formula.vector
             };
-            let place = (self.worked.iter().enumerate().position(fits)).unwrap_or_else(|| {
-                self.worked.push(Worked::new(formula));
+            let place = (self.formulas.iter().enumerate().position(fits)).unwrap_or_else(|| {
+                self.formulas.push(FormulaSeries::new(formula));
                 taken.push(false);
                 taken.len() - 1
             });
             taken[place] = true;
-            for (packs, numbers) in self.worked[place].matrix.iter_mut().zip(matrix) {
-                for (pack, number) in packs.iter_mut().zip(numbers) {
-                    pack.put(row, number);
+            for (batches, numbers) in self.formulas[place].matrix.iter_mut().zip(matrix) {
+                for (batch, number) in batches.iter_mut().zip(numbers) {
+                    batch.put(row, number);
                 }
             }
         }
     }
 
-    /// Leaves one row without formulas.
-    pub(super) fn vacate(&mut self, row: usize) {
-        for worked in &mut self.worked {
-            for x in worked.matrix.as_flattened_mut() {
+    /// Remove the formulas of one row.
+    pub(super) fn clear(&mut self, row: usize) {
+        for formula in &mut self.formulas {
+            for x in formula.matrix.as_flattened_mut() {
                 x.set(row, 0.0);
             }
         }
@@ -105,44 +105,50 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
     #[inline(always)]
     pub(super) fn start(&mut self, fastest: &[f64; R]) {
         for row in 0..R {
-            self.still.set(row, L::Real::STILL * fastest[row]);
+            self.rest_speed.set(row, L::Real::REST_SPEED * fastest[row]);
         }
     }
 
-    /// Counts speeds as zero that are too small a part of this acceleration, the one by all else.
+    /// Raise the speed that counts as zero to its part of this acceleration, that by all other torques.
     #[inline(always)]
-    fn beside(&mut self, acceleration: &[Pack<L, R>; 3]) {
+    fn raise_rest_speed(&mut self, acceleration: &[Batch<L, R>; 3]) {
         for row in 0..R {
-            let (still, least) = (
-                self.still.get(row),
-                L::Real::STILL_BESIDE_TORQUES * size(acceleration, row),
+            let (rest_speed, least) = (
+                self.rest_speed.get(row),
+                L::Real::REST_SPEED_BESIDE_TORQUES * size(acceleration, row),
             );
-            self.still
-                .set(row, if least > still { least } else { still });
+            self.rest_speed.set(
+                row,
+                if least > rest_speed {
+                    least
+                } else {
+                    rest_speed
+                },
+            );
         }
     }
 
-    /// `sum` and the coefficients of order `k` of the angular acceleration by all of them; asked for in order.
+    /// Add the coefficient of order `k` of the angular acceleration by all formulas to `sum`. Called for one order after the other.
     #[inline(always)]
     pub(super) fn plus_coefficients<const B: usize>(
         &mut self,
         k: usize,
-        series: &impl Series<Pack<L, R>, B>,
-        mut sum: [Pack<L, R>; 3],
-    ) -> [Pack<L, R>; 3] {
-        if k == 0 && !self.worked.is_empty() {
-            self.beside(&sum);
+        series: &impl Series<Batch<L, R>, B>,
+        mut sum: [Batch<L, R>; 3],
+    ) -> [Batch<L, R>; 3] {
+        if k == 0 && !self.formulas.is_empty() {
+            self.raise_rest_speed(&sum);
         }
-        let still = self.still;
-        for worked in &mut self.worked {
+        let rest_speed = self.rest_speed;
+        for formula in &mut self.formulas {
             let [x, y, z] = if R == 1 {
-                worked.coefficient(k, series, still)
+                formula.coefficient(k, series, rest_speed)
             } else {
                 dispatch(Next {
-                    worked,
+                    formula,
                     k,
                     series,
-                    still,
+                    rest_speed,
                 })
                 .0
             };
@@ -151,34 +157,33 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
         sum
     }
 
-    /// Those with |ω| that act in one row.
-    fn with_speed(&self, row: usize) -> impl Iterator<Item = &Scalar<Pack<L, R>>> {
-        let acting = self.worked.iter().filter(move |it| it.acts(row));
+    /// Iterate over the series of |ω| of the formulas that act in one row.
+    fn with_speed(&self, row: usize) -> impl Iterator<Item = &Scalar<Batch<L, R>>> {
+        let acting = self.formulas.iter().filter(move |it| it.acts(row));
         acting.filter_map(|it| Some(&it.scalars[it.speed?]))
     }
 
-    /// Whether the series of one row, whose ω was `start`, are another law's where it is `omega`: where ω passes through zero
-    /// along a line, the series of |ω| goes on as −|ω|.
+    /// Return whether ω of one row has passed through zero between `start` and `omega`: beyond it the series of |ω| continues as
+    /// −|ω|, which is another law.
     pub(super) fn is_reversed(&self, row: usize, start: &[f64; 3], omega: &[f64; 3]) -> bool {
         let along: f64 = (0..3).map(|i| start[i] * omega[i]).sum();
         along < 0.0 && self.may_reverse(row)
     }
 
-    /// Whether the law of one row changes where ω passes through zero: its ω is not as good as zero, so that there is a series of
-    /// |ω|.
+    /// Return whether the law of one row changes if ω passes through zero: a formula contains |ω|, and ω does not count as zero.
     pub(super) fn may_reverse(&self, row: usize) -> bool {
         self.with_speed(row).any(|speed| speed.0[0].get(row) > 0.0)
     }
 
-    /// Keeps the steps of motions with |ω| in their law so short that those almost at rest stay so and that others do not come to
-    /// rest at their present rate.
+    /// Shorten the steps of motions whose law contains |ω|: a motion that counts as at rest stays so, and others do not come to rest
+    /// at their present rate.
     #[inline(always)]
     pub(super) fn limit<const B: usize>(
         &self,
-        series: &impl Series<Pack<L, R>, B>,
+        series: &impl Series<Batch<L, R>, B>,
         h: &mut [f64; R],
     ) {
-        if self.worked.is_empty() {
+        if self.formulas.is_empty() {
             return;
         }
         let (w, change) = (series.get(0).w, series.get(1).w);
@@ -186,9 +191,10 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
             if self.with_speed(row).next().is_none() {
                 continue;
             }
-            let (still, speed, rate) = (self.still.get(row), size(&w, row), size(&change, row));
-            let most = if speed <= still {
-                2.0 * still / rate
+            let (rest_speed, speed, rate) =
+                (self.rest_speed.get(row), size(&w, row), size(&change, row));
+            let most = if speed <= rest_speed {
+                2.0 * rest_speed / rate
             } else {
                 0.8 * speed / rate
             };
@@ -198,34 +204,37 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
 }
 
 #[inline(always)]
-fn size<L: Number, const R: usize>(w: &[Pack<L, R>; 3], row: usize) -> f64 {
+fn size<L: Number, const R: usize>(w: &[Batch<L, R>; 3], row: usize) -> f64 {
     let (x, y, z) = (w[0].get(row), w[1].get(row), w[2].get(row));
     (x * x + y * y + z * z).sqrt()
 }
 
-/// The coefficient of order `k` of several rows: a function of its own, since loops within that of the steps keep its sums out of
-/// registers. One row is slower with it, since what another function may read must stand in memory.
+/// Computes the coefficient of order `k` of several rows. A separate function: within the loop over steps its sums are not kept in
+/// registers. A single row would be slower with it, because the arguments of a function must be in memory.
 struct Next<'a, L, S, const R: usize, const B: usize> {
-    worked: &'a mut Worked<Pack<L, R>>,
+    formula: &'a mut FormulaSeries<Batch<L, R>>,
     k: usize,
     series: &'a S,
-    still: Pack<L, R>,
+    rest_speed: Batch<L, R>,
 }
 
-impl<N: Number<Real: Precision>, S: Series<Pack<N, R>, B>, const R: usize, const B: usize> Kernel
+impl<N: Number<Real: Precision>, S: Series<Batch<N, R>, B>, const R: usize, const B: usize> Kernel
     for Next<'_, N, S, R, B>
 {
-    type Output = Lined<[Pack<N, R>; 3]>;
+    type Output = CacheAligned<[Batch<N, R>; 3]>;
 
     #[inline(always)]
     fn run<L: Lane>(self) -> Self::Output {
-        Lined(self.worked.coefficient(self.k, self.series, self.still))
+        CacheAligned(
+            self.formula
+                .coefficient(self.k, self.series, self.rest_speed),
+        )
     }
 }
 
-impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
+impl<L: Number<Real: Precision>, const R: usize> FormulaSeries<Batch<L, R>> {
     fn new(formula: &Formula<L::Real>) -> Self {
-        let zero = Pack::new(0.0);
+        let zero = Batch::new(0.0);
         let (mut scalars, mut vectors, mut speed) = (Vec::new(), Vec::new(), None);
         for step in &formula.steps {
             match step {
@@ -233,9 +242,9 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
                     if matches!(step, Step::Speed(_)) {
                         speed = Some(scalars.len());
                     }
-                    scalars.push(Scalar([zero; COUNT]));
+                    scalars.push(Scalar([zero; MAX_COUNT]));
                 }
-                Step::Times(..) => vectors.push(Vector([[zero; 3]; COUNT])),
+                Step::Times(..) => vectors.push(Vector([[zero; 3]; MAX_COUNT])),
             }
         }
         Self {
@@ -251,28 +260,28 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
         }
     }
 
-    /// Whether it acts in one row.
+    /// Return whether it acts in one row.
     #[inline(always)]
     fn acts(&self, row: usize) -> bool {
         self.matrix.iter().flatten().any(|x| x.get(row) != 0.0)
     }
 
-    /// The coefficient of order `k` of the angular acceleration, components in principal axes.
+    /// Compute the coefficient of order `k` of the angular acceleration, components in principal axes.
     #[inline(always)]
     fn coefficient<const B: usize>(
         &mut self,
         k: usize,
-        series: &impl Series<Pack<L, R>, B>,
-        still: Pack<L, R>,
-    ) -> [Pack<L, R>; 3] {
+        series: &impl Series<Batch<L, R>, B>,
+        rest_speed: Batch<L, R>,
+    ) -> [Batch<L, R>; 3] {
         let vector = if self.is_quadratic {
-            // In one piece: what a step gives to the next one stays in registers.
-            let speeds = self.set_speed(k, 1, square(k, series), still);
+            // In one piece: intermediate results stay in registers.
+            let speeds = self.set_speed(k, 1, square(k, series), rest_speed);
             times(k, speeds, |j| series.get(j).w)
         } else {
-            self.step_by_step(k, series, still)
+            self.step_by_step(k, series, rest_speed)
         };
-        let mut sum = [Pack::new(0.0); 3];
+        let mut sum = [Batch::new(0.0); 3];
         for n in 0..3 {
             for i in 0..3 {
                 sum[n] = self.matrix[n][i].mul_add(vector[i], sum[n]);
@@ -281,14 +290,14 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
         sum
     }
 
-    /// The coefficient of order `k` of the vector of any formula.
+    /// Compute the coefficient of order `k` of the vector of any formula.
     #[inline(always)]
     fn step_by_step<const B: usize>(
         &mut self,
         k: usize,
-        series: &impl Series<Pack<L, R>, B>,
-        still: Pack<L, R>,
-    ) -> [Pack<L, R>; 3] {
+        series: &impl Series<Batch<L, R>, B>,
+        rest_speed: Batch<L, R>,
+    ) -> [Batch<L, R>; 3] {
         let (mut scalars, mut vectors) = (0, 0);
         for i in 0..self.steps.len() {
             match self.steps[i] {
@@ -298,7 +307,7 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
                 }
                 Step::Speed(of) => {
                     let square = self.scalars[of].0[k];
-                    let _speeds = self.set_speed(k, scalars, square, still);
+                    let _speeds = self.set_speed(k, scalars, square, rest_speed);
                     scalars += 1;
                 }
                 Step::Times(factor, vector) => {
@@ -320,21 +329,21 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
         }
     }
 
-    /// The coefficient of order `k` of |ω|, the scalar of this number, from that of ω·ω.
+    /// Compute the coefficient of order `k` of |ω|, the scalar of this index, from that of ω·ω.
     #[inline(always)]
     fn set_speed(
         &mut self,
         k: usize,
         number: usize,
-        square: Pack<L, R>,
-        still: Pack<L, R>,
-    ) -> &[Pack<L, R>; COUNT] {
+        square: Batch<L, R>,
+        rest_speed: Batch<L, R>,
+    ) -> &[Batch<L, R>; MAX_COUNT] {
         let speeds = &mut self.scalars[number].0;
-        speeds[k] = Pack::new(0.0);
+        speeds[k] = Batch::new(0.0);
         if k == 0 {
             for row in 0..R {
                 let speed = square.real(row).root();
-                let moves = speed.rounded() > still.get(row);
+                let moves = speed.rounded() > rest_speed.get(row);
                 speeds[0].set(row, 0.0);
                 self.half_over_speed.set(row, 0.0);
                 if moves {
@@ -353,13 +362,13 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
     }
 }
 
-/// The coefficient of order `k` of ω·ω.
+/// Compute the coefficient of order `k` of ω·ω.
 #[inline(always)]
 fn square<L: Number, const R: usize, const B: usize>(
     k: usize,
-    series: &impl Series<Pack<L, R>, B>,
-) -> Pack<L, R> {
-    let mut square = Pack::new(0.0);
+    series: &impl Series<Batch<L, R>, B>,
+) -> Batch<L, R> {
+    let mut square = Batch::new(0.0);
     for j in 0..=k {
         let (a, b) = (series.get(j).w, series.get(k - j).w);
         for i in 0..3 {
@@ -369,14 +378,14 @@ fn square<L: Number, const R: usize, const B: usize>(
     square
 }
 
-/// The coefficient of order `k` of a scalar times a vector.
+/// Compute the coefficient of order `k` of a scalar times a vector.
 #[inline(always)]
 fn times<L: Number, const R: usize>(
     k: usize,
-    factor: &[Pack<L, R>; COUNT],
-    vector: impl Fn(usize) -> [Pack<L, R>; 3],
-) -> [Pack<L, R>; 3] {
-    let mut product = [Pack::new(0.0); 3];
+    factor: &[Batch<L, R>; MAX_COUNT],
+    vector: impl Fn(usize) -> [Batch<L, R>; 3],
+) -> [Batch<L, R>; 3] {
+    let mut product = [Batch::new(0.0); 3];
     for j in 0..=k {
         let w = vector(k - j);
         for i in 0..3 {
@@ -387,4 +396,96 @@ fn times<L: Number, const R: usize>(
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use nalgebra::Matrix3;
+
+    use super::*;
+    use crate::motion::integrate::taylor::series::Coefficient;
+    use crate::motion::integrate::taylor::single_series::SingleMotionSeries;
+    use crate::motion::loads::{OMEGA, Steps};
+
+    type One = crate::numerics::lane::Double<false>;
+
+    /// The coefficients of `M u² ω` with `u = ω·ω`, of `ω = (1 + t, 0, 2)`, for which `u² = 25 + 20 t + 14 t² + 4 t³ + t⁴`.
+    #[test]
+    fn products_of_products() {
+        let number = |x: f64| Batch([<One as Number>::new(x)]);
+        let mut steps = Steps::default();
+        let square = steps.square();
+        let cube = steps.times(square, OMEGA);
+        let fifth = steps.times(square, cube);
+        let formula = steps.torque(Matrix3::<f64>::identity(), fifth);
+        let mut formulas = Formulas::new();
+        let matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0]];
+        formulas.set(0, [(&formula, matrix)].into_iter());
+        let mut series = SingleMotionSeries::<One, 0>::new();
+        series.start(&Coefficient {
+            w: [number(1.0), number(0.0), number(2.0)],
+            q: [number(0.0), number(0.0), number(0.0), number(1.0)],
+            g: [],
+        });
+        let x = [25.0, 45.0, 34.0, 18.0, 5.0, 1.0, 0.0];
+        let z = [50.0, 40.0, 28.0, 8.0, 2.0, 0.0, 0.0];
+        for k in 0..x.len() {
+            let sums = series.sums(k);
+            let found = formulas.plus_coefficients(k, &series, [number(0.0); 3]);
+            assert_eq!(found.map(|x| x.get(0)), [x[k], 0.5 * z[k], z[k]]);
+            let rate = if k == 0 { 1.0 } else { 0.0 };
+            series.extend(k, &sums, &[number(rate), number(0.0), number(0.0)]);
+        }
+        assert!(!formulas.may_reverse(0)); // there is no |ω| in it
+        formulas.set(0, std::iter::empty());
+        let none = formulas.plus_coefficients(0, &series, [number(0.0); 3]);
+        assert_eq!(none.map(|x| x.get(0)), [0.0; 3]);
+    }
+
+    /// |ω| ω in one piece and step by step.
+    #[test]
+    fn the_quick_way_has_the_same_bits() {
+        let number = |x: f64| Batch([<One as Number>::new(x)]);
+        let mut steps = Steps::default();
+        let speed = steps.speed();
+        let vector = steps.times(speed, OMEGA);
+        let formula = steps.torque(Matrix3::<f64>::identity(), vector);
+        let (mut quick, mut slow) = (FormulaSeries::new(&formula), FormulaSeries::new(&formula));
+        assert!(quick.is_quadratic);
+        slow.is_quadratic = false;
+        for formula in [&mut quick, &mut slow] {
+            formula.matrix = [[number(0.3); 3]; 3];
+        }
+        let mut series = SingleMotionSeries::<One, 0>::new();
+        series.start(&Coefficient {
+            w: [number(0.6), number(-0.1), number(0.3)],
+            q: [number(0.0), number(0.0), number(0.0), number(1.0)],
+            g: [],
+        });
+        for k in 0..20 {
+            let sums = series.sums(k);
+            let [a, b] = [&mut quick, &mut slow].map(|it| it.coefficient(k, &series, number(0.0)));
+            assert_eq!(a.map(|x| x.get(0)), b.map(|x| x.get(0)));
+            series.extend(k, &sums, &a);
+        }
+        assert!(series.get(20).w[0].get(0) != 0.0);
+    }
+
+    /// Of two formulas alike each keeps a place of its own, also where another row has one of them alone.
+    #[test]
+    fn each_row_has_its_own() {
+        let formula = |by: f64| {
+            let mut steps = Steps::default();
+            let speed = steps.speed();
+            let vector = steps.times(speed, OMEGA);
+            steps.torque(Matrix3::identity() * by, vector)
+        };
+        let (once, twice) = (formula(1.0), formula(2.0));
+        let rows = |by: f64| [[by, 0.0, 0.0], [0.0, by, 0.0], [0.0, 0.0, by]];
+        let mut formulas = Formulas::<Batch<One, 2>>::new();
+        formulas.set(1, [(&twice, rows(2.0))].into_iter());
+        formulas.set(0, [(&once, rows(1.0)), (&twice, rows(2.0))].into_iter());
+        let matrices = |row: usize| -> Vec<f64> {
+            let all = formulas.formulas.iter();
+            all.map(|formula| formula.matrix[2][2].get(row)).collect()
+        };
+        assert_eq!((matrices(0), matrices(1)), (vec![1.0, 2.0], vec![2.0, 0.0]));
+    }
+}

@@ -1,26 +1,22 @@
 //! Taylor series: each step sums the power series of the motion in time, to the order at which the work is least.
 //!
-//! | file | what it knows |
+//! | file | contents |
 //! |---|---|
-//! | `frame` | the principal axes, in doubles or in numbers of twice the precision |
-//! | `course` | one motion: its load in principal axes, from break to break, in a unit of its own |
-//! | `field` | the equations that are linear in the coefficients of one order |
-//! | `formulas`, `terms`, `gradient`, `pulled`, `extras` | the recurrences of terms that are not |
-//! | `circuit`, `almanac` | the series of an orbit, and where motions look them up |
-//! | `series` | the coefficients, and what is asked of the sums of their products |
-//! | `alone`, `abreast` | these sums, the lanes over the components of one motion or over motions |
-//! | `twin` | these sums in numbers of twice the precision |
-//! | `derived`, `row`, `pace` | these sums in numbers with derivatives, and how far they reach |
-//! | `directions` | directions of space as seen from the body |
-//! | `push` | the path of a body that forces act on |
-//! | `carried` | the states that a load has of its own |
-//! | `step` | the length of a step, the state at its end or within |
-//! | `drive` | steps, outputs, breaks, until all motions are done; `seen`: each step as it is made |
-//! | `pack` | one number of several motions |
-//! | `one`, `many` | the motion of one task, of many tasks on all cores |
-//! | `varied` | the motion of one task with its derivatives |
-//! | `job` | what there is to do of a task |
-//! | `kernels` | motions in the lanes that serve them |
+//! | `run` | the motion of one task, of many tasks on all cores, of one task with its derivatives |
+//! | `driver`, `stops` | the loop over steps of several motions side by side; outputs, breaks and switches of the load within a step |
+//! | `step` | length of a step, state with its rounding errors, a finished step as polynomials in time |
+//! | `equations` | equations of one motion: principal axes, unit of rates, segments from break to break of the load |
+//! | `principal_frame` | principal axes and moments, in doubles, in double-double, or with derivatives |
+//! | `linear_terms` | terms that are linear in the coefficients of one order |
+//! | `nonlinear` | all other terms; torques that depend on time alone |
+//! | `formulas` | torques that are not linear in ω, such as quadratic damping |
+//! | `gravity_gradient`, `orbit_series`, `orbit_cache` | gravity gradient, the series of its orbit, and a cache of such series |
+//! | `internal_states` | states of wheels and dampers |
+//! | `translation` | path of the centre of mass under forces |
+//! | `series` | recursion for ω, attitude and directions: what every series below implements |
+//! | `single_series`, `batch_series` | one motion with its components in the lanes; several motions, one in each lane |
+//! | `double_double_series`, `variational_series` | one motion in double-double; one motion with derivatives |
+//! | `batch` | arithmetic with one number of several motions |
 //!
 //! Sources: Jorba & Zou, Experimental Mathematics 14 (2005) 99; Hairer, Nørsett & Wanner, Solving ODEs I, §I.8.
 
@@ -29,37 +25,28 @@
     reason = "rows and components are indices of several arrays at once"
 )]
 
-mod abreast;
-mod almanac;
-mod alone;
-mod carried;
-mod circuit;
-mod course;
-mod derived;
-mod directions;
-mod drive;
-mod extras;
-mod field;
+mod batch;
+mod batch_series;
+mod double_double_series;
+mod driver;
+mod equations;
 mod formulas;
-mod frame;
-mod gradient;
-mod job;
-mod kernels;
-mod many;
-mod one;
-mod pace;
-mod pack;
-mod pulled;
-mod push;
-mod row;
+mod gravity_gradient;
+mod internal_states;
+mod linear_terms;
+mod nonlinear;
+mod orbit_cache;
+mod orbit_series;
+mod principal_frame;
+mod run;
 mod series;
+mod single_series;
 mod step;
-mod terms;
-mod twin;
-mod varied;
+mod stops;
+mod translation;
+mod variational_series;
 
-pub(crate) use drive::Step;
-pub use many::solve_many;
-pub use one::solve_one;
-pub(crate) use one::solve_seen;
-pub(super) use varied::run_varied;
+pub(super) use run::solve_variational;
+pub(crate) use run::solve_with_observer;
+pub use run::{solve_many, solve_one};
+pub(crate) use step::Step;

@@ -1,43 +1,46 @@
-//! One step: how long it may be, and the state at its end or anywhere within it.
+//! One step: its length, the state at its end or within it, and the finished step as polynomials in time.
 
-use std::ops::{Index, IndexMut};
+use std::ops::{ControlFlow, Index, IndexMut};
 
-use super::pack::Pack;
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+use super::batch::Batch;
 use super::series::{Coefficient, Series};
+use crate::motion::state::Phase;
 use crate::numerics::double_double::two_sum;
 use crate::numerics::number::Number;
 
-/// ω in principal axes and (x, y, z, w) of the attitude. The attitude begins at a place of its own: a register that held numbers
-/// of both would be loaded across two places that were stored apart, and would have to wait until both are in the cache.
+/// ω in principal axes and (x, y, z, w) of the attitude. The attitude is aligned separately: a register with numbers of both would
+/// be loaded across two separate stores, and would have to wait until both are in the cache.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct State<T> {
+pub(super) struct MotionState<T> {
     omega: [T; 3],
-    attitude: Apart<[T; 4]>,
+    attitude: Aligned<[T; 4]>,
 }
 
-/// At a place where a register of four numbers is loaded at once.
+/// Aligned such that four numbers are loaded as one register.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
-struct Apart<T>(T);
+struct Aligned<T>(T);
 
-impl<T: Copy> State<T> {
+impl<T: Copy> MotionState<T> {
     #[inline(always)]
     fn of(number: T) -> Self {
         Self {
             omega: [number; 3],
-            attitude: Apart([number; 4]),
+            attitude: Aligned([number; 4]),
         }
     }
 
-    /// All seven.
+    /// Return all seven numbers.
     #[inline(always)]
-    pub(super) fn all(&self) -> [T; 7] {
+    pub(super) fn components(&self) -> [T; 7] {
         let ([w0, w1, w2], [x, y, z, w]) = (self.omega, self.attitude.0);
         [w0, w1, w2, x, y, z, w]
     }
 }
 
-impl<T> Index<usize> for State<T> {
+impl<T> Index<usize> for MotionState<T> {
     type Output = T;
 
     #[inline(always)]
@@ -49,7 +52,7 @@ impl<T> Index<usize> for State<T> {
     }
 }
 
-impl<T> IndexMut<usize> for State<T> {
+impl<T> IndexMut<usize> for MotionState<T> {
     #[inline(always)]
     fn index_mut(&mut self, i: usize) -> &mut T {
         match i {
@@ -59,29 +62,29 @@ impl<T> IndexMut<usize> for State<T> {
     }
 }
 
-/// The state, with what rounding has left out of each number so far.
+/// The state, and the rounding error of each number so far.
 #[derive(Clone, Debug)]
 pub(super) struct Compensated<T> {
-    pub(super) value: State<T>,
-    pub(super) rest: State<T>,
+    pub(super) value: MotionState<T>,
+    pub(super) rest: MotionState<T>,
 }
 
-impl<L: Number, const R: usize> Compensated<Pack<L, R>> {
+impl<L: Number, const R: usize> Compensated<Batch<L, R>> {
     #[inline(always)]
     pub(super) fn new() -> Self {
-        let zero = State::of(Pack::new(0.0));
+        let zero = MotionState::of(Batch::new(0.0));
         Self {
             value: zero,
             rest: zero,
         }
     }
 
-    /// Adds the increments of a step, then puts the quaternion back to unit length: at once, since in a step of more than
-    /// half a turn what is left of the length would grow, by `1 − cos(ω h/2)`.
+    /// Add the increments of a step, then normalize the quaternion. It is normalized after every step: in a step of more than half
+    /// a turn an error of the length would grow, by `1 − cos(ω h/2)`.
     #[inline(always)]
-    pub(super) fn add(&mut self, increment: &[Pack<L, R>; 7]) {
+    pub(super) fn add(&mut self, increment: &[Batch<L, R>; 7]) {
         let (value, rest) = (&mut self.value, &mut self.rest);
-        // Written out, since a loop would be vectorised across the numbers instead of the rows.
+        // Written out: a loop would be vectorised across the numbers instead of the rows.
         let ([v0, v1, v2], [r0, r1, r2]) = (&mut value.omega, &mut rest.omega);
         compensate(v0, r0, increment[0]);
         compensate(v1, r1, increment[1]);
@@ -92,19 +95,19 @@ impl<L: Number, const R: usize> Compensated<Pack<L, R>> {
         compensate(q1, r1, increment[4]);
         compensate(q2, r2, increment[5]);
         compensate(q3, r3, increment[6]);
-        // ½ (1 − |q|²), with the rest: the first-order correction.
-        let mut lack = Pack::new(1.0);
+        // The first-order correction ½ (1 − |q|²), with the rounding errors.
+        let mut lack = Batch::new(1.0);
         for i in 0..4 {
             lack = (-q[i]).mul_add(q[i] + left_out[i] + left_out[i], lack);
         }
-        lack = lack * Pack::new(0.5);
+        lack = lack * Batch::new(0.5);
         for i in 0..4 {
             let change = q[i] * lack;
             compensate(&mut q[i], &mut left_out[i], change);
         }
     }
 
-    /// The state of one row.
+    /// Return the state of one row.
     pub(super) fn now(&self, row: usize) -> [L::Real; 7] {
         let mut state = [L::Real::default(); 7];
         for i in 0..7 {
@@ -113,61 +116,33 @@ impl<L: Number, const R: usize> Compensated<Pack<L, R>> {
         state
     }
 
-    /// The state of one row moved by `increment`: to the bit what [`Self::add`] would make of it.
+    /// Compute the state of one row after `increment`, with the same bits as by [`Self::add`].
     #[inline(always)]
-    pub(super) fn moved(&self, increment: &[Pack<L, R>; 7], row: usize) -> [L::Real; 7] {
+    pub(super) fn moved(&self, increment: &[Batch<L, R>; 7], row: usize) -> [L::Real; 7] {
         let mut end = self.clone();
         end.add(increment);
         end.now(row)
     }
 }
 
-/// Adds an increment to a value and to what rounding has left out of it.
+/// Add an increment to a value and its rounding error.
 #[inline(always)]
 pub(super) fn compensate<L: Number, const R: usize>(
-    value: &mut Pack<L, R>,
-    rest: &mut Pack<L, R>,
-    increment: Pack<L, R>,
+    value: &mut Batch<L, R>,
+    rest: &mut Batch<L, R>,
+    increment: Batch<L, R>,
 ) {
     (*value, *rest) = two_sum(*value, increment + *rest);
 }
 
-/// [`Series::increment`] from the coefficients.
-#[inline(always)]
-pub(super) fn increment<L: Number, const R: usize, const B: usize>(
-    series: &impl Series<Pack<L, R>, B>,
-    order: usize,
-    h: Pack<L, R>,
-) -> [Pack<L, R>; 7] {
-    let square = h * h;
-    let mut odd = [Pack::new(0.0); 7];
-    let mut even = [Pack::new(0.0); 7];
-    for half in (1..=order / 2).rev() {
-        let (one, two) = (series.get(2 * half - 1), series.get(2 * half));
-        for i in 0..3 {
-            odd[i] = odd[i].mul_add(square, one.w[i]);
-            even[i] = even[i].mul_add(square, two.w[i]);
-        }
-        for i in 0..4 {
-            odd[3 + i] = odd[3 + i].mul_add(square, one.q[i]);
-            even[3 + i] = even[3 + i].mul_add(square, two.q[i]);
-        }
-    }
-    let mut sum = [Pack::new(0.0); 7];
-    for i in 0..7 {
-        sum[i] = even[i].mul_add(h, odd[i]) * h;
-    }
-    sum
-}
-
-/// The longest step for which the last two terms of the series are `tolerance` (as a logarithm to base 2) at most:
-/// those of ω relative to `scale`, those of the attitude to one, in the norm of the largest magnitude.
+/// Compute the longest step for which the last two terms of the series are at most `tolerance` (a logarithm to base 2): those of
+/// ω relative to `scale`, those of the attitude relative to one, in the maximum norm.
 ///
-/// Not finite where a coefficient is not.
+/// The step is not finite if a coefficient is not.
 /// Source: Jorba & Zou, Experimental Mathematics 14 (2005) 99.
 #[inline(always)]
-pub(super) fn longest<L: Number, const R: usize, const B: usize>(
-    series: &impl Series<Pack<L, R>, B>,
+pub(super) fn longest_step<L: Number, const R: usize, const B: usize>(
+    series: &impl Series<Batch<L, R>, B>,
     order: usize,
     tolerance: f64,
     scale: &[f64; R],
@@ -175,17 +150,17 @@ pub(super) fn longest<L: Number, const R: usize, const B: usize>(
     let (last, last_but_one) = (series.get(order), series.get(order - 1));
     let mut steps = [0.0; R];
     for row in 0..R {
-        let a = limit_of(&last, row, order, tolerance, scale[row]);
-        let b = limit_of(&last_but_one, row, order - 1, tolerance, scale[row]);
+        let a = log2_step_of(&last, row, order, tolerance, scale[row]);
+        let b = log2_step_of(&last_but_one, row, order - 1, tolerance, scale[row]);
         steps[row] = exp2(if a < b { a } else { b }) + 0.0 * (a + b);
     }
     steps
 }
 
-/// The logarithm of the step for which the term of this order is as large as allowed.
+/// Compute the logarithm of the step for which the term of this order has the size allowed.
 #[inline(always)]
-fn limit_of<L: Number, const R: usize, const B: usize>(
-    at: &Coefficient<Pack<L, R>, B>,
+fn log2_step_of<L: Number, const R: usize, const B: usize>(
+    at: &Coefficient<Batch<L, R>, B>,
     row: usize,
     order: usize,
     tolerance: f64,
@@ -203,17 +178,17 @@ fn limit_of<L: Number, const R: usize, const B: usize>(
         largest = if q > largest { q } else { largest };
         sum += q;
     }
-    // What is not a number is lost among the largest, but not in the sum.
-    limit(largest, order, tolerance) + 0.0 * sum
+    // A NaN is lost in the maximum, but not in the sum.
+    log2_step(largest, order, tolerance) + 0.0 * sum
 }
 
-/// The same for a term of this size at one unit of time.
+/// Compute the logarithm of the step for which a term, of this size after one unit of time, has the size allowed.
 #[inline(always)]
-pub(super) fn limit(size: f64, order: usize, tolerance: f64) -> f64 {
+pub(super) fn log2_step(size: f64, order: usize, tolerance: f64) -> f64 {
     (tolerance - log2(size)) * (1.0 / order as f64)
 }
 
-/// Binary logarithm to a hundredth, ample for the length of a step; the same bits on every machine. That of zero is −1023.
+/// Compute the binary logarithm to a hundredth, enough for the length of a step; the same bits on every machine. For zero: −1023.
 #[inline(always)]
 fn log2(x: f64) -> f64 {
     let bits = x.to_bits();
@@ -222,7 +197,7 @@ fn log2(x: f64) -> f64 {
     f64::from(exponent) + (mantissa - 1.0) * (1.693 - 0.3465 * mantissa)
 }
 
-/// Two to the power x to a hundredth, for |x| up to a thousand.
+/// Compute two to the power x to a hundredth, for |x| up to a thousand.
 #[inline(always)]
 pub(super) fn exp2(x: f64) -> f64 {
     let x = if x > 1000.0 { 1000.0 } else { x };
@@ -234,6 +209,87 @@ pub(super) fn exp2(x: f64) -> f64 {
     let power = f64::from_bits(last_bits.wrapping_add(1023) << 52);
     power * (1.0 + part * (0.6565 + 0.3435 * part))
 }
+
+/// A finished step: polynomials in the time since its start, in body axes and real units.
+#[derive(Clone, Debug)]
+pub(crate) struct Step {
+    /// Its start and its end, since the start of the motion.
+    pub(crate) ends: [f64; 2],
+    /// The rounding error of its start.
+    pub(super) rest: f64,
+    /// The unit of rates: the polynomials are in time times this unit.
+    pub(super) unit: f64,
+    /// ω and (x, y, z, w): the state at the start, its rounding error, and the coefficients from order 1 on.
+    pub(super) state: [f64; 7],
+    pub(super) change: [f64; 7],
+    pub(super) series: Vec<[f64; 7]>,
+    /// Coefficients of position and velocity; none if the velocity is constant.
+    pub(super) path: Vec<[f64; 6]>,
+    /// Coefficients of the states of the load from order 0 on, and the rounding errors at the start.
+    pub(super) own: Vec<Vec<f64>>,
+    pub(super) own_change: Vec<f64>,
+    /// Position and velocity at the start of the motion.
+    pub(super) initial: [Vector3<f64>; 2],
+}
+
+impl Step {
+    /// Compute the state at a time since the start of the motion.
+    pub(crate) fn at(&self, elapsed: f64) -> Phase {
+        let within = ((elapsed - self.ends[0]) - self.rest) * self.unit;
+        let mut sum = [0.0; 7];
+        for order in self.series.iter().rev() {
+            for (sum, coefficient) in sum.iter_mut().zip(order) {
+                *sum = *sum * within + coefficient;
+            }
+        }
+        for ((sum, state), change) in sum.iter_mut().zip(&self.state).zip(&self.change) {
+            *sum = state + (*sum * within + change);
+        }
+        let [x, y, z, i, j, k, w] = sum;
+        let [position, velocity] = self.path_at(elapsed, within);
+        Phase {
+            attitude: UnitQuaternion::new_normalize(Quaternion::new(w, i, j, k)),
+            omega: Vector3::new(x, y, z),
+            position,
+            velocity,
+            own: self.own_at(within),
+        }
+    }
+
+    fn own_at(&self, within: f64) -> Box<[f64]> {
+        let states = self.own_change.iter().enumerate().map(|(i, change)| {
+            let higher = self.own[1..].iter().rev();
+            let sum = higher.fold(0.0, |sum, order| (sum + order[i]) * within);
+            self.own[0][i] + (sum + change)
+        });
+        states.collect()
+    }
+
+    fn path_at(&self, elapsed: f64, within: f64) -> [Vector3<f64>; 2] {
+        if self.path.is_empty() {
+            let [position, velocity] = self.initial;
+            return [position + velocity * elapsed, velocity];
+        }
+        let mut sum = [0.0; 6];
+        for order in self.path.iter().rev() {
+            for (sum, coefficient) in sum.iter_mut().zip(order) {
+                *sum = *sum * within + coefficient;
+            }
+        }
+        let [x, y, z, u, v, w] = sum;
+        [Vector3::new(x, y, z), Vector3::new(u, v, w) * self.unit]
+    }
+
+    /// Estimate the angle by which the body turns in the step, in radians.
+    pub(crate) fn turn(&self) -> f64 {
+        let speed = |phase: &Phase| phase.omega.norm();
+        let fastest = speed(&self.at(self.ends[0])).max(speed(&self.at(self.ends[1])));
+        (self.ends[1] - self.ends[0]).abs() * fastest
+    }
+}
+
+/// A function that gets each step of a motion as it is made, and whether the motion ended with it. It may stop the run.
+pub(super) type Observer<'a> = &'a mut dyn FnMut(Step, bool) -> ControlFlow<()>;
 
 #[cfg(test)]
 mod tests {

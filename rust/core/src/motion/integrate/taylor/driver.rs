@@ -1,0 +1,774 @@
+//! The loop over steps: runs motions to their last output time, `R` side by side, each with its own steps.
+
+use std::hint::black_box;
+use std::mem::swap;
+use std::ops::ControlFlow;
+
+use super::batch::{Batch, plus};
+use super::equations::{AuxiliaryState, PiecewiseEquations};
+use super::internal_states::InternalStates;
+use super::linear_terms::LinearTerms;
+use super::nonlinear::NonlinearTerms;
+use super::orbit_cache::OrbitSeriesCache;
+use super::principal_frame::Precision;
+use super::series::{Coefficient, Series, direction_in_body};
+use super::step::{Compensated, Observer, Step, longest_step};
+use super::translation::Translation;
+use crate::error::Error;
+use crate::motion::loads::{Forcing, Parts};
+use crate::motion::problem::{Effort, End, Run};
+use crate::motion::state::Phase;
+use crate::numerics::double_double::{fast_two_sum, two_sum};
+use crate::numerics::number::{Number, Real};
+
+/// The largest ω, in the unit of rates, before another unit is chosen: far below the number whose 26th power overflows.
+pub(super) const MAX_RATE: f64 = 65_536.0;
+
+/// Steps of a motion between two checks that it can reach its end.
+const STEPS_PER_CHECK: u64 = 64;
+
+/// Steps between two calls of `watch`; fewer with derivatives, whose steps take longer.
+const STEPS_PER_PROGRESS: u32 = 64;
+const VARIATIONAL_STEPS_PER_PROGRESS: u32 = 4;
+
+/// The size of the last term of a series, relative to the tolerance of a step. The terms left out are a quarter of that. At the tightest
+/// tolerance they stay below the rounding of the state even if they all have the same sign.
+const LAST_TERM: f64 = 0.05;
+
+/// The settings that all motions of a run share.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Settings {
+    /// The highest order of the series.
+    pub(super) order: usize,
+    /// The size of their last terms as a logarithm to base 2.
+    last_term: f64,
+    /// The least ω that errors are relative to: absolute over relative tolerance.
+    floor: f64,
+    pub(super) parts: Parts,
+}
+
+impl Settings {
+    /// Return the settings for motions with derivatives, whose series limit the step themselves.
+    pub(super) fn of_derivatives(order: usize, parts: Parts) -> Self {
+        Self {
+            order,
+            last_term: 0.0,
+            floor: 0.0,
+            parts,
+        }
+    }
+
+    /// Return the settings for equations with these `parts`, with the order at which the work is least: the work grows with the square
+    /// of the order, the step with `tolerance^(1/order)`. The order is at most `highest`.
+    pub(super) fn new(relative: f64, absolute: f64, highest: usize, parts: Parts) -> Self {
+        let nats = -(LAST_TERM * relative).ln();
+        let mut halves = (4..highest / 2).filter(|&half| half as f64 + 1.0 <= 0.36 * nats);
+        let order = 2 * halves.next_back().map_or(4, |half| half + 1);
+        Self {
+            order,
+            last_term: (LAST_TERM * relative).log2(),
+            floor: absolute / relative,
+            parts,
+        }
+    }
+}
+
+/// A function that gets the samples of a motion in the numbers of its run.
+pub(super) type SampleSink<'a, X> = &'a mut dyn FnMut(usize, &[X; 7], &[X]);
+
+/// A motion to compute, and its run, which is at its start.
+pub(super) struct Job<'a, X: Precision> {
+    pub(super) equations: PiecewiseEquations<'a, X>,
+    pub(super) run: &'a mut Run<Error>,
+    /// Gets the number of each sample, ω and (x, y, z, w) in body axes and real units, and the values of the states of the load that are
+    /// reported.
+    pub(super) sink: Option<SampleSink<'a, X>>,
+}
+
+/// The next time at which a motion stops.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Stop {
+    /// A time of output.
+    Output,
+    /// A break of its load.
+    Break,
+}
+
+/// The reason for which the equations of a motion change after a step.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Landing {
+    None,
+    Break,
+    Switch,
+}
+
+/// A motion in a lane.
+pub(super) struct ActiveMotion<'a, X: Precision> {
+    pub(super) job: Job<'a, X>,
+    pub(super) stop: Stop,
+    pub(super) steps: u64,
+    /// Switches of the law without a step between them.
+    pub(super) switches_without_step: u32,
+}
+
+impl<X: Precision> ActiveMotion<'_, X> {
+    /// Return whether the number of steps must be checked: every [`STEPS_PER_CHECK`] steps, and at the largest number allowed.
+    #[inline(always)]
+    fn is_due(&self) -> bool {
+        self.steps >= self.job.equations.most_steps() || self.steps.is_multiple_of(STEPS_PER_CHECK)
+    }
+}
+
+/// `R` motions side by side. Times are since the start, in the unit of each motion.
+pub(super) struct Lanes<'a, L: Number<Real: Precision>, S, const B: usize, const R: usize> {
+    pub(super) settings: Settings,
+    pub(super) series: S,
+    linear_terms: LinearTerms<Batch<L, R>, B>,
+    pub(super) nonlinear: NonlinearTerms<Batch<L, R>>,
+    /// The terms of one motion that depend on time; stored here so that no step allocates memory.
+    forcing: Forcing<L::Real>,
+    directions: [[Batch<L, R>; 3]; B],
+    pub(super) state: Compensated<Batch<L, R>>,
+    translation: Option<Box<Translation<Batch<L, R>>>>,
+    pub(super) internal_states: Option<Box<InternalStates<Batch<L, R>>>>,
+    pub(super) motions: [Option<ActiveMotion<'a, L::Real>>; R],
+    /// The present time and that of the next stop, each with its rounding error.
+    pub(super) now: [(f64, f64); R],
+    pub(super) stop: [(f64, f64); R],
+    /// The size of ω that errors are relative to: the largest |ω| so far, or more; and 1, or −1 for backward in time.
+    fastest: [f64; R],
+    pub(super) direction: [f64; R],
+    /// Which components of ω are constant in each motion.
+    constant_components: [[bool; 3]; R],
+}
+
+/// Run all motions of `jobs`. About every 64 steps `watch` gets the fraction of the motion in the first lane that is done, and may stop
+/// all. `observer` gets each step if there is one lane. Orbits are read from `cache` and inserted there.
+#[inline(always)]
+pub(super) fn drive<
+    L: Number<Real: Precision>,
+    S: Series<Batch<L, R>, B>,
+    const B: usize,
+    const R: usize,
+>(
+    settings: Settings,
+    jobs: &mut dyn Iterator<Item = Job<'_, L::Real>>,
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    observer: Option<Observer>,
+    cache: &mut OrbitSeriesCache,
+) -> ControlFlow<()> {
+    let mut lanes = Lanes::<L, S, B, R>::new(settings);
+    swap(&mut lanes.nonlinear.cache, cache);
+    let flow = run(&mut lanes, jobs, watch, observer);
+    swap(&mut lanes.nonlinear.cache, cache);
+    flow
+}
+
+#[inline(always)]
+fn run<
+    'a,
+    L: Number<Real: Precision>,
+    S: Series<Batch<L, R>, B>,
+    const B: usize,
+    const R: usize,
+>(
+    lanes: &mut Lanes<'a, L, S, B, R>,
+    jobs: &mut dyn Iterator<Item = Job<'a, L::Real>>,
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    mut observer: Option<Observer>,
+) -> ControlFlow<()> {
+    let steps_per_progress = if L::VARIES {
+        VARIATIONAL_STEPS_PER_PROGRESS
+    } else {
+        STEPS_PER_PROGRESS
+    };
+    let mut steps_left = steps_per_progress;
+    let mut idle = true;
+    loop {
+        if idle {
+            for row in 0..R {
+                if lanes.motions[row].is_none() {
+                    lanes.load_next(row, jobs);
+                }
+            }
+            if lanes.motions.iter().all(Option::is_none) {
+                return ControlFlow::Continue(());
+            }
+        }
+        let before = if R == 1 && observer.is_some() {
+            lanes.step_start()
+        } else {
+            None
+        };
+        idle = lanes.step();
+        idle |= lanes.end_overlong();
+        // The last step of a motion that failed ends at a wrong time. It is not used: `solve_with_observer` passes on the last step
+        // of a complete run only.
+        if let (Some(observer), Some(before)) = (&mut observer, before)
+            && observer(lanes.finished_step(before), idle).is_break()
+        {
+            lanes.end_motion(0, End::Stopped);
+            return ControlFlow::Break(());
+        }
+        steps_left -= 1;
+        if steps_left == 0 {
+            steps_left = steps_per_progress;
+            if watch(lanes.fraction()).is_break() {
+                for row in 0..R {
+                    lanes.end_motion(row, End::Stopped);
+                }
+                return ControlFlow::Break(());
+            }
+        }
+    }
+}
+
+impl<'a, L, S, const B: usize, const R: usize> Lanes<'a, L, S, B, R>
+where
+    L: Number<Real: Precision>,
+    S: Series<Batch<L, R>, B>,
+{
+    /// Return lanes without motions.
+    #[inline(always)]
+    fn new(settings: Settings) -> Self {
+        let zero = Batch::new(0.0);
+        Self {
+            settings,
+            series: S::new(),
+            linear_terms: LinearTerms::none(zero),
+            nonlinear: NonlinearTerms::new(&settings.parts),
+            forcing: Forcing::default(),
+            directions: [[zero; 3]; B],
+            state: Compensated::new(),
+            translation: settings
+                .parts
+                .is_pushed
+                .then(|| Box::new(Translation::new())),
+            internal_states: match settings.parts.own {
+                0 => None,
+                count => Some(Box::new(InternalStates::new(count))),
+            },
+            motions: [const { None }; R],
+            now: [(0.0, 0.0); R],
+            stop: [(f64::INFINITY, 0.0); R],
+            fastest: [1.0; R],
+            direction: [1.0; R],
+            constant_components: [[true; 3]; R],
+        }
+    }
+
+    /// Set in the series which component of ω is constant in all motions.
+    fn update_constant_component(&mut self) {
+        let is_constant = |n: &usize| self.constant_components.iter().all(|row| row[*n]);
+        let constant = [0, 2].into_iter().find(is_constant);
+        let is_autonomous = !self.nonlinear.is_timed() && self.internal_states.is_none();
+        self.series
+            .set_constant_component(constant.filter(|_| is_autonomous));
+    }
+
+    /// Compute the time from now to the next stop, positive also backward in time.
+    #[inline(always)]
+    pub(super) fn gap(&self, row: usize) -> f64 {
+        let ((now, now_rest), (stop, stop_rest)) = (self.now[row], self.stop[row]);
+        ((stop - now) + (stop_rest - now_rest)) * self.direction[row]
+    }
+
+    /// Compute the time from now to the next stop. Not inlined: the compiler would compute it in every step, but only a break or an
+    /// output needs it.
+    #[inline(never)]
+    pub(super) fn time_to_stop(&self, row: usize) -> L::Real {
+        let ((now, now_rest), (stop, stop_rest)) = (self.now[row], self.stop[row]);
+        L::Real::pair(stop, -now) + L::Real::pair(stop_rest, -now_rest)
+    }
+
+    pub(super) fn time(&self, row: usize) -> f64 {
+        let motion = self.motions[row].as_ref();
+        motion.map_or(f64::NAN, |motion| motion.job.equations.time(self.now[row]))
+    }
+
+    fn fraction(&self) -> f64 {
+        let motion = self.motions[0].as_ref();
+        motion.map_or(1.0, |motion| motion.job.equations.fraction(self.now[0].0))
+    }
+
+    /// Put the next motion into an empty lane; if none is left, the lane stays empty.
+    #[inline(never)]
+    fn load_next(&mut self, row: usize, jobs: &mut dyn Iterator<Item = Job<'a, L::Real>>) {
+        let Some(job) = jobs.next() else {
+            return self.clear(row);
+        };
+        let start = job.equations.start();
+        for i in 0..7 {
+            self.state.value[i].put(row, start[i]);
+            self.state.rest[i].set(row, 0.0);
+        }
+        if let Some(translation) = &mut self.translation {
+            let Phase {
+                position: r,
+                velocity: v,
+                ..
+            } = job.equations.initial();
+            translation.set(row, &[r.x, r.y, r.z, v.x, v.y, v.z]);
+        }
+        if let Some(internal_states) = &mut self.internal_states {
+            internal_states.set(row, &job.equations.internal_states_at_start());
+        }
+        self.nonlinear.restart(row);
+        self.now[row] = (0.0, 0.0);
+        self.direction[row] = job.equations.direction();
+        self.fastest[row] = 0.0;
+        self.motions[row] = Some(ActiveMotion {
+            job,
+            stop: Stop::Output,
+            steps: 0,
+            switches_without_step: 0,
+        });
+        self.enter_segment(row);
+    }
+
+    /// Set the unit of rates, the equations and the next stop of a motion for its present segment.
+    pub(super) fn enter_segment(&mut self, row: usize) {
+        let state = self.state.now(row);
+        let Some(motion) = &mut self.motions[row] else {
+            return;
+        };
+        let equations = &mut motion.job.equations;
+        let old = equations.unit();
+        let omega = [0, 1, 2].map(|i| state[i].rounded() * old);
+        let own = (self.internal_states.as_ref())
+            .map_or_else(Vec::new, |internal_states| internal_states.now(row));
+        let unit = equations.choose_unit(&omega, &own);
+        let ratio = old / unit;
+        for i in 0..3 {
+            // Units are powers of two.
+            (self.state.value[i]).put(row, state[i] * old.into() / unit.into());
+            let rest = self.state.rest[i].real(row) * ratio.into();
+            self.state.rest[i].put(row, rest);
+        }
+        if let Some(translation) = &mut self.translation {
+            translation.rescale(row, ratio);
+        }
+        if let Some(internal_states) = &mut self.internal_states {
+            let inverse = (*equations.inverse_moments()).into();
+            internal_states.set_rates(row, equations.internal_states(), inverse, unit);
+        }
+        self.nonlinear.rescale(row, ratio);
+        self.series.rescale(ratio);
+        let (now, rest) = self.now[row];
+        self.now[row] = (now / ratio, rest / ratio);
+        let [x, y, z] = [omega[0] / unit, omega[1] / unit, omega[2] / unit];
+        let speed = (x * x + y * y + z * z).sqrt();
+        let floor = self.settings.floor / unit;
+        self.fastest[row] = (self.fastest[row] * ratio).max(speed).max(floor);
+        if self.fastest[row] == 0.0 {
+            // At rest: errors are relative to the unit of rates, which is that of the load.
+            self.fastest[row] = 1.0;
+        }
+        let linear_terms = equations.linear_terms();
+        self.linear_terms.set(row, &linear_terms);
+        self.constant_components[row] = linear_terms.constant_components();
+        for (_, matrix) in equations.formulas() {
+            for n in 0..3 {
+                self.constant_components[row][n] &= matrix[n] == [L::Real::default(); 3];
+            }
+        }
+        self.nonlinear.formulas.set(row, equations.formulas());
+        for (batches, direction) in self
+            .directions
+            .iter_mut()
+            .zip(PiecewiseEquations::<L::Real>::directions::<B>())
+        {
+            for i in 0..3 {
+                batches[i].put(row, direction[i]);
+            }
+        }
+        let next = motion.job.run.samples.len();
+        (self.stop[row], motion.stop) = next_stop(equations, next);
+        self.update_constant_component();
+    }
+
+    /// Return the present state beside attitude and ω.
+    fn auxiliary_state(&self, row: usize) -> AuxiliaryState<L::Real> {
+        AuxiliaryState {
+            position_velocity: self
+                .translation
+                .as_ref()
+                .map(|translation| translation.now(row)),
+            internal_states: (self.internal_states.as_ref())
+                .map_or_else(Vec::new, |internal_states| internal_states.now(row)),
+        }
+    }
+
+    /// End a motion before its last output.
+    pub(super) fn end_motion(&mut self, row: usize, end: End<Error>) {
+        let (time, state) = (self.time(row), self.state.now(row));
+        let auxiliary = self.auxiliary_state(row);
+        if let Some(motion) = &mut self.motions[row] {
+            let run = &mut *motion.job.run;
+            run.effort = effort(motion.steps);
+            run.time = time;
+            run.phase = motion
+                .job
+                .equations
+                .phase(&state, &auxiliary, self.now[row]);
+            run.end = end;
+        }
+        self.motions[row] = None;
+    }
+
+    /// End the motions that would take too many steps, and return whether there was one. Only its own steps count for a motion, not
+    /// those of the motions beside it.
+    #[inline(always)]
+    fn end_overlong(&mut self) -> bool {
+        self.motions.iter().flatten().any(ActiveMotion::is_due) && self.end_due()
+    }
+
+    #[inline(never)]
+    fn end_due(&mut self) -> bool {
+        let mut ended = false;
+        for row in 0..R {
+            let Some(motion) = self.motions[row].as_ref().filter(|motion| motion.is_due()) else {
+                continue;
+            };
+            let (equations, elapsed) = (&motion.job.equations, self.now[row].0);
+            if let Err(error) = equations.check_steps(motion.steps, elapsed) {
+                self.end_motion(row, End::Failed(error));
+                ended = true;
+            }
+        }
+        ended
+    }
+
+    /// Empty a lane: its numbers are those of a motion at rest without end.
+    fn clear(&mut self, row: usize) {
+        for i in 0..7 {
+            self.state.value[i].set(row, 0.0);
+            self.state.rest[i].set(row, 0.0);
+        }
+        if let Some(translation) = &mut self.translation {
+            translation.set(row, &[0.0; 6]);
+        }
+        if let Some(internal_states) = &mut self.internal_states {
+            internal_states.clear(row);
+        }
+        self.linear_terms
+            .set(row, &LinearTerms::none(L::Real::default()));
+        self.constant_components[row] = [true; 3];
+        self.update_constant_component();
+        self.nonlinear.clear(row);
+        self.now[row] = (0.0, 0.0);
+        self.stop[row] = (f64::INFINITY, 0.0);
+        self.fastest[row] = 1.0;
+        self.direction[row] = 1.0;
+    }
+
+    /// Make one step of every motion, and return whether a motion has ended.
+    #[inline(always)]
+    fn step(&mut self) -> bool {
+        let Settings {
+            order, last_term, ..
+        } = self.settings;
+        self.expand();
+        let mut h = longest_step(&self.series, order, last_term, &self.fastest);
+        self.nonlinear.formulas.limit(&self.series, &mut h);
+        self.series.limit(&mut h);
+        if let Some(internal_states) = &mut self.internal_states {
+            internal_states.limit(order, last_term, &self.fastest, &mut h);
+        }
+        let mut eventful = self.settings.parts.may_flip();
+        for row in 0..R {
+            let (now, rest) = self.now[row];
+            let ago = (now * self.direction[row], rest * self.direction[row]);
+            h[row] = self.nonlinear.shorten_step(ago, h[row]);
+            let (now, gap) = (self.now[row].0, self.gap(row));
+            // A NaN step length also takes the slow path.
+            let is_plain = (h[row] < gap) & (h[row] > f64::EPSILON * now.abs());
+            eventful |= !is_plain;
+        }
+        let mut landings = [Landing::None; R];
+        if eventful {
+            for row in 0..R {
+                if self.motions[row].is_some() {
+                    (h[row], landings[row]) = self.serve_stops(row, h[row]);
+                }
+            }
+        }
+        let mut signed = Batch::new(0.0);
+        for row in 0..R {
+            h[row] *= self.direction[row];
+            signed.set(row, h[row]);
+            if landings[row] == Landing::Break {
+                signed.put(row, self.time_to_stop(row));
+            }
+        }
+        let change = self.series.increment(order, signed);
+        self.state.add(&self.nonlinear.change_in_space(change));
+        if let Some(translation) = &mut self.translation {
+            let change = translation.increment(order, signed);
+            translation.add(&change);
+        }
+        if let Some(internal_states) = &mut self.internal_states {
+            internal_states.advance(order, signed);
+        }
+        self.nonlinear.advance(order, signed);
+        let mut ended = false;
+        let mut outgrown = false;
+        for row in 0..R {
+            let (now, rest) = self.now[row];
+            let (reached, more) = two_sum(now, h[row]);
+            self.now[row] = fast_two_sum(reached, rest + more);
+            let (x, y) = (self.state.value[0].get(row), self.state.value[1].get(row));
+            let z = self.state.value[2].get(row);
+            let speed = (x * x + y * y + z * z).sqrt();
+            if speed > self.fastest[row] {
+                self.fastest[row] = speed;
+            }
+            outgrown |= speed > MAX_RATE;
+        }
+        if eventful | outgrown {
+            for row in 0..R {
+                self.finish_step(row, landings[row]);
+                ended |= self.motions[row].is_none();
+            }
+        }
+        for motion in self.motions.iter_mut().flatten() {
+            motion.steps += 1;
+        }
+        ended
+    }
+
+    /// Compute the series at the present states.
+    #[inline(always)]
+    fn expand(&mut self) {
+        let order = self.settings.order;
+        if self.nonlinear.is_timed() {
+            for row in 0..R {
+                if let Some(motion) = &self.motions[row] {
+                    let equations = &motion.job.equations;
+                    let now = self.now[row];
+                    self.forcing.clear();
+                    self.forcing.has_orbits =
+                        (self.nonlinear).look_up(row, || equations.cache_key(now));
+                    if self.forcing.has_orbits && self.nonlinear.has_only_orbits() {
+                        continue;
+                    }
+                    equations.force(&mut self.forcing, now);
+                    (self.nonlinear).set(row, &self.forcing, equations.inverse_moments());
+                }
+            }
+            self.nonlinear.expand(order);
+        }
+        let [w0, w1, w2, x, y, z, w] = self.state.value.components();
+        let q = [x, y, z, w];
+        let mut g = self.directions;
+        for g in &mut g {
+            *g = direction_in_body(&q, g);
+        }
+        self.series.start(&Coefficient {
+            w: [w0, w1, w2],
+            q: self.nonlinear.initial_attitude(q),
+            g,
+        });
+        self.nonlinear.start(&self.fastest, &self.linear_terms);
+        if let Some(internal_states) = &mut self.internal_states {
+            internal_states.start();
+        }
+        // For several motions order 0 is computed before the loop, so that its special terms are not in the loop.
+        let first = usize::from(R > 1);
+        for k in 0..first {
+            self.extend(k);
+        }
+        for k in first..order {
+            // Hidden from the compiler: it would keep an address for each array and increment all of them in every iteration, and there
+            // are more addresses than registers.
+            self.extend(black_box(k));
+        }
+        if let Some(translation) = &mut self.translation {
+            translation.expand(order, &self.series, &self.linear_terms);
+        }
+    }
+
+    /// Compute the coefficients of order `k` + 1.
+    #[inline(always)]
+    fn extend(&mut self, k: usize) {
+        self.nonlinear
+            .look_ahead(k, &self.series, &self.linear_terms);
+        let sums = self.series.sums(k);
+        let (spins, at) = (S::spins(&sums), self.series.get(k));
+        let acceleration = (self.linear_terms).acceleration(self.settings.parts, k, spins, &at);
+        let series = &self.series;
+        let acceleration = self.nonlinear.plus_coefficients(k, series, acceleration);
+        let acceleration = match &mut self.internal_states {
+            Some(internal_states) => internal_states.plus_coefficients(k, series, acceleration),
+            None => acceleration,
+        };
+        let acceleration = if L::VARIES && self.linear_terms.has_off_diagonal() {
+            self.add_off_diagonal(k, &spins, acceleration)
+        } else {
+            acceleration
+        };
+        self.series.extend(k, &sums, &acceleration);
+    }
+
+    /// Add the terms of elements off the diagonal of the tensor to the coefficient of order `k` of the angular acceleration.
+    #[inline(never)]
+    fn add_off_diagonal(
+        &self,
+        k: usize,
+        spins: &[Batch<L, R>; 3],
+        acceleration: [Batch<L, R>; 3],
+    ) -> [Batch<L, R>; 3] {
+        let linear_terms = &self.linear_terms;
+        let mut squares = [Batch::new(0.0); 3];
+        for j in 0..=k {
+            let (a, b) = (self.series.get(j).w, self.series.get(k - j).w);
+            squares = [0, 1, 2].map(|i| a[i].mul_add(b[i], squares[i]));
+        }
+        linear_terms.divide_by_off_diagonal(&plus(
+            acceleration,
+            linear_terms.off_diagonal_torque(&linear_terms.products, spins, &squares),
+        ))
+    }
+
+    /// Compute the state of a motion, and the state beside it, at a time since the start of the step.
+    #[inline(always)]
+    pub(super) fn within(
+        &self,
+        row: usize,
+        time: L::Real,
+    ) -> ([L::Real; 7], AuxiliaryState<L::Real>) {
+        let mut within = Batch::new(0.0);
+        within.put(row, time);
+        let order = self.settings.order;
+        let change = self.series.increment(order, within);
+        let change = self.nonlinear.change_in_space(change);
+        let state = self.state.moved(&change, row);
+        // Without `map`: its closure would be compiled without the instructions of the level.
+        let position_velocity = match &self.translation {
+            Some(translation) => {
+                Some(translation.moved(&translation.increment(order, within), row))
+            }
+            None => None,
+        };
+        let internal_states = match &self.internal_states {
+            Some(internal_states) => internal_states.within(row, order, within),
+            None => Vec::new(),
+        };
+        (
+            state,
+            AuxiliaryState {
+                position_velocity,
+                internal_states,
+            },
+        )
+    }
+
+    /// Return the state at the start of the next step of the first motion.
+    #[inline(never)]
+    fn step_start(&self) -> Option<StepStart<'a, L, R>> {
+        let motion = self.motions[0].as_ref()?;
+        Some(StepStart {
+            equations: motion.job.equations.clone(),
+            now: self.now[0],
+            state: self.state.clone(),
+            auxiliary: self.auxiliary_state(0),
+        })
+    }
+
+    /// Return the last step as polynomials; `before` is the state at its start.
+    #[inline(never)]
+    fn finished_step(&self, before: StepStart<'a, L, R>) -> Step {
+        let StepStart {
+            equations,
+            now,
+            state,
+            auxiliary,
+        } = before;
+        let order = self.settings.order;
+        let mut series = Vec::with_capacity(order);
+        for k in 1..=order {
+            let Coefficient { w, q, .. } = self.series.get(k);
+            let q = self.nonlinear.to_space(q);
+            let [w0, w1, w2, x, y, z, s] = [w[0], w[1], w[2], q[0], q[1], q[2], q[3]];
+            let coefficient = [w0, w1, w2, x, y, z, s].map(|number| number.real(0));
+            series.push(equations.in_body(&coefficient).map(L::Real::rounded));
+        }
+        let mut own = Vec::new();
+        if let Some(internal_states) = &self.internal_states {
+            for k in 0..=order {
+                let coefficients =
+                    equations.internal_states_in_body(&internal_states.coefficients(0, k));
+                own.push(coefficients.into_iter().map(L::Real::rounded).collect());
+            }
+        }
+        // The difference from the rounded doubles, which is large for double-double numbers.
+        let own_change = equations
+            .internal_states_in_body(&auxiliary.internal_states)
+            .into_iter()
+            .enumerate();
+        let own_change: Vec<f64> = own_change
+            .map(|(i, exact)| {
+                let rounded: &Vec<f64> = &own[0];
+                (exact - rounded[i].into()).rounded()
+            })
+            .collect();
+        let unit = equations.unit();
+        let end = self.motions[0].as_ref().map_or_else(
+            || equations.last_elapsed(),
+            |motion| (self.now[0].0 + self.now[0].1) / motion.job.equations.unit(),
+        );
+        let begin = (now.0 + now.1) / unit;
+        let initial = equations.initial();
+        let state_in_body =
+            equations.in_body(&state.value.components().map(|number| number.real(0)));
+        let rest_in_body = equations.in_body(&state.rest.components().map(|number| number.real(0)));
+        let rounded = state_in_body.map(L::Real::rounded);
+        let change = |i: usize| (state_in_body[i] - rounded[i].into() + rest_in_body[i]).rounded();
+        Step {
+            ends: [begin, end],
+            rest: ((now.0 - begin * unit) + now.1) / unit,
+            unit,
+            state: rounded,
+            change: std::array::from_fn(change),
+            series,
+            own,
+            own_change,
+            path: (self.translation.as_ref().zip(auxiliary.position_velocity))
+                .map_or_else(Vec::new, |(translation, place)| {
+                    translation.path(0, order, &place)
+                }),
+            initial: [initial.position, initial.velocity],
+        }
+    }
+}
+
+/// Return the output `next` or the end of the segment, whichever comes first.
+pub(super) fn next_stop<X: Precision>(
+    equations: &PiecewiseEquations<X>,
+    next: usize,
+) -> ((f64, f64), Stop) {
+    let (output, end) = (equations.output(next), equations.end_of_segment());
+    // An output on a break belongs to the segment that ends there.
+    let ahead = ((output.0 - end.0) + (output.1 - end.1)) * equations.direction();
+    if ahead > 0.0 {
+        (end, Stop::Break)
+    } else {
+        (output, Stop::Output)
+    }
+}
+
+/// Return the effort of so many steps. One evaluation computes all coefficients of a step.
+pub(super) fn effort(steps: u64) -> Effort {
+    Effort {
+        steps,
+        evaluations: steps,
+    }
+}
+
+/// The state at the start of a step.
+struct StepStart<'a, L: Number<Real: Precision>, const R: usize> {
+    equations: PiecewiseEquations<'a, L::Real>,
+    now: (f64, f64),
+    state: Compensated<Batch<L, R>>,
+    auxiliary: AuxiliaryState<L::Real>,
+}

@@ -1,0 +1,696 @@
+//! The equations of one motion: in principal axes, in a unit of rates of its own, in segments between the breaks of its load.
+
+use nalgebra::{Matrix3, Matrix3x4, Quaternion, UnitQuaternion, Vector3, Vector4};
+
+use super::linear_terms::LinearTerms;
+use super::orbit_cache::CacheKey;
+use super::principal_frame::{Precision, PrincipalInertia};
+use crate::error::{Error, MotionFault};
+use crate::mass::validity::ROUNDING;
+use crate::motion::kinematics::Frame;
+use crate::motion::loads::variables::{ATTITUDE, MASS, RATES, Variables};
+use crate::motion::loads::{
+    Axes, Exact, Forcing, Formula, Linear, Own, Parts, Subject, Term, When,
+};
+use crate::motion::problem::Task;
+use crate::motion::problem::limits::check_steps;
+use crate::motion::state::Phase;
+use crate::numerics::double_double::two_sum;
+use crate::numerics::number::Real;
+use crate::numerics::power_of_two::power_below;
+use crate::numerics::quaternion::{conjugate, normalized, product};
+
+/// The equations of a motion, and the segment that it is in.
+#[derive(Clone, Debug)]
+pub(super) struct PiecewiseEquations<'a, X: Precision> {
+    task: Task<'a>,
+    terms: &'a [Term],
+    /// The variables of the derivatives, and the first column of each term.
+    variables: X::Variables,
+    firsts: Vec<usize>,
+    axes: Matrix3<X>,
+    q_bp: [X; 4],
+    kappa: Vector3<X>,
+    inverse_moments: Vector3<X>,
+    products: Vector3<X>,
+    /// The ends of the segments, and the index of the present one.
+    breaks: Vec<f64>,
+    segment: usize,
+    linear: Linear<'a, X>,
+    /// The sign switches of the feedbacks that act.
+    switches: Vec<Switch<X>>,
+    /// The unit of rates: a power of two near the fastest rate of the motion.
+    unit: f64,
+}
+
+/// The state beside attitude and ω.
+#[derive(Clone, Debug, Default)]
+pub(super) struct AuxiliaryState<X> {
+    /// Position and velocity, in the unit of rates, if forces act on the body.
+    pub(super) position_velocity: Option<[X; 6]>,
+    /// The internal states of the load; vectors among them in principal axes.
+    pub(super) internal_states: Vec<X>,
+}
+
+impl<'a, X: Precision> PiecewiseEquations<'a, X> {
+    /// Return the equations of `task` under `terms`, in the first segment.
+    ///
+    /// # Errors
+    /// When a term cannot act, or acts along an axis without a moment of inertia.
+    pub(super) fn new(
+        task: &Task<'a>,
+        terms: &'a [Term],
+        variables: X::Variables,
+    ) -> Result<Self, Error> {
+        // After those of all terms stand the states of the load.
+        let firsts = variables.columns(&mut terms.iter().map(Term::count).chain([0]));
+        let principal = X::subtract_wheels(X::principal(task, variables), |principal| {
+            free_wheel_tensor(task, terms, principal, variables, &firsts)
+        });
+        let ([i1, i2, i3], [d1, d2, d3]) = (principal.moments, principal.differences);
+        let one = X::one();
+        let (start, end) = (task.times[0], task.times[task.times.len() - 1]);
+        let mut breaks: Vec<f64> = terms.iter().flat_map(Term::breaks).collect();
+        breaks.retain(|t| (t - start) * (t - end) < 0.0);
+        breaks.push(end);
+        breaks.sort_by(f64::total_cmp);
+        breaks.dedup();
+        if end < start {
+            breaks.reverse();
+        }
+        let mut equations = Self {
+            task: task.clone(),
+            terms,
+            variables,
+            firsts,
+            axes: principal.axes,
+            q_bp: principal.q_bp,
+            kappa: Vector3::new(
+                quotient_or_zero(d1, i1),
+                quotient_or_zero(d2, i2),
+                quotient_or_zero(d3, i3),
+            ),
+            inverse_moments: Vector3::new(
+                quotient_or_zero(one, i1),
+                quotient_or_zero(one, i2),
+                quotient_or_zero(one, i3),
+            ),
+            products: principal.products.into(),
+            breaks,
+            segment: 0,
+            linear: Linear::default(),
+            switches: Vec::new(),
+            unit: 1.0,
+        };
+        let state = equations.start();
+        let mut from = start;
+        for &to in &equations.breaks {
+            for (_, term) in equations.acting(from, to) {
+                term.check(&task.subject, from, to)?;
+            }
+            from = to;
+        }
+        equations.linearize(&state)?;
+        Ok(equations)
+    }
+
+    /// Enter the next segment in the state `state`.
+    pub(super) fn pass_break(&mut self, state: &[X; 7]) -> Result<(), Error> {
+        self.segment += 1;
+        self.linearize(state)
+    }
+
+    /// Compute the terms of the present segment.
+    fn linearize(&mut self, state: &[X; 7]) -> Result<(), Error> {
+        let mut linear = Linear::default();
+        let mut switches: Vec<Switch<X>> = Vec::new();
+        for (first, term) in self.acting(self.segment_start(), self.breaks[self.segment]) {
+            let (axes, mut side) = (self.principal_axes(first), 1.0);
+            if let Some(scalar) = term.switching(&axes) {
+                let torque = Matrix3x4::zeros();
+                let mut switch = Switch {
+                    scalar,
+                    side,
+                    torque,
+                    own: Vec::new(),
+                };
+                switch.side = switch.sign(state);
+                side = switch.side;
+                let mut own = Linear::default();
+                term.add_to(&mut own, &axes, side);
+                switch.torque = own.on_attitude();
+                let states = (linear.own.len()..).zip(&own.own);
+                switch.own = states.map(|(i, state)| (i, state.on_attitude)).collect();
+                switches.push(switch);
+            }
+            term.add_to(&mut linear, &axes, side);
+        }
+        self.switches = switches;
+        self.check_massless(&linear, state)?;
+        self.linear = linear;
+        Ok(())
+    }
+
+    /// Return the axes for the term whose first number is the variable of the column `first`.
+    fn principal_axes(&self, first: usize) -> Axes<'_, X> {
+        Axes {
+            subject: &self.task.subject,
+            columns: &self.axes,
+            q_bp: &self.q_bp,
+            variables: self.variables,
+            first,
+            middle: self.middle(),
+        }
+    }
+
+    /// Check that no torque acts along an axis without moment of inertia.
+    fn check_massless(&self, linear: &Linear<'_, X>, state: &[X; 7]) -> Result<(), Error> {
+        for (n, moment) in self.task.euler.moments().into_iter().enumerate() {
+            if moment > 0.0 {
+                continue;
+            }
+            let constant = linear.constant.map(X::rounded);
+            let on_omega = linear.on_omega().map(X::rounded);
+            let on_attitude = linear.on_attitude().map(X::rounded);
+            let mut turned = on_omega;
+            // ω along the axis is constant. If it is zero, torques in proportion to it do not matter.
+            if state[n].rounded() == 0.0 {
+                turned.column_mut(n).fill(0.0);
+            }
+            let mut parts = vec![
+                (constant[n].abs(), constant.norm()),
+                (turned.row(n).norm(), on_omega.norm()),
+                (on_attitude.row(n).norm(), on_attitude.norm()),
+            ];
+            for formula in &linear.formulas {
+                let matrix = formula.matrix.map(X::rounded);
+                parts.push((matrix.row(n).norm(), matrix.norm()));
+            }
+            for (vector, matrix) in &linear.on_space {
+                let (size, matrix) = (vector.map(X::rounded).norm(), matrix.map(X::rounded));
+                parts.push((matrix.row(n).norm() * size, matrix.norm() * size));
+            }
+            for own in &linear.own {
+                let (torque, momentum) = (own.torque.map(X::rounded), own.momentum.map(X::rounded));
+                let mut across = momentum;
+                across[n] = 0.0;
+                parts.push((torque[n].abs(), torque.norm()));
+                parts.push((across.norm(), momentum.norm()));
+            }
+            let axis = self.axes.column(n).map(X::rounded);
+            for (_, torque) in &linear.timed {
+                parts.extend(torque.torques_along(&axis, self.middle()));
+            }
+            if let Some(&(torque, _)) = parts.iter().find(|(part, all)| *part > ROUNDING * all) {
+                return Err(Error::Motion(MotionFault::TorqueAlongMasslessAxis {
+                    torque,
+                }));
+            }
+        }
+        Ok(())
+    }
+
+    /// Iterate over the terms that act between two breaks, each with the column of its first number.
+    fn acting(&self, from: f64, to: f64) -> impl Iterator<Item = (usize, &'a Term)> {
+        let middle = from + 0.5 * (to - from);
+        (self.terms.iter().enumerate()).filter_map(move |(k, term)| {
+            let first = self.firsts.get(k).copied().unwrap_or(0);
+            Some((first, term.active(middle)?))
+        })
+    }
+
+    fn segment_start(&self) -> f64 {
+        match self.segment {
+            0 => self.task.times[0],
+            k => self.breaks[k - 1],
+        }
+    }
+
+    fn middle(&self) -> f64 {
+        let from = self.segment_start();
+        from + 0.5 * (self.breaks[self.segment] - from)
+    }
+
+    /// Return whether the scalar part of the error of a feedback has changed its sign in `state`.
+    pub(super) fn has_switched(&self, state: &[X; 7]) -> bool {
+        (self.switches.iter()).any(|switch| switch.sign(state) != switch.side)
+    }
+
+    /// Return the number of functions of the attitude whose sign switches a law.
+    pub(super) fn switch_count(&self) -> usize {
+        self.switches.len()
+    }
+
+    /// Compute the function of this index for the attitude (x, y, z, w), or for a coefficient of its series.
+    pub(super) fn switch_value(&self, index: usize, attitude: &[X; 4]) -> f64 {
+        self.switches[index].value(attitude)
+    }
+
+    /// Return the sign of the function of this index before the step.
+    pub(super) fn side(&self, index: usize) -> f64 {
+        self.switches[index].side
+    }
+
+    /// Switch the laws of the feedbacks to the signs in `state`. A neighbouring motion, which switches later, has been longer under the
+    /// law before: so the derivatives of ω and of the states of the load are corrected (saltation).
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub(super) fn switch_laws(&mut self, state: &mut [X; 7], own: &mut [X]) -> Result<(), Error> {
+        let [w1, w2, w3, x, y, z, w] = *state;
+        let attitude = Vector4::new(x, y, z, w);
+        let zero = X::zero();
+        let turn = Vector4::from(product([x, y, z, w], [w1, w2, w3, zero]));
+        let over_moment = self.inverse_moments / X::from(self.unit) / X::from(self.unit);
+        let before = *state;
+        for switch in (self.switches.iter()).filter(|it| it.sign(&before) != it.side) {
+            let rate = 0.5 * switch.scalar.dot(&turn).rounded();
+            // The torque changes its sign.
+            let more = switch.torque * attitude * X::from(2.0);
+            for (omega, more) in state.iter_mut().zip(&more.component_mul(&over_moment)) {
+                *omega += more.until_later(switch.scalar.dot(&attitude), rate);
+            }
+            for (number, on_attitude) in &switch.own {
+                let more = on_attitude.dot(&attitude) * X::from(2.0) / X::from(self.unit);
+                if let Some(own) = own.get_mut(*number) {
+                    *own += more.until_later(switch.scalar.dot(&attitude), rate);
+                }
+            }
+        }
+        self.linearize(&before)
+    }
+
+    /// Return 1, or −1 for backward in time.
+    pub(super) fn direction(&self) -> f64 {
+        if self.breaks[self.segment] < self.task.times[0] {
+            -1.0
+        } else {
+            1.0
+        }
+    }
+
+    pub(super) fn unit(&self) -> f64 {
+        self.unit
+    }
+
+    /// Choose the unit of rates: the power of two at or below the fastest rate of the motion at ω (in principal axes). `own` are the
+    /// states of the load.
+    pub(super) fn choose_unit(&mut self, omega: &[f64; 3], own: &[X]) -> f64 {
+        let (linear, inverse) = (&self.linear, self.inverse_moments.map(X::rounded));
+        let over_moment = inverse.amax();
+        let squares = [
+            (linear.constant.map(X::rounded))
+                .component_mul(&inverse)
+                .amax(),
+            linear.on_attitude().map(X::rounded).amax() * over_moment,
+        ];
+        let on_space = linear.on_space.iter();
+        let on_space = on_space.map(|(vector, matrix)| {
+            vector.map(X::rounded).amax() * matrix.map(X::rounded).amax() * over_moment
+        });
+        let middle = self.middle();
+        let timed = (linear.timed.iter())
+            .map(|(_, torque)| torque.square_of_rate(&self.task.subject, middle, over_moment));
+        let gradients = (linear.gradients.iter())
+            .map(|(_, gradient)| gradient.square_of_rate(&self.task.subject));
+        let timed = timed.chain(gradients);
+        let (mut momentum, mut torque, mut decay) = (Vector3::zeros(), Vector3::zeros(), 0.0_f64);
+        for (state, &value) in linear.own.iter().zip(own) {
+            momentum += state.momentum.map(X::rounded) * value.rounded();
+            torque += state.torque.map(X::rounded) * value.rounded();
+            decay = decay.max(state.on_itself.rounded().abs());
+        }
+        let by_own = torque.component_mul(&inverse).amax();
+        let squares = squares.into_iter().chain([by_own]);
+        let square = (squares.chain(on_space).chain(timed)).fold(0.0, f64::max);
+        let rate = Vector3::from(*omega)
+            .amax()
+            .max(linear.on_omega().map(X::rounded).amax() * over_moment)
+            .max(momentum.amax() * over_moment)
+            .max(decay)
+            .max(square.sqrt());
+        self.unit = power_below(rate);
+        self.unit
+    }
+
+    /// Compute the linear terms of the present segment.
+    pub(super) fn linear_terms<const B: usize>(&self) -> LinearTerms<X, B> {
+        let linear = &self.linear;
+        let inverse = Matrix3::from_diagonal(&self.inverse_moments);
+        let rate = X::from(1.0 / self.unit);
+        let on_omega = inverse * linear.on_omega() * rate;
+        let on_attitude = inverse * linear.on_attitude() * rate * rate;
+        // The part of the tensor of wheels that turn freely: along the axes and across them.
+        let (along, across) = (linear.turning.diagonal(), linear.turning);
+        let pull = [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
+            .map(|(i, j, k)| self.kappa[i] + (along[j] - along[k]) * self.inverse_moments[i]);
+        let off_diagonal =
+            [(0, 1, 2), (1, 2, 0), (2, 0, 1)].map(|(i, j, k)| self.products[i] + across[(j, k)]);
+        let mass = (self.variables).number(self.task.subject.mass, MASS);
+        let mut linear_terms = LinearTerms {
+            kappa: self.kappa.into(),
+            inverse_moments: self.inverse_moments.into(),
+            products: self.products.into(),
+            pull: (pull, off_diagonal),
+            constant: (inverse * linear.constant * rate * rate).into(),
+            on_omega: rows(&on_omega),
+            on_attitude: [0, 1, 2].map(|n| [0, 1, 2, 3].map(|i| on_attitude[(n, i)])),
+            on_space: [[[X::zero(); 3]; 3]; B],
+            force: (linear.force() / mass * rate * rate).into(),
+            thrust: (linear.thrust() / mass * rate * rate).into(),
+        };
+        let directions = Self::directions::<B>();
+        for (vector, matrix) in &linear.on_space {
+            let scaled = inverse * matrix * rate * rate;
+            for (block, direction) in linear_terms.on_space.iter_mut().zip(&directions) {
+                let part = scaled * vector.dot(&Vector3::from(*direction));
+                for (row, more) in block.iter_mut().zip(rows(&part)) {
+                    for (x, more) in row.iter_mut().zip(more) {
+                        *x += more;
+                    }
+                }
+            }
+        }
+        linear_terms
+    }
+
+    /// Iterate over the formulas of the present segment, each with its matrix over the moments in the unit of rates.
+    pub(super) fn formulas(&self) -> impl Iterator<Item = (&Formula<X>, [[X; 3]; 3])> {
+        let inverse = Matrix3::from_diagonal(&self.inverse_moments);
+        self.linear.formulas.iter().map(move |formula| {
+            // Units are powers of two.
+            let scale = X::from(self.unit.powi(formula.degree - 2));
+            (formula, rows(&(inverse * formula.matrix * scale)))
+        })
+    }
+
+    /// Return the directions in N for torques fixed in space: the vertical axis, or all three axes.
+    pub(super) fn directions<const B: usize>() -> [[X; 3]; B] {
+        let (zero, one) = (X::zero(), X::one());
+        let mut directions = [[zero, zero, one]; B];
+        if B > 1 {
+            for (i, direction) in directions.iter_mut().enumerate() {
+                *direction = [zero; 3];
+                direction[i] = one;
+            }
+        }
+        directions
+    }
+
+    /// Add the terms that depend on time alone, at `now`.
+    pub(super) fn force(&self, forcing: &mut Forcing<X>, now: (f64, f64)) {
+        let when = When {
+            elapsed: X::pair(now.0, now.1) / X::from(self.unit),
+            start: self.task.times[0],
+            time: self.time(now),
+            middle: self.middle(),
+            unit: self.unit,
+        };
+        for (first, torque) in &self.linear.timed {
+            let axes = self.principal_axes(*first);
+            for (k, torque_k) in torque.cubic(&axes, &when).iter().enumerate() {
+                match torque.frame() {
+                    Frame::Body => forcing.in_body[k] += axes.principal(torque_k),
+                    Frame::Space => forcing.in_space[k] += torque_k,
+                }
+            }
+        }
+        if !forcing.has_orbits {
+            for (first, gradient) in &self.linear.gradients {
+                let on_orbit = gradient.on_orbit(&self.principal_axes(*first), &when);
+                forcing.orbits.push(on_orbit);
+            }
+        }
+        for torque in &mut forcing.in_body {
+            torque.component_mul_assign(&self.inverse_moments);
+        }
+    }
+
+    /// Return the equations of the states of the load in the present segment.
+    pub(super) fn internal_states(&self) -> &[Own<X>] {
+        &self.linear.own
+    }
+
+    pub(super) fn inverse_moments(&self) -> &Vector3<X> {
+        &self.inverse_moments
+    }
+
+    pub(super) fn initial(&self) -> &Phase {
+        &self.task.initial
+    }
+
+    /// Return the state at the start: ω in principal axes and the unit of rates, and (x, y, z, w) of the attitude.
+    pub(super) fn start(&self) -> [X; 7] {
+        let Phase {
+            attitude, omega, ..
+        } = self.task.initial;
+        let attitude = (self.variables).turned(X::quaternion(&attitude), ATTITUDE);
+        let [x, y, z, w] = product(attitude, self.q_bp);
+        let omega = self.variables.vector(&omega, RATES);
+        let omega = self.axes.tr_mul(&omega) / X::from(self.unit);
+        [omega.x, omega.y, omega.z, x, y, z, w]
+    }
+
+    /// Compute the state in body axes and real units.
+    pub(super) fn phase(
+        &self,
+        state: &[X; 7],
+        auxiliary: &AuxiliaryState<X>,
+        now: (f64, f64),
+    ) -> Phase {
+        let [x, y, z, i, j, k, w] = *state;
+        let initial = self.initial();
+        let (position, velocity) = if let Some(numbers) = auxiliary.position_velocity {
+            let [x, y, z, u, v, w] = numbers.map(X::rounded);
+            (Vector3::new(x, y, z), Vector3::new(u, v, w) * self.unit)
+        } else {
+            let elapsed = (now.0 + now.1) / self.unit;
+            (
+                initial.position + initial.velocity * elapsed,
+                initial.velocity,
+            )
+        };
+        let q_nb = normalized(product([i, j, k, w], conjugate(self.q_bp)));
+        let [i, j, k, w] = q_nb.map(X::rounded);
+        Phase {
+            attitude: UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k)),
+            omega: (self.axes * Vector3::new(x, y, z)).map(X::rounded) * self.unit,
+            position,
+            velocity,
+            own: if auxiliary.internal_states.is_empty() {
+                Box::default()
+            } else {
+                let own = self
+                    .internal_states_in_body(&auxiliary.internal_states)
+                    .into_iter();
+                own.map(X::rounded).collect()
+            },
+        }
+    }
+
+    /// Compute the states of the load at the start; vectors among them in principal axes.
+    pub(super) fn internal_states_at_start(&self) -> Vec<X> {
+        let first = self.firsts.get(self.terms.len()).copied().unwrap_or(0);
+        let given = self.task.initial.own.iter().enumerate();
+        let given: Vec<X> = given
+            .map(|(i, &x)| self.variables.number(x, first + i))
+            .collect();
+        self.rotate_internal_states(&given, |vector| self.axes.tr_mul(&vector))
+    }
+
+    /// Compute the states of the load, or coefficients of their series, with vectors among them in body axes.
+    pub(super) fn internal_states_in_body(&self, own: &[X]) -> Vec<X> {
+        self.rotate_internal_states(own, |vector| self.axes * vector)
+    }
+
+    /// Compute the values of the states of the load that are reported, in body axes.
+    pub(super) fn reported_internal_states(&self, state: &[X; 7], own: &[X]) -> Vec<X> {
+        let omega = Vector3::from_column_slice(&state[..3]) * X::from(self.unit);
+        let states = self
+            .internal_states_in_body(own)
+            .into_iter()
+            .zip(&self.linear.own);
+        states
+            .map(|(value, state)| value + state.reported_on_omega.dot(&omega))
+            .collect()
+    }
+
+    fn rotate_internal_states(&self, own: &[X], turn: impl Fn(Vector3<X>) -> Vector3<X>) -> Vec<X> {
+        let mut turned = own.to_vec();
+        for (number, state) in self.linear.own.iter().enumerate() {
+            if let Some((first, component)) = state.turned {
+                let vector = turn(Vector3::from_column_slice(&own[first..first + 3]));
+                turned[number] = vector[component];
+            }
+        }
+        turned
+    }
+
+    /// Compute ω and (x, y, z, w) in body axes and real units, of a state or of a coefficient of its series.
+    pub(super) fn in_body(&self, state: &[X; 7]) -> [X; 7] {
+        let [x, y, z, i, j, k, w] = *state;
+        let omega = self.axes * Vector3::new(x, y, z) * X::from(self.unit);
+        let [i, j, k, w] = product([i, j, k, w], conjugate(self.q_bp));
+        [omega.x, omega.y, omega.z, i, j, k, w]
+    }
+
+    /// Return the time of output `k` since the start.
+    pub(super) fn output(&self, k: usize) -> (f64, f64) {
+        self.since_start(self.task.times[k])
+    }
+
+    pub(super) fn end_of_segment(&self) -> (f64, f64) {
+        self.since_start(self.breaks[self.segment])
+    }
+
+    /// Compute a time since the start in the unit of rates, with its rounding error.
+    fn since_start(&self, t: f64) -> (f64, f64) {
+        let (elapsed, rest) = two_sum(t, -self.task.times[0]);
+        (elapsed * self.unit, rest * self.unit)
+    }
+
+    pub(super) fn time(&self, now: (f64, f64)) -> f64 {
+        self.task.times[0] + (now.0 + now.1) / self.unit
+    }
+
+    /// Return the key of the orbit cache for a step that begins at `now`, and the unit of rates.
+    #[inline(always)]
+    pub(super) fn cache_key(&self, now: (f64, f64)) -> (CacheKey, f64) {
+        let (start, unit) = (self.task.times[0], self.unit);
+        let key = CacheKey {
+            when: [now.0 / unit, now.1 / unit, start].map(f64::to_bits),
+            terms: (self.terms.as_ptr().addr(), self.terms.len()),
+        };
+        (key, unit)
+    }
+
+    /// Return the length of the motion.
+    pub(super) fn last_elapsed(&self) -> f64 {
+        self.last_time() - self.task.times[0]
+    }
+
+    /// Return the time of an output.
+    pub(super) fn time_of(&self, output: usize) -> f64 {
+        self.task.times[output]
+    }
+
+    pub(super) fn is_last(&self, output: usize) -> bool {
+        output + 1 == self.task.times.len()
+    }
+
+    pub(super) fn last_time(&self) -> f64 {
+        self.task.times[self.task.times.len() - 1]
+    }
+
+    /// Return the largest number of steps that it may take.
+    pub(super) fn most_steps(&self) -> u64 {
+        self.task.tolerance.most_steps
+    }
+
+    /// Check that the motion can reach its end, after so many steps up to `now` in the unit of rates.
+    pub(super) fn check_steps(&self, steps: u64, now: f64) -> Result<(), Error> {
+        check_steps(
+            self.task.tolerance.most_steps,
+            steps,
+            self.task.times[0],
+            now / self.unit,
+            self.last_elapsed(),
+        )
+    }
+
+    /// Return the fraction of the motion that is done.
+    pub(super) fn fraction(&self, now: f64) -> f64 {
+        let times = self.task.times;
+        now / self.unit / (times[times.len() - 1] - times[0])
+    }
+}
+
+/// The sign switch of a feedback: the scalar part w of its error, which is linear in the attitude (x, y, z, w), and the sign of it for
+/// which the torques are computed.
+#[derive(Clone, Debug)]
+struct Switch<X> {
+    scalar: Vector4<X>,
+    side: f64,
+    /// The matrix from the attitude to the torque.
+    torque: Matrix3x4<X>,
+    /// The rates of states of the load, linear in the attitude, with the numbers of the states.
+    own: Vec<(usize, Vector4<X>)>,
+}
+
+impl<X: Real> Switch<X> {
+    fn value(&self, attitude: &[X; 4]) -> f64 {
+        self.scalar.dot(&Vector4::from(*attitude)).rounded()
+    }
+
+    /// Return the sign of w in `state`; positive if w is zero.
+    fn sign(&self, state: &[X; 7]) -> f64 {
+        let [_, _, _, x, y, z, w] = *state;
+        if self.value(&[x, y, z, w]) < 0.0 {
+            -1.0
+        } else {
+            1.0
+        }
+    }
+}
+
+/// Compute Σ J a aᵀ of the wheels that turn freely, in principal axes.
+fn free_wheel_tensor<X: Precision>(
+    task: &Task<'_>,
+    terms: &[Term],
+    principal: &PrincipalInertia<X>,
+    variables: X::Variables,
+    firsts: &[usize],
+) -> Matrix3<X> {
+    let mut linear = Linear::default();
+    for (k, term) in terms.iter().enumerate() {
+        if term.carried().is_some() {
+            let axes = Axes {
+                subject: &task.subject,
+                columns: &principal.axes,
+                q_bp: &principal.q_bp,
+                variables,
+                first: firsts.get(k).copied().unwrap_or(0),
+                middle: task.times[0],
+            };
+            term.add_to(&mut linear, &axes, 1.0);
+        }
+    }
+    linear.turning
+}
+
+fn quotient_or_zero<X: Real>(number: X, moment: X) -> X {
+    if moment.rounded() > 0.0 {
+        number / moment
+    } else {
+        X::zero()
+    }
+}
+
+/// Return the parts of the equations of a motion of `subject` under these terms, whether they are switched on or not. The principal axes
+/// do not matter for it. `variables` are those of the derivatives; `has_path` is true if the path of the body is part of the motion.
+pub(super) fn parts<X: Exact>(
+    terms: &[Term],
+    subject: &Subject,
+    variables: X::Variables,
+    has_path: bool,
+) -> Parts {
+    let (zero, one) = (X::zero(), X::one());
+    let mut linear = Linear::default();
+    let firsts = variables.columns(&mut terms.iter().map(Term::count));
+    for (k, term) in terms.iter().enumerate() {
+        let axes = Axes {
+            subject,
+            columns: &Matrix3::identity(),
+            q_bp: &[zero, zero, zero, one],
+            variables,
+            first: firsts.get(k).copied().unwrap_or(0),
+            middle: subject.start,
+        };
+        term.add_to(&mut linear, &axes, 1.0);
+    }
+    linear.parts(has_path)
+}
+
+fn rows<X: Real>(matrix: &Matrix3<X>) -> [[X; 3]; 3] {
+    [0, 1, 2].map(|n| [0, 1, 2].map(|i| matrix[(n, i)]))
+}
