@@ -78,7 +78,6 @@
 //! # Ok::<(), polhode::Error>(())
 //! ```
 
-mod circling;
 mod clock;
 mod conditioning;
 pub(super) mod evaluate;
@@ -94,6 +93,7 @@ mod propagator;
 mod secular;
 mod sensitivity;
 mod separation;
+mod steady_or_symmetric;
 #[cfg(test)]
 mod tests;
 mod tumbling;

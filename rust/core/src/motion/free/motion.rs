@@ -2,11 +2,11 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use super::circling;
 use super::mode::Mode;
 use super::propagator::Propagator;
 use super::secular::Secular;
 use super::separation::Separation;
+use super::steady_or_symmetric;
 use super::tumbling::Tumbling;
 use crate::error::{Error, all_finite};
 use crate::mass::RigidBody;
@@ -75,14 +75,20 @@ impl FreeMotion {
         let [i1, i2, i3] = moments;
         let is_steady = |w: &Vector| w.iter().filter(|rate| rate.high == 0.0).count() >= 2;
         let (mode, (propagator, secular)) = if i1 == i3 {
-            (Mode::Spherical, circling::spin(&scaled_omega, attitude))
+            (
+                Mode::Spherical,
+                steady_or_symmetric::spin(&scaled_omega, attitude),
+            )
         } else if i1 == i2 || i2 == i3 || i1.high == 0.0 {
-            let motion = circling::symmetric(&moments, &w, &axes, attitude);
+            let motion = steady_or_symmetric::symmetric(&moments, &w, &axes, attitude);
             (Mode::Symmetric, motion)
         } else {
             (separation, w) = separation.kept(principal, &scaled_omega, &moments, &w);
             if is_steady(&w) {
-                (Mode::Steady, circling::spin(&scaled_omega, attitude))
+                (
+                    Mode::Steady,
+                    steady_or_symmetric::spin(&scaled_omega, attitude),
+                )
             } else {
                 let tumbling = Tumbling::of(&moments, &w, &separation);
                 (tumbling.mode, tumbling.motion(&axes, attitude))

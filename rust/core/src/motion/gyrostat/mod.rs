@@ -61,8 +61,9 @@
 
 mod constants;
 mod curve;
+mod discriminant_near_separatrix;
 pub mod equilibria;
-mod inside;
+mod internal_momentum;
 mod logarithm;
 pub mod mode;
 mod motion;
@@ -71,13 +72,12 @@ mod products;
 mod propagator;
 mod quartic;
 mod rates;
-mod remnant;
 mod spinor;
 mod start;
 #[cfg(test)]
 mod tests;
 mod theta_series;
 
-pub use inside::{Gyrostat, Inside};
+pub use internal_momentum::{Gyrostat, Inside};
 pub use mode::Mode;
 pub use motion::GyrostatMotion;

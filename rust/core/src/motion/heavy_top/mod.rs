@@ -44,17 +44,17 @@
 //! # Ok::<(), polhode::Error>(())
 //! ```
 
-mod course;
 pub mod nutation;
 mod phases;
 pub mod pivoted_top;
 mod reduced;
 mod sampling;
 mod scaled;
-mod source;
+mod setup;
 #[cfg(test)]
 mod tests;
 mod top;
+mod top_data;
 mod turning_points;
 
 pub use nutation::{Nutation, Path};

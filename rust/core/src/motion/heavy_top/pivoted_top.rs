@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::source::Source;
+use super::top_data::Source;
 use crate::error::{Error, MotionFault};
 use crate::mass::RigidBody;
 use crate::mass::provenance::MomentsFrom;

@@ -15,7 +15,7 @@
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
 use super::scaled::{near_one, sum_of_squares, times};
-use super::source::Source;
+use super::top_data::Source;
 use crate::motion::attitude::components;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::Real;

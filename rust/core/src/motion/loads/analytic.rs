@@ -1,12 +1,12 @@
 //! Sums of analytic terms.
 
 use super::bearing::Bearing;
+use super::body_at_point::Subject;
 use super::carried::Carried;
+use super::law_switches::{Change, Switch};
 use super::laws::Term;
 use super::load::Load;
 use super::now::Now;
-use super::subject::Subject;
-use super::switch::{Change, Switch};
 use super::wrench::Wrench;
 use crate::error::Error;
 use crate::motion::state::Phase;

@@ -1,9 +1,9 @@
 //! What turns a wheel.
 
-use super::held::Held;
+use super::body_at_point::Subject;
 use super::law::Law;
 use super::laws::feedback::Feedback;
-use super::subject::Subject;
+use super::piecewise_signal::Held;
 use crate::error::Error;
 
 /// What turns a wheel.

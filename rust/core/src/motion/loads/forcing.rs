@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 
 use std::fmt::Debug;
 
-use super::axes::{Axes, Exact};
-use super::subject::Subject;
+use super::body_at_point::Subject;
+use super::principal_frame::{Axes, Exact};
 use crate::motion::kinematics::Frame;
 use crate::numerics::number::Real;
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use super::axes::Exact;
+use super::principal_frame::Exact;
 
 /// A step of a formula. Scalars and vectors are numbered in the order of the steps that make them; the vector 0 is ω.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,12 +2,12 @@
 
 use nalgebra::Vector3;
 
-use super::axes::{Axes, Exact};
+use super::body_at_point::Subject;
 use super::carried::Carried;
-use super::linear::Linear;
+use super::law_switches::Switch;
 use super::parameter::Parameter;
-use super::subject::Subject;
-use super::switch::Switch;
+use super::principal_frame::{Axes, Exact};
+use super::series_terms::Linear;
 use super::wrench::Wrench;
 use crate::error::Error;
 use crate::motion::state::Phase;

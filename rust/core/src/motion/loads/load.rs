@@ -2,8 +2,8 @@
 
 use super::bearing::Bearing;
 use super::carried::Carried;
+use super::law_switches::Change;
 use super::laws::Term;
-use super::switch::Change;
 use super::wrench::Wrench;
 use crate::error::Error;
 use crate::motion::state::Phase;

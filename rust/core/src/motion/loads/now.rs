@@ -1,6 +1,6 @@
 //! When and in which state a law is asked.
 
-use super::subject::Subject;
+use super::body_at_point::Subject;
 use crate::motion::state::Phase;
 
 /// When, on what and in which state a law acts within a run.

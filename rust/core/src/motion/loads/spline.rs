@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::held::ascending;
+use super::piecewise_signal::ascending;
 use crate::error::{Error, MotionFault, all_finite, finite};
 use crate::numerics::number::Real;
 use crate::numerics::threads::{Watch, each_watched};

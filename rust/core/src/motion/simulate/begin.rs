@@ -1,9 +1,9 @@
 //! The one place where the methods of steps are told apart.
 
+use super::closed_form_run::Exact;
 use super::equations::{FEW, MANY, MOVING, SOME, TURNING};
-use super::exact::Exact;
-use super::kicked::Kicked;
-use super::solved::Solved;
+use super::runge_kutta_run::Solved;
+use super::splitting_run::Kicked;
 use super::stepper::{Span, Stepper};
 use crate::error::{Error, MotionFault};
 use crate::motion::integrate::{Dop853, Radau, RungeKutta};

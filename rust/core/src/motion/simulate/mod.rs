@@ -74,26 +74,26 @@
 //! # Ok::<(), polhode::Error>(())
 //! ```
 
-mod along;
+mod batch;
 mod begin;
 mod choose;
+mod closed_form_run;
 mod equations;
+mod event_detector;
 pub mod events;
-mod exact;
-mod flips;
-mod kicked;
-mod lookout;
-mod many;
+mod law_switches;
 mod one;
 mod plan;
-mod solved;
+mod roots_in_step;
+mod runge_kutta_run;
+mod splitting_run;
 mod stepper;
 mod steps;
-mod summed;
+mod taylor_run_with_events;
 
+pub use self::batch::{Calls, Row, Rows, simulate_many};
 pub use self::choose::most_demanding;
 pub use self::events::{Events, NoEvents};
-pub use self::many::{Calls, Row, Rows, simulate_many};
 pub use self::one::simulate;
 pub use self::plan::{Ask, Plan, Refusal};
 pub use super::problem::{

@@ -5,7 +5,7 @@ use std::slice;
 
 use super::events::Events;
 use super::plan::Plan;
-use super::{exact, summed};
+use super::{closed_form_run, taylor_run_with_events};
 use crate::motion::integrate::taylor;
 use crate::motion::loads::Load;
 use crate::motion::problem::{End, Method, Run, Task};
@@ -61,14 +61,16 @@ pub(super) fn by_method<L: Load>(
     let has_events = !events.rules().is_empty();
     if let (Method::Taylor, Some(terms)) = (task.method, load.analytic()) {
         return if has_events {
-            summed::solve(task, terms, events, watch)
+            taylor_run_with_events::solve(task, terms, events, watch)
         } else {
             taylor::solve_one(task, terms, watch).with_error(L::Error::from)
         };
     }
     let mut run = Run::at_start(task, End::Complete);
     let end = match (task.method, load.analytic()) {
-        (Method::Exact, Some(terms)) if !has_events => exact::solve(task, terms, &mut run, watch),
+        (Method::Exact, Some(terms)) if !has_events => {
+            closed_form_run::solve(task, terms, &mut run, watch)
+        }
         (method, _) => run.through(method, task, load, events, watch),
     };
     run.end = end.unwrap_or_else(End::Failed);

@@ -3,9 +3,9 @@
 use std::ops::ControlFlow;
 
 use super::begin::begin;
+use super::event_detector::Lookout;
 use super::events::Events;
-use super::flips;
-use super::lookout::Lookout;
+use super::law_switches;
 use super::stepper::{Carry, Span, Stepper};
 use crate::error::{Error, MotionFault};
 use crate::motion::loads::{Change, Load, Resting};
@@ -169,7 +169,7 @@ impl<E> Run<E> {
                 return Ok(Reached::End);
             }
             stepper.advance()?;
-            let flip = flips::first(&changes, stepper, from, before, &self.phase)?;
+            let flip = law_switches::first(&changes, stepper, from, before, &self.phase)?;
             if let Some((change, place)) = flip {
                 // The step is made again, to end there.
                 let time = from + place;

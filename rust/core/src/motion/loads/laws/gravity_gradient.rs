@@ -4,14 +4,14 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::slug::positive;
 use crate::error::{Error, MotionFault};
-use crate::motion::loads::axes::{Axes, Exact};
+use crate::motion::loads::body_at_point::Subject;
 use crate::motion::loads::forcing::{OnOrbit, Orbiting, When};
 use crate::motion::loads::kepler::Orbit;
 use crate::motion::loads::law::{Character, Kept, Law};
-use crate::motion::loads::linear::Linear;
+use crate::motion::loads::orbit_model::Path;
 use crate::motion::loads::parameter::Parameter;
-use crate::motion::loads::path::Path;
-use crate::motion::loads::subject::Subject;
+use crate::motion::loads::principal_frame::{Axes, Exact};
+use crate::motion::loads::series_terms::Linear;
 use crate::motion::loads::variables::Variables;
 use crate::motion::loads::wrench::Wrench;
 use crate::motion::state::Phase;

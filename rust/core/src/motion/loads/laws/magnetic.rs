@@ -6,13 +6,13 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use crate::error::{Error, MotionFault, all_finite, finite};
-use crate::motion::loads::axes::{Axes, Exact};
+use crate::motion::loads::body_at_point::Subject;
 use crate::motion::loads::law::{Character, Kept, Law};
-use crate::motion::loads::linear::Linear;
+use crate::motion::loads::orbit_model::Path;
 use crate::motion::loads::parameter::Parameter;
-use crate::motion::loads::path::Path;
+use crate::motion::loads::principal_frame::{Axes, Exact};
+use crate::motion::loads::series_terms::Linear;
 use crate::motion::loads::spline::Spline;
-use crate::motion::loads::subject::Subject;
 use crate::motion::loads::wrench::{Wrench, times};
 use crate::motion::state::Phase;
 use crate::numerics::quaternion::cross_matrix;

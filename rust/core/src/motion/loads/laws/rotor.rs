@@ -3,13 +3,13 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::{Error, all_finite};
-use crate::motion::loads::axes::{Axes, Exact};
+use crate::motion::loads::body_at_point::Subject;
 use crate::motion::loads::carried::Carried;
 use crate::motion::loads::law::{Character, Kept, Law};
-use crate::motion::loads::linear::Linear;
 use crate::motion::loads::now::Now;
 use crate::motion::loads::parameter::Parameter;
-use crate::motion::loads::subject::Subject;
+use crate::motion::loads::principal_frame::{Axes, Exact};
+use crate::motion::loads::series_terms::Linear;
 use crate::motion::loads::wrench::{Wrench, times};
 use crate::motion::state::Phase;
 

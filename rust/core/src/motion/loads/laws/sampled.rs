@@ -7,13 +7,13 @@ use nalgebra::Vector3;
 
 use crate::error::Error;
 use crate::motion::kinematics::Frame;
-use crate::motion::loads::axes::{Axes, Exact, exact};
+use crate::motion::loads::body_at_point::Subject;
 use crate::motion::loads::forcing::{Timed, When};
 use crate::motion::loads::law::{Character, Kept, Law};
-use crate::motion::loads::linear::Linear;
 use crate::motion::loads::parameter::Parameter;
+use crate::motion::loads::principal_frame::{Axes, Exact, exact};
+use crate::motion::loads::series_terms::Linear;
 use crate::motion::loads::spline::{Spline, pieces};
-use crate::motion::loads::subject::Subject;
 use crate::motion::loads::variables::Variables;
 use crate::motion::loads::wrench::{Wrench, in_body};
 use crate::motion::state::Phase;

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use super::subject::Subject;
+use super::body_at_point::Subject;
 use super::variables::{Block, CENTER, Fixed, MASS, Variables, Varied};
 use crate::motion::attitude::components;
 use crate::numerics::double_double::DoubleDouble;

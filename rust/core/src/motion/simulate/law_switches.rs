@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::along::{Look, MOST_LOOKS, View, sign};
+use super::roots_in_step::{Look, MOST_LOOKS, View, sign};
 use super::stepper::Dense;
 use crate::error::Error;
 use crate::motion::loads::Change;

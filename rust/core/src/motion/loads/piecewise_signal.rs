@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::axes::{Axes, Exact};
 use super::parameter::Parameter;
+use super::principal_frame::{Axes, Exact};
 use crate::error::{Error, MotionFault, all_finite, finite};
 
 /// A number that changes at known times.

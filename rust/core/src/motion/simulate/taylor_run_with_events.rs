@@ -3,8 +3,8 @@
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
+use super::event_detector::Lookout;
 use super::events::Events;
-use super::lookout::Lookout;
 use super::stepper::Dense;
 use crate::error::Error;
 use crate::motion::integrate::taylor::{Step, solve_seen};

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::aim::Aim;
+use super::attitude_target::Aim;
 use super::bearing::Bearing;
 use crate::motion::state::Phase;
 

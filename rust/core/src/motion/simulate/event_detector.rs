@@ -2,8 +2,8 @@
 
 use std::ops::ControlFlow;
 
-use super::along::{Look, MOST_LOOKS, View, sign};
 use super::events::Events;
+use super::roots_in_step::{Look, MOST_LOOKS, View, sign};
 use super::stepper::Dense;
 use crate::error::{Error, MotionFault};
 use crate::motion::loads::Change;

@@ -2,9 +2,9 @@
 
 use nalgebra::{Matrix3, Matrix3x4, Vector3, Vector4};
 
-use super::axes::Exact;
 use super::forcing::{Orbiting, Timed};
 use super::formula::Formula;
+use super::principal_frame::Exact;
 use crate::motion::kinematics::Frame;
 
 /// Torques about the reference point in principal axes, linear in what varies, and what is not linear besides. What no law has

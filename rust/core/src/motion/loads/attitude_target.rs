@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use super::path::Path;
+use super::orbit_model::Path;
 use super::spline::Spline;
 use crate::error::{Error, all_finite, finite};
 use crate::motion::attitude::components;
