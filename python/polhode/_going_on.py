@@ -176,7 +176,7 @@ def resume(self: Trajectory, t: ArrayLike, **options: Any) -> Trajectory:
     is_another = "load" in options or "states" in options
     load = options.pop("load") if "load" in options else self._acting("resume", -1)
     if isinstance(load, _core.Load):
-        load = load.anchored(began)
+        load = load.with_epoch(began)
     known = load.states if isinstance(load, _core.Load) else {}
     states = {
         name: values

@@ -24,7 +24,7 @@ __all__ = ["known_states", "numbers", "recipes"]
 HELD: Final = ("times", "t", "epoch", "target")
 """Arguments of loads that are not varied."""
 
-AROUND: Final = ("_scheduled", "_anchored")
+AROUND: Final = ("_scheduled", "_with_epoch")
 """What is done to a part that was made."""
 
 

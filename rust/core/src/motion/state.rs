@@ -56,7 +56,7 @@ pub struct Phase {
     /// Of the reference point, in N.
     pub velocity: Vector3<f64>,
     /// The states that the load has of its own, those of its parts one after the other; empty for most loads.
-    pub own: Box<[f64]>,
+    pub internal_state: Box<[f64]>,
 }
 
 impl Phase {
@@ -69,7 +69,7 @@ impl Phase {
             omega: state.omega,
             position: Vector3::zeros(),
             velocity: Vector3::zeros(),
-            own: Box::default(),
+            internal_state: Box::default(),
         }
     }
 
@@ -110,7 +110,7 @@ impl Phase {
     #[inline]
     pub fn is_finite(&self) -> bool {
         (self.numbers().iter())
-            .chain(&self.own)
+            .chain(&self.internal_state)
             .all(|x| x.is_finite())
     }
 }

@@ -14,7 +14,7 @@ use crate::numerics::jacobi::{carlson_rd, jacobi};
 
 /// y, c and d at a time, with their derivatives at that time with respect to p and q.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Clock {
+pub(super) struct JacobiFunctionsOfTime {
     /// y, c, d.
     pub value: [f64; 3],
     /// By p.
@@ -25,7 +25,7 @@ pub(super) struct Clock {
     pub square_integral: f64,
 }
 
-impl Clock {
+impl JacobiFunctionsOfTime {
     /// At a time within half of a half period, |t| ≤ K/λ, in the units of the motion.
     #[inline]
     pub(super) fn at(motion: &Invariants, t: f64) -> Self {

@@ -8,26 +8,26 @@ use crate::numerics::lane::Lane;
 use crate::numerics::planes::{Planes, ROWS};
 
 /// A motion whose formula is chosen once for all times, so that loops over times have no branches.
-pub(in crate::motion) trait Motion: Copy {
+pub(in crate::motion) trait ChooseFormula: Copy {
     /// Chooses the formula, and hands it on.
-    fn choose<U: Use>(&self, then: U) -> U::Output;
+    fn choose<U: UseFormula>(&self, then: U) -> U::Output;
 }
 
 /// A formula for the state.
-pub(in crate::motion) trait Formula {
+pub(in crate::motion) trait StateFormula {
     /// (x, y, z, w) of the attitude and ω in B at the time t.
     fn state<L: Lane>(&self, t: L) -> [L; 7];
 }
 
 /// What is done with a formula.
-pub(in crate::motion) trait Use {
+pub(in crate::motion) trait UseFormula {
     type Output;
 
-    fn with(self, formula: &impl Formula) -> Self::Output;
+    fn with(self, formula: &impl StateFormula) -> Self::Output;
 }
 
 /// The state at one time.
-pub(in crate::motion) fn at(motion: &impl Motion, time: f64) -> State {
+pub(in crate::motion) fn at(motion: &impl ChooseFormula, time: f64) -> State {
     dispatch(At { motion, time })
 }
 
@@ -36,7 +36,7 @@ pub(in crate::motion) fn at(motion: &impl Motion, time: f64) -> State {
 /// # Panics
 /// If the lengths differ.
 pub(in crate::motion) fn sample(
-    motion: &impl Motion,
+    motion: &impl ChooseFormula,
     times: &[f64],
     attitudes: &mut [[f64; 4]],
     omegas: &mut [[f64; 3]],
@@ -71,7 +71,7 @@ struct At<'a, M> {
     time: f64,
 }
 
-impl<M: Motion> Kernel for At<'_, M> {
+impl<M: ChooseFormula> Kernel for At<'_, M> {
     // As the caller returns it: a copy would wait until it is written.
     type Output = State;
 
@@ -87,11 +87,11 @@ impl<M: Motion> Kernel for At<'_, M> {
 
 struct Now<L>(L);
 
-impl<L: Lane> Use for Now<L> {
+impl<L: Lane> UseFormula for Now<L> {
     type Output = [L; 7];
 
     #[inline(always)]
-    fn with(self, formula: &impl Formula) -> [L; 7] {
+    fn with(self, formula: &impl StateFormula) -> [L; 7] {
         formula.state(self.0)
     }
 }
@@ -103,7 +103,7 @@ struct Sample<'a, M> {
     omegas: &'a mut [[f64; 3]],
 }
 
-impl<M: Motion> Kernel for Sample<'_, M> {
+impl<M: ChooseFormula> Kernel for Sample<'_, M> {
     type Output = ();
 
     #[inline(always)]
@@ -126,11 +126,11 @@ struct All<'a, L> {
     lane: std::marker::PhantomData<L>,
 }
 
-impl<L: Lane> Use for All<'_, L> {
+impl<L: Lane> UseFormula for All<'_, L> {
     type Output = ();
 
     #[inline(always)]
-    fn with(self, formula: &impl Formula) {
+    fn with(self, formula: &impl StateFormula) {
         let mut states = Planes::<7>::ZERO;
         let mut times = Planes::<1>::ZERO;
         let rows = (self.times.chunks(ROWS))

@@ -99,7 +99,7 @@ mod tests;
 mod tumbling;
 
 pub use conditioning::ErrorBar;
-pub use from_periods::{Circled, FromPeriods, attitude_about};
+pub use from_periods::{CircledAxis, FromPeriods, attitude_about};
 pub use invariants::Invariants;
 pub use mode::Mode;
 pub use motion::FreeMotion;

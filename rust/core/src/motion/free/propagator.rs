@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion};
 
-use crate::motion::free::evaluate::{Formula, Motion, Use, at, combine};
+use crate::motion::free::evaluate::{ChooseFormula, StateFormula, UseFormula, at, combine};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lane::Lane;
 use crate::numerics::theta::{circular, hyperbolic};
@@ -214,9 +214,9 @@ impl Propagator {
     }
 }
 
-impl Motion for Propagator {
+impl ChooseFormula for Propagator {
     #[inline(always)]
-    fn choose<U: Use>(&self, then: U) -> U::Output {
+    fn choose<U: UseFormula>(&self, then: U) -> U::Output {
         let is_endless = matches!(self.clock, EllipticArgument::Endless { .. });
         match self.series {
             AnySeries::Circular(series) => then.with(&Chosen::<_, false>(self, series)),
@@ -231,7 +231,7 @@ impl Motion for Propagator {
 /// A propagator with its series, and whether its clock is endless.
 struct Chosen<'a, S, const ENDLESS: bool>(&'a Propagator, S);
 
-impl<S: FreeSeries, const ENDLESS: bool> Formula for Chosen<'_, S, ENDLESS> {
+impl<S: FreeSeries, const ENDLESS: bool> StateFormula for Chosen<'_, S, ENDLESS> {
     #[inline(always)]
     fn state<L: Lane>(&self, t: L) -> [L; 7] {
         self.0.state::<L, ENDLESS>(&self.1, t)

@@ -6,29 +6,29 @@
 
 use nalgebra::Vector3;
 
-use super::pencil::Remnant;
+use super::pencil::PencilValue;
 use super::start::Start;
 use crate::mass::refined::{RefinedPrincipal, Vector};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::quad_double::QuadDouble;
 
-type Vector4 = [QuadDouble; 3];
+type QuadVector = [QuadDouble; 3];
 
 /// Moments, or the rows of a tensor.
 enum Inertia {
-    Moments(Vector4),
-    Tensor([Vector4; 3]),
+    Moments(QuadVector),
+    Tensor([QuadVector; 3]),
 }
 
 /// The pencil of a body, ω and h (in B) at y, in the units of the start; `unit` is that of the moments.
-pub(super) fn remnant(
+pub(super) fn value_near_separatrix(
     principal: &RefinedPrincipal,
     unit: f64,
     omega: &Vector3<f64>,
     rotor: &Vector,
     start: &Start,
     y: DoubleDouble,
-) -> Remnant {
+) -> PencilValue {
     let omega = [omega.x, omega.y, omega.z].map(QuadDouble::from);
     let rotor = rotor.map(QuadDouble::from);
     let (inertia, omega, rotor) = if let Some(rows) = principal.tensor() {
@@ -43,21 +43,21 @@ pub(super) fn remnant(
         )
     };
     let turned = inertia.times(&omega);
-    let momentum: Vector4 = std::array::from_fn(|k| turned[k] + rotor[k]);
+    let momentum: QuadVector = std::array::from_fn(|k| turned[k] + rotor[k]);
     let length = start.momentum;
     // x from that place whose r is across L, which is known to twice the precision alone.
     let mut x = QuadDouble::from(start.along / length);
-    let across: Vector4 = std::array::from_fn(|k| x * momentum[k] - omega[k]);
+    let across: QuadVector = std::array::from_fn(|k| x * momentum[k] - omega[k]);
     let beside = dot(&momentum, &across).twofold() / length;
     let step = QuadDouble::from((y.scaled(start.unit) - beside) / length);
     x = x + step;
-    let r: Vector4 = std::array::from_fn(|k| across[k] + step * momentum[k]);
+    let r: QuadVector = std::array::from_fn(|k| across[k] + step * momentum[k]);
     let (value, terms) = inertia.form(x, &r);
     let [i1, i2, i3] = principal.moments.map(|moment| moment.scaled(unit));
     // The pencil of the start has the determinant of 1/I in it, and a unit for each zero.
     let scale = length * length / (i1 * i2 * i3);
     let power = start.unit.powi(-4);
-    Remnant {
+    PencilValue {
         value: (value.twofold() * scale).scaled(power),
         terms: terms * scale.high * power,
     }
@@ -65,7 +65,7 @@ pub(super) fn remnant(
 
 impl Inertia {
     /// `I v`.
-    fn times(&self, v: &Vector4) -> Vector4 {
+    fn times(&self, v: &QuadVector) -> QuadVector {
         match self {
             Self::Moments(moments) => std::array::from_fn(|k| moments[k] * v[k]),
             Self::Tensor(rows) => rows.map(|row| dot(&row, v)),
@@ -73,13 +73,13 @@ impl Inertia {
     }
 
     /// `rᵀ I adj(1 − x I) r`, and the sizes of its terms.
-    fn form(&self, x: QuadDouble, r: &Vector4) -> (QuadDouble, f64) {
+    fn form(&self, x: QuadDouble, r: &QuadVector) -> (QuadDouble, f64) {
         let one = QuadDouble::from(1.0);
         let image = self.times(r);
         match self {
             Self::Moments(moments) => {
                 let u = moments.map(|moment| one - x * moment);
-                let parts: Vector4 =
+                let parts: QuadVector =
                     std::array::from_fn(|k| image[k] * r[k] * (u[(k + 1) % 3] * u[(k + 2) % 3]));
                 (parts[0] + parts[1] + parts[2], sizes(&parts))
             }
@@ -110,10 +110,10 @@ impl Inertia {
     }
 }
 
-fn dot(a: &Vector4, b: &Vector4) -> QuadDouble {
+fn dot(a: &QuadVector, b: &QuadVector) -> QuadDouble {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-fn sizes(v: &Vector4) -> f64 {
+fn sizes(v: &QuadVector) -> f64 {
     v.iter().map(|x| x.rounded().abs()).sum()
 }

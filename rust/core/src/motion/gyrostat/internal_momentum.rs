@@ -19,14 +19,14 @@ use crate::numerics::power_of_two::exponent;
 
 /// The momenta inside a body, components in B.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Inside {
+pub struct InternalMomentum {
     /// Σ J Ω a of all wheels at the start, and what else is given.
     pub momentum: Vector,
     /// Rows of `Σ J a aᵀ` of the free wheels.
     pub free: [Vector; 3],
 }
 
-impl Inside {
+impl InternalMomentum {
     /// With a constant momentum.
     ///
     /// # Errors
@@ -89,7 +89,7 @@ const LEAST: f64 = 1e-290;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gyrostat {
     /// What is inside.
-    pub inside: Inside,
+    pub inside: InternalMomentum,
     /// Principal moments and axes of `I − Σ J a aᵀ`.
     principal: RefinedPrincipal,
 }
@@ -99,7 +99,7 @@ impl Gyrostat {
     ///
     /// # Errors
     /// [`MotionFault::WheelsTooHeavy`] where `I − Σ J a aᵀ` is not positive definite.
-    pub fn of(body: &RigidBody, inside: &Inside) -> Result<Self, Error> {
+    pub fn of(body: &RigidBody, inside: &InternalMomentum) -> Result<Self, Error> {
         let has_free = inside.free.iter().flatten().any(|x| x.high != 0.0);
         let principal = if has_free {
             RefinedPrincipal::of(body).less(&inside.free)?

@@ -29,12 +29,12 @@
 //! ```
 //! use polhode::RigidBody;
 //! use polhode::motion::gyrostat::equilibria::{Bifurcation, Equilibria, Equilibrium, Extent, Kind, Meeting, equilibria};
-//! use polhode::motion::gyrostat::{Gyrostat, GyrostatMotion, Inside};
+//! use polhode::motion::gyrostat::{Gyrostat, GyrostatMotion, InternalMomentum};
 //! use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
 //!
 //! // A satellite with a wheel of 0.1 kg m² that is held at 300 rad/s about its first axis.
 //! let body = RigidBody::from_principal(90.0, &[8.0, 10.0, 12.0], &Matrix3::identity(), &Vector3::zeros(), 0.0)?;
-//! let inside = Inside::of(&Vector3::zeros())?.with(&Vector3::x(), 0.1, 30.0, false)?;
+//! let inside = InternalMomentum::of(&Vector3::zeros())?.with(&Vector3::x(), 0.1, 30.0, false)?;
 //! let omega = Vector3::new(0.05, -0.02, 0.1);
 //! assert_eq!(inside.rotor(&omega).map(|h| h.rounded()), [30.0, 0.0, 0.0]);
 //! let satellite = Gyrostat::of(&body, &inside)?;
@@ -78,6 +78,6 @@ mod start;
 mod tests;
 mod theta_series;
 
-pub use internal_momentum::{Gyrostat, Inside};
+pub use internal_momentum::{Gyrostat, InternalMomentum};
 pub use mode::Mode;
 pub use motion::GyrostatMotion;

@@ -34,7 +34,7 @@ pub(super) struct Invariants {
 
 /// The value of the pencil where it is extreme between two zeros that are about to meet.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Remnant {
+pub(super) struct PencilValue {
     pub(super) value: DoubleDouble,
     /// The sizes of the terms that it is the sum of.
     pub(super) terms: f64,
@@ -144,7 +144,7 @@ impl Pencil {
     }
 
     /// The discriminant from what is left of the quartic at the place y where two zeros meet.
-    pub(super) fn discriminant_of(&self, y: DoubleDouble, left: Remnant) -> DoubleDouble {
+    pub(super) fn discriminant_of(&self, y: DoubleDouble, left: PencilValue) -> DoubleDouble {
         let [_, b1, b2, b3] = self.b;
         let six = number(6.0) * y;
         let steep = y * (b2.scaled(2.0) + y * (number(3.0) * b3 + y.scaled(4.0)));
@@ -225,7 +225,7 @@ mod tests {
             assert!((y - 0.4.into()).rounded().abs() < 1e-30, "{y:?}");
             // Zeros at 0.4 ± ½ gap.
             let others = -(1.1 * 2.65);
-            let left = Remnant {
+            let left = PencilValue {
                 value: number(-0.25 * gap * gap * others),
                 terms: 1.0,
             };
@@ -237,7 +237,7 @@ mod tests {
             );
         }
         let pencil = with_zeros([0.4, 0.4, 1.5, -2.25]);
-        let left = Remnant {
+        let left = PencilValue {
             value: number(1e-59),
             terms: 1.0,
         };

@@ -4,7 +4,7 @@ use super::theta_series::{
     Circular, CircularProducts, Hyperbolic, HyperbolicProducts, Passing, Rational, ThetaSeries,
     Values, WithProducts,
 };
-use crate::motion::free::evaluate::{Formula, Motion, Use, combine};
+use crate::motion::free::evaluate::{ChooseFormula, StateFormula, UseFormula, combine};
 use crate::numerics::double_double::{DoubleDouble, two_sum};
 use crate::numerics::lane::Lane;
 use crate::numerics::turns::{reach, sin_cos_turns, turns, whole_off};
@@ -191,9 +191,9 @@ impl Propagator {
     }
 }
 
-impl Motion for Propagator {
+impl ChooseFormula for Propagator {
     #[inline(always)]
-    fn choose<U: Use>(&self, then: U) -> U::Output {
+    fn choose<U: UseFormula>(&self, then: U) -> U::Output {
         match self.clocked {
             Clocked::Circular(series, clock) => then.with(&Chosen(self, series, clock)),
             Clocked::Hyperbolic(series, clock) => then.with(&Chosen(self, series, clock)),
@@ -210,7 +210,7 @@ impl Motion for Propagator {
 /// A propagator with its series and its clock.
 struct Chosen<'a, S, C>(&'a Propagator, S, C);
 
-impl<S: ThetaSeries, C: ThetaArgument> Formula for Chosen<'_, S, C> {
+impl<S: ThetaSeries, C: ThetaArgument> StateFormula for Chosen<'_, S, C> {
     #[inline(always)]
     fn state<L: Lane>(&self, t: L) -> [L; 7] {
         self.0.state(self.2, &self.1, t)

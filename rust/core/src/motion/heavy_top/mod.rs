@@ -16,7 +16,7 @@
 //!
 //! ```
 //! use polhode::RigidBody;
-//! use polhode::motion::heavy_top::nutation::{Nutation, Path};
+//! use polhode::motion::heavy_top::nutation::{Nutation, Mode};
 //! use polhode::motion::heavy_top::{HeavyTop, PivotedTop};
 //! use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
 //!
@@ -28,8 +28,8 @@
 //! let attitude = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), lean);
 //! let (spin, gravity) = (Vector3::new(0.0, 0.0, 150.0), Vector3::new(0.0, 0.0, -9.81));
 //! let motion = HeavyTop::of(&top, &spin, &attitude, &gravity)?;
-//! let Nutation { path, inclination, period, .. } = motion.nutation();
-//! assert_eq!(*path, Path::Cusp);
+//! let Nutation { mode, inclination, period, .. } = motion.nutation();
+//! assert_eq!(*mode, Mode::Cusp);
 //! assert!((inclination[0] - lean).abs() < 1e-12);
 //! let (mut attitudes, mut omegas) = ([[0.0; 4]; 1], [[0.0; 3]; 1]);
 //! motion.sample(&[*period], &mut attitudes, &mut omegas);
@@ -57,6 +57,6 @@ mod top;
 mod top_data;
 mod turning_points;
 
-pub use nutation::{Nutation, Path};
+pub use nutation::{Mode, Nutation};
 pub use pivoted_top::PivotedTop;
 pub use top::HeavyTop;

@@ -15,7 +15,7 @@
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
 use super::scaled::{near_one, sum_of_squares, times};
-use super::top_data::Source;
+use super::top_data::TopData;
 use crate::motion::attitude::components;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::Real;
@@ -79,7 +79,7 @@ impl Reduced<QuadDouble> {
 impl<T: Real> Reduced<T> {
     /// Of a top with the angular velocity `omega` in B, the attitude `R_NB` and `gravity` in N, all finite.
     pub(super) fn of(
-        top: &Source<T>,
+        top: &TopData<T>,
         omega: &Vector3<f64>,
         attitude: &UnitQuaternion<f64>,
         gravity: &Vector3<f64>,

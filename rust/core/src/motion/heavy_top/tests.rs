@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use super::{HeavyTop, Path, PivotedTop};
+use super::{HeavyTop, Mode, PivotedTop};
 use crate::mass::RigidBody;
 
 fn top(across: f64, along: f64, length: f64) -> PivotedTop {
@@ -46,7 +46,7 @@ fn separatrix_of_the_pendulum() {
     let hanging =
         UnitQuaternion::new_normalize(nalgebra::Quaternion::new(0.0, hanging.i, 0.0, 0.0));
     let motion = HeavyTop::of(&bob, &Vector3::new(2.0, 0.0, 0.0), &hanging, &g).expect("motion");
-    assert_eq!(motion.nutation().path, Path::Asymptotic);
+    assert_eq!(motion.nutation().mode, Mode::Asymptotic);
     for t in [0.0_f64, 0.3, -1.1, 5.0, 40.0, 1e9] {
         let state = motion.at(t);
         let height = (state.attitude * Vector3::z()).z;
@@ -82,7 +82,7 @@ fn what_rests_stays() {
     ] {
         let spin = Vector3::new(0.0, 0.0, 3.0);
         let motion = HeavyTop::of(&top, &spin, &upright, &g).expect("motion");
-        assert_eq!(motion.nutation().path, Path::Steady);
+        assert_eq!(motion.nutation().mode, Mode::Steady);
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), 30.0);
         assert!(motion.at(10.0).attitude.angle_to(&(upright * turn)) < 1e-15 * 30.0);
         assert_eq!(motion.at(10.0).omega, spin);

@@ -9,7 +9,7 @@ use crate::numerics::power_of_two::{exponent, times_power_of_two};
 
 /// The data of a top as the body has them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Source<T = DoubleDouble> {
+pub(super) struct TopData<T = DoubleDouble> {
     pub(super) mass: f64,
     /// A vector along the axis toward C, of any length.
     pub(super) direction: [T; 3],
@@ -32,10 +32,10 @@ pub(super) struct Sizes<T> {
     pub(super) exponent: i32,
 }
 
-impl<T: Real> Source<T> {
+impl<T: Real> TopData<T> {
     /// The moments and the arm to twice the precision, in units of the top itself.
     pub(super) fn sizes(&self) -> Sizes<T> {
-        let Source {
+        let TopData {
             mass,
             direction,
             center_of_mass: c,

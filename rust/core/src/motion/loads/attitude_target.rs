@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use super::orbit_model::Path;
+use super::orbit_model::OrbitModel;
 use super::spline::Spline;
 use crate::error::{Error, all_finite, finite};
 use crate::motion::attitude::components;
@@ -20,7 +20,7 @@ const QUARTER: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// ```
 /// use std::ops::ControlFlow;
 /// use std::sync::Arc;
-/// use polhode::motion::loads::{Aim, Feedback, Path, Switch, kepler::Orbit};
+/// use polhode::motion::loads::{AttitudeTarget, Feedback, OrbitModel, Switch, kepler::Orbit};
 /// use polhode::motion::simulate::{Phase, State};
 /// use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
 ///
@@ -28,33 +28,33 @@ const QUARTER: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// // Toward an attitude that stays, with the stiffness 2 N m and the damping 1 N m s:
 /// let (stiffness, damping) = (Matrix3::identity() * 2.0, Matrix3::identity());
 /// let feedback = Feedback::new(&stiffness, &damping, &about_z(0.0))?;
-/// assert_eq!(feedback.aim.fixed(), Some(&about_z(0.0)));
+/// assert_eq!(feedback.target.fixed(), Some(&about_z(0.0)));
 /// // one that turns at 0.1 rad/s, from the start of the motion on or from a time that is said,
-/// let turning = Aim::turning(&about_z(0.0), &Vector3::new(0.0, 0.0, 0.1), None)?;
-/// assert!(turning.needs_epoch() && !turning.clone().anchored(5.0).needs_epoch());
+/// let turning = AttitudeTarget::turning(&about_z(0.0), &Vector3::new(0.0, 0.0, 0.1), None)?;
+/// assert!(turning.needs_epoch() && !turning.clone().with_epoch(5.0).needs_epoch());
 /// assert!(turning.at(5.0, 7.0).0.angle_to(&about_z(0.2)) < 1e-15);
 /// // one through samples, which is known between them alone,
-/// let sampled = Aim::sampled(&[0.0, 1.0, 2.0], &[about_z(0.0), about_z(0.5), about_z(1.0)])?;
-/// assert!(matches!(sampled, Aim::Sampled(_)));
+/// let sampled = AttitudeTarget::sampled(&[0.0, 1.0, 2.0], &[about_z(0.0), about_z(0.5), about_z(1.0)])?;
+/// assert!(matches!(sampled, AttitudeTarget::Sampled(_)));
 /// let (times, same) = ([0.0, 1.0], [about_z(0.5); 2]);
-/// let watched = Aim::sampled_watched(&times, &same, &mut |_| ControlFlow::Continue(()))?;
-/// assert_eq!(watched, Aim::sampled(&times, &same)?);
+/// let watched = AttitudeTarget::sampled_watched(&times, &same, &mut |_| ControlFlow::Continue(()))?;
+/// assert_eq!(watched, AttitudeTarget::sampled(&times, &same)?);
 /// assert_eq!(sampled.breaks(), [0.0, 1.0, 2.0]);
 /// assert!(sampled.check(0.0, 0.0, 2.0).is_ok() && sampled.check(0.0, 0.0, 3.0).is_err());
 /// // and down along an orbit.
 /// let orbit = Orbit::new(1.0, &Vector3::x(), &Vector3::y())?;
-/// let down = Feedback::toward(&stiffness, &damping, Aim::Down(Path::kepler(&orbit, None)?))?;
-/// assert!((down.aim.at(0.0, 0.0).0 * Vector3::z() + Vector3::x()).amax() < 1e-15);
+/// let down = Feedback::toward(&stiffness, &damping, AttitudeTarget::Down(OrbitModel::kepler(&orbit, None)?))?;
+/// assert!((down.target.at(0.0, 0.0).0 * Vector3::z() + Vector3::x()).amax() < 1e-15);
 ///
 /// // The law takes the shorter way round, by a sign that changes half a turn away from the target.
 /// let there = Phase::in_place(&State { attitude: about_z(3.0), omega: Vector3::new(0.0, 0.0, 1.0) });
-/// let [value, rate] = Switch::toward(&feedback.aim, 0.0, 0.0, &there).value_and_rate(0.0, &there);
+/// let [value, rate] = Switch::toward(&feedback.target, 0.0, 0.0, &there).value_and_rate(0.0, &there);
 /// assert!((value - 1.5_f64.cos()).abs() < 1e-15 && (rate + 0.5 * 1.5_f64.sin()).abs() < 1e-15);
-/// # let _: &Arc<Aim> = &down.aim;
+/// # let _: &Arc<AttitudeTarget> = &down.target;
 /// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub enum Aim {
+pub enum AttitudeTarget {
     /// One that stays.
     Fixed(UnitQuaternion<f64>),
     /// One that turns.
@@ -66,8 +66,8 @@ pub enum Aim {
         /// The start of the motion where there is none.
         epoch: Option<f64>,
     },
-    /// The [frame](Path::frame) of an orbit that points down.
-    Down(Path),
+    /// The [frame](OrbitModel::frame) of an orbit that points down.
+    Down(OrbitModel),
     /// One known at some times.
     Sampled(Sampling),
 }
@@ -77,10 +77,10 @@ pub enum Aim {
 /// # Examples
 ///
 /// ```
-/// use polhode::motion::loads::{Aim, Sampling};
+/// use polhode::motion::loads::{AttitudeTarget, Sampling};
 /// use polhode::nalgebra::UnitQuaternion;
 ///
-/// let Aim::Sampled(attitudes) = Aim::sampled(&[0.0, 1.0], &[UnitQuaternion::identity(); 2])? else {
+/// let AttitudeTarget::Sampled(attitudes) = AttitudeTarget::sampled(&[0.0, 1.0], &[UnitQuaternion::identity(); 2])? else {
 ///     unreachable!("it was made of samples")
 /// };
 /// let attitudes: Sampling = attitudes;
@@ -93,7 +93,7 @@ pub struct Sampling {
     scalar: Spline,
 }
 
-impl Aim {
+impl AttitudeTarget {
     /// A target that turns with a constant rate.
     ///
     /// # Errors
@@ -184,14 +184,14 @@ impl Aim {
     pub fn needs_epoch(&self) -> bool {
         match self {
             Self::Turning { epoch, .. } => epoch.is_none(),
-            Self::Down(path) => path.needs_epoch(),
+            Self::Down(orbit) => orbit.needs_epoch(),
             Self::Fixed(_) | Self::Sampled(_) => false,
         }
     }
 
     /// That of a motion that began at `t`, for the rest of it.
     #[must_use]
-    pub fn anchored(self, t: f64) -> Self {
+    pub fn with_epoch(self, t: f64) -> Self {
         match self {
             Self::Turning {
                 attitude,
@@ -202,7 +202,7 @@ impl Aim {
                 rate,
                 epoch: epoch.or(Some(t)),
             },
-            Self::Down(path) => Self::Down(path.anchored(t)),
+            Self::Down(orbit) => Self::Down(orbit.with_epoch(t)),
             Self::Fixed(_) | Self::Sampled(_) => self,
         }
     }
@@ -212,7 +212,7 @@ impl Aim {
     pub fn breaks(&self) -> &[f64] {
         match self {
             Self::Sampled(sampling) => sampling.vector.knots(),
-            Self::Down(path) => path.breaks(),
+            Self::Down(orbit) => orbit.breaks(),
             Self::Fixed(_) | Self::Turning { .. } => &[],
         }
     }
@@ -227,7 +227,7 @@ impl Aim {
                 sampling.vector.check_at(from)?;
                 sampling.vector.check_at(to)
             }
-            Self::Down(path) => path.check(start, from, to),
+            Self::Down(orbit) => orbit.check(start, from, to),
             Self::Fixed(_) | Self::Turning { .. } => Ok(()),
         }
     }
@@ -247,7 +247,7 @@ impl Aim {
                 let now = turn * attitude;
                 (now, now.inverse_transform_vector(rate))
             }
-            Self::Down(path) => path.frame(start, t),
+            Self::Down(orbit) => orbit.frame(start, t),
             Self::Sampled(sampling) => {
                 let [vector, slope] = sampling.vector.at(t);
                 let [scalar, rise] = sampling.scalar.at(t);

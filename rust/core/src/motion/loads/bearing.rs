@@ -54,11 +54,11 @@ impl Bearing {
 
     /// Ω, and how much of it may be rounding.
     fn rate(&self, phase: &Phase) -> [f64; 2] {
-        let (own, body) = (
-            phase.own[self.index] / self.inertia,
+        let (wheel, body) = (
+            phase.internal_state[self.index] / self.inertia,
             self.axis.dot(&phase.omega),
         );
-        [own - body, REST * (own.abs() + body.abs())]
+        [wheel - body, REST * (wheel.abs() + body.abs())]
     }
 
     /// The torque of the dry friction on a wheel that turns.
@@ -89,7 +89,7 @@ impl Bearing {
 
     /// The wheel has the momentum that it has at rest.
     pub(super) fn keep(&self, phase: &mut Phase) {
-        phase.own[self.index] = self.inertia * self.axis.dot(&phase.omega);
+        phase.internal_state[self.index] = self.inertia * self.axis.dot(&phase.omega);
     }
 
     /// Of a wheel at rest, which takes the torque f: as it turns when it slips.
@@ -117,7 +117,7 @@ mod tests {
             let rate = roundings * f64::EPSILON * omega.z;
             let phase = Phase {
                 omega,
-                own: [inertia * (omega.z + rate)].into(),
+                internal_state: [inertia * (omega.z + rate)].into(),
                 ..Phase::nan()
             };
             let bearing = Bearing::at(0, Vector3::z(), inertia, 1.0, &phase);

@@ -6,7 +6,7 @@ use crate::mass::RigidBody;
 
 /// What a load acts on: a body, its reference point P, and when the motion starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Subject {
+pub struct BodyAtPoint {
     /// m.
     pub mass: f64,
     /// `I_C` in B.
@@ -21,7 +21,7 @@ pub struct Subject {
     pub start: f64,
 }
 
-impl Subject {
+impl BodyAtPoint {
     /// `body` free, about its centre of mass.
     #[must_use]
     pub fn free(body: &RigidBody, start: f64) -> Self {

@@ -6,7 +6,7 @@ use super::now::Now;
 
 /// What a law carries along in the body: an angular momentum beside I ω, and states of its own that go on with the motion.
 ///
-/// I is the tensor of the body with its wheels locked, ω that of B relative to N; all components in B. `own`: the states.
+/// I is the tensor of the body with its wheels locked, ω that of B relative to N; all components in B. `state`: the states.
 pub trait Carried {
     /// How many states it has.
     fn count(&self) -> usize;
@@ -26,7 +26,7 @@ pub trait Carried {
     }
 
     /// The states as they are reported, of the same number: those of a wheel are its momentum `h = J (Ω + a·ω)`.
-    fn reported(&self, own: &[f64], omega: &Vector3<f64>) -> Vec<f64>;
+    fn reported(&self, state: &[f64], omega: &Vector3<f64>) -> Vec<f64>;
 
     /// Its states where a motion starts at time `t` with `omega`, from those reported.
     fn resumed(&self, reported: &[f64], t: f64, omega: &Vector3<f64>) -> Vec<f64>;
@@ -53,14 +53,14 @@ pub trait Carried {
     }
 
     /// The torque about the reference point that stands beside that tensor.
-    fn torque(&self, now: &Now<'_>, own: &[f64]) -> Vector3<f64>;
+    fn torque(&self, now: &Now<'_>, state: &[f64]) -> Vector3<f64>;
 
     /// The rates of its states, into `rates`.
-    fn rates(&self, now: &Now<'_>, own: &[f64], rates: &mut [f64]);
+    fn rates(&self, now: &Now<'_>, state: &[f64], rates: &mut [f64]);
 
     /// Its momentum beside I ω.
-    fn momentum(&self, own: &[f64], omega: &Vector3<f64>) -> Vector3<f64>;
+    fn momentum(&self, state: &[f64], omega: &Vector3<f64>) -> Vector3<f64>;
 
     /// Its kinetic energy beside ½ ω·I ω; of a momentum that is constant nothing.
-    fn energy(&self, own: &[f64], omega: &Vector3<f64>) -> f64;
+    fn energy(&self, state: &[f64], omega: &Vector3<f64>) -> f64;
 }

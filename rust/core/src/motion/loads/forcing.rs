@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 
 use std::fmt::Debug;
 
-use super::body_at_point::Subject;
-use super::principal_frame::{Axes, Exact};
+use super::body_at_point::BodyAtPoint;
+use super::principal_frame::{LawNumber, PrincipalFrame};
 use crate::motion::kinematics::Frame;
 use crate::numerics::number::Real;
 
@@ -85,26 +85,26 @@ pub(crate) struct When<X> {
 }
 
 /// A torque that depends on the time: a cubic between two breaks.
-pub(crate) trait Timed<X: Exact>: Debug {
+pub(crate) trait Timed<X: LawNumber>: Debug {
     /// The frame that its components are in.
     fn frame(&self) -> Frame;
 
     /// The coefficients of the cubic around a time, in the body's axes or in N, in units of the unit of rates.
-    fn cubic(&self, axes: &Axes<'_, X>, when: &When<X>) -> [Vector3<X>; 4];
+    fn cubic(&self, axes: &PrincipalFrame<'_, X>, when: &When<X>) -> [Vector3<X>; 4];
 
     /// About the square of the fastest rate that it makes in a segment with the time `middle` in it; `over_moment` is one over the
     /// least moment of inertia.
-    fn square_of_rate(&self, subject: &Subject, middle: f64, over_moment: f64) -> f64;
+    fn square_of_rate(&self, body: &BodyAtPoint, middle: f64, over_moment: f64) -> f64;
 
     /// The sizes of its torques around a time along a unit vector of B, and in all.
     fn torques_along(&self, axis: &Vector3<f64>, middle: f64) -> Vec<(f64, f64)>;
 }
 
 /// A gravity gradient, whose torque `r×I r` has no component along an axis without a moment.
-pub(crate) trait Orbiting<X: Exact>: Debug {
+pub(crate) trait Orbiting<X: LawNumber>: Debug {
     /// Where the body is at a time.
-    fn on_orbit(&self, axes: &Axes<'_, X>, when: &When<X>) -> OnOrbit<X>;
+    fn on_orbit(&self, axes: &PrincipalFrame<'_, X>, when: &When<X>) -> OnOrbit<X>;
 
     /// About the square of the fastest rate that it makes.
-    fn square_of_rate(&self, subject: &Subject) -> f64;
+    fn square_of_rate(&self, body: &BodyAtPoint) -> f64;
 }

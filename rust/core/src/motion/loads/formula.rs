@@ -2,11 +2,11 @@
 
 use nalgebra::Matrix3;
 
-use super::principal_frame::Exact;
+use super::principal_frame::LawNumber;
 
 /// A step of a formula. Scalars and vectors are numbered in the order of the steps that make them; the vector 0 is ω.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Step {
+pub(crate) enum FormulaStep {
     /// The scalar ω·ω.
     Square,
     /// The scalar |ω|, the root of the scalar of this number, which is ω·ω.
@@ -37,9 +37,9 @@ pub(crate) const OMEGA: Vector = Vector {
 
 /// The torque `M v` about the reference point: a matrix, and a vector that is made of ω step by step; in principal axes.
 #[derive(Clone, Debug)]
-pub(crate) struct Formula<X: Exact> {
+pub(crate) struct TorqueFormula<X: LawNumber> {
     /// How the vector is made.
-    pub steps: Vec<Step>,
+    pub steps: Vec<FormulaStep>,
     /// The number of the vector.
     pub vector: usize,
     /// Its degree in ω, so that the torque is known in every unit of rates.
@@ -48,23 +48,25 @@ pub(crate) struct Formula<X: Exact> {
     pub matrix: Matrix3<X>,
 }
 
-impl<X: Exact> Formula<X> {
+impl<X: LawNumber> TorqueFormula<X> {
     /// Whether |ω| is a step of it.
     pub(super) fn has_speed(&self) -> bool {
-        self.steps.iter().any(|step| matches!(step, Step::Speed(_)))
+        self.steps
+            .iter()
+            .any(|step| matches!(step, FormulaStep::Speed(_)))
     }
 }
 
 /// A formula as a law states it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Steps {
-    list: Vec<Step>,
+    list: Vec<FormulaStep>,
     scalars: usize,
     vectors: usize,
 }
 
 impl Steps {
-    fn scalar(&mut self, step: Step, degree: i32) -> Scalar {
+    fn scalar(&mut self, step: FormulaStep, degree: i32) -> Scalar {
         self.list.push(step);
         self.scalars += 1;
         Scalar {
@@ -75,18 +77,19 @@ impl Steps {
 
     /// `ω·ω`.
     pub(crate) fn square(&mut self) -> Scalar {
-        self.scalar(Step::Square, 2)
+        self.scalar(FormulaStep::Square, 2)
     }
 
-    /// |ω|. Where ω passes through zero, a step must end: see [`Formula::has_speed`].
+    /// |ω|. Where ω passes through zero, a step must end: see [`TorqueFormula::has_speed`].
     pub(crate) fn speed(&mut self) -> Scalar {
         let square = self.square();
-        self.scalar(Step::Speed(square.number), 1)
+        self.scalar(FormulaStep::Speed(square.number), 1)
     }
 
     /// A scalar times a vector.
     pub(crate) fn times(&mut self, factor: Scalar, vector: Vector) -> Vector {
-        self.list.push(Step::Times(factor.number, vector.number));
+        self.list
+            .push(FormulaStep::Times(factor.number, vector.number));
         self.vectors += 1;
         Vector {
             number: self.vectors,
@@ -95,8 +98,12 @@ impl Steps {
     }
 
     /// The torque `matrix · vector`, the matrix in principal axes.
-    pub(crate) fn torque<X: Exact>(self, matrix: Matrix3<X>, vector: Vector) -> Formula<X> {
-        Formula {
+    pub(crate) fn torque<X: LawNumber>(
+        self,
+        matrix: Matrix3<X>,
+        vector: Vector,
+    ) -> TorqueFormula<X> {
+        TorqueFormula {
             steps: self.list,
             vector: vector.number,
             degree: vector.degree,
@@ -118,11 +125,11 @@ mod tests {
         let formula = steps.torque(Matrix3::<f64>::identity(), twice);
         assert_eq!((formula.degree, formula.vector), (4, 2));
         let all = [
-            Step::Square,
-            Step::Speed(0),
-            Step::Square,
-            Step::Times(1, 0),
-            Step::Times(2, 1),
+            FormulaStep::Square,
+            FormulaStep::Speed(0),
+            FormulaStep::Square,
+            FormulaStep::Times(1, 0),
+            FormulaStep::Times(2, 1),
         ];
         assert_eq!(formula.steps, all);
         assert!(formula.has_speed());

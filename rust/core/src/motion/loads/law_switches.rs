@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::attitude_target::Aim;
+use super::attitude_target::AttitudeTarget;
 use super::bearing::Bearing;
 use crate::motion::state::Phase;
 
 /// What may change the law of a load within a step.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Change {
+pub enum LawSwitch {
     /// The sign in the law of a feedback.
     Sign(Switch),
     /// A wheel that turns stops.
@@ -23,7 +23,7 @@ pub enum Change {
 /// continuous where it does.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Switch {
-    aim: Arc<Aim>,
+    target: Arc<AttitudeTarget>,
     /// When the motion began.
     start: f64,
     /// The sign that the law has been taken for.
@@ -31,11 +31,11 @@ pub struct Switch {
 }
 
 impl Switch {
-    /// That of a feedback toward `aim` in a motion that began at `start`, at time `t` and `phase`.
+    /// That of a feedback toward `target` in a motion that began at `start`, at time `t` and `phase`.
     #[must_use]
-    pub fn toward(aim: &Arc<Aim>, start: f64, t: f64, phase: &Phase) -> Self {
+    pub fn toward(target: &Arc<AttitudeTarget>, start: f64, t: f64, phase: &Phase) -> Self {
         let mut switch = Self {
-            aim: Arc::clone(aim),
+            target: Arc::clone(target),
             start,
             side: 1.0,
         };
@@ -49,7 +49,7 @@ impl Switch {
     /// w and ẇ, each times the side: the law changes where the first becomes negative.
     #[must_use]
     pub fn value_and_rate(&self, t: f64, phase: &Phase) -> [f64; 2] {
-        let (error, omega) = off(&self.aim, self.start, t, phase);
+        let (error, omega) = off(&self.target, self.start, t, phase);
         let rate = -0.5 * error.imag().dot(&omega);
         [error.w * self.side, rate * self.side]
     }
@@ -58,15 +58,15 @@ impl Switch {
 /// What is left to turn, `e = q_target⁻¹ ∘ q`, and the angular velocity relative to the target, in B.
 #[inline]
 pub(super) fn off(
-    aim: &Aim,
+    target: &AttitudeTarget,
     start: f64,
     t: f64,
     phase: &Phase,
 ) -> (UnitQuaternion<f64>, Vector3<f64>) {
-    if let Aim::Fixed(target) = aim {
+    if let AttitudeTarget::Fixed(target) = target {
         return (target.conjugate() * phase.attitude, phase.omega);
     }
-    let (target, rate) = aim.at(start, t);
+    let (target, rate) = target.at(start, t);
     let error = target.conjugate() * phase.attitude;
     (error, phase.omega - error.inverse_transform_vector(&rate))
 }

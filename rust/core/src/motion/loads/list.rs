@@ -34,10 +34,10 @@ macro_rules! laws {
         impl Term {
             /// What it depends on and does, on a pivoted body or on a free one.
             #[must_use]
-            pub fn character(&self, pivoted: bool) -> Character {
+            pub fn traits(&self, pivoted: bool) -> Traits {
                 match self {
-                    $(Self::$law(law) => law.character(pivoted),)+
-                    Self::Scheduled { term, .. } => term.character(pivoted),
+                    $(Self::$law(law) => law.traits(pivoted),)+
+                    Self::Scheduled { term, .. } => term.traits(pivoted),
                 }
             }
 
@@ -68,12 +68,12 @@ macro_rules! laws {
 
             /// The term of a motion that began at `t`, for the rest of it.
             #[must_use]
-            pub fn anchored(self, t: f64) -> Self {
+            pub fn with_epoch(self, t: f64) -> Self {
                 match self {
-                    $(Self::$law(law) => Self::$law(law.anchored(t)),)+
+                    $(Self::$law(law) => Self::$law(law.with_epoch(t)),)+
                     Self::Scheduled { windows, term } => Self::Scheduled {
                         windows,
-                        term: Box::new(term.anchored(t)),
+                        term: Box::new(term.with_epoch(t)),
                     },
                 }
             }
@@ -91,15 +91,15 @@ macro_rules! laws {
                 }
             }
 
-            /// Checks that the term can act on `subject` from one time to another.
+            /// Checks that the term can act on `body` from one time to another.
             ///
             /// # Errors
             /// [`OutsideSamples`](crate::error::MotionFault::OutsideSamples);
             /// [`PivotedInOrbit`](crate::error::MotionFault::PivotedInOrbit).
-            pub fn check(&self, subject: &Subject, from: f64, to: f64) -> Result<(), Error> {
+            pub fn check(&self, body: &BodyAtPoint, from: f64, to: f64) -> Result<(), Error> {
                 match self {
-                    $(Self::$law(law) => law.check(subject, from, to),)+
-                    Self::Scheduled { term, .. } => term.check(subject, from, to),
+                    $(Self::$law(law) => law.check(body, from, to),)+
+                    Self::Scheduled { term, .. } => term.check(body, from, to),
                 }
             }
 
@@ -107,12 +107,12 @@ macro_rules! laws {
             /// by the time; in a run by [`Term::active`].
             #[inline]
             #[must_use]
-            pub fn wrench(&self, subject: &Subject, t: f64, phase: &Phase) -> Wrench {
+            pub fn wrench(&self, body: &BodyAtPoint, t: f64, phase: &Phase) -> Wrench {
                 match self {
-                    $(Self::$law(law) => law.wrench(subject, t, phase),)+
+                    $(Self::$law(law) => law.wrench(body, t, phase),)+
                     Self::Scheduled { windows, term } => {
                         if windows.contains(t) {
-                            term.wrench(subject, t, phase)
+                            term.wrench(body, t, phase)
                         } else {
                             Wrench::default()
                         }
@@ -123,31 +123,31 @@ macro_rules! laws {
             /// The energy of position that the body has in the term's field, when it has one: force and torque are what it
             /// loses. Positions from the origin of N. A term that depends on time has none.
             #[must_use]
-            pub fn potential(&self, subject: &Subject, phase: &Phase) -> Option<f64> {
+            pub fn potential(&self, body: &BodyAtPoint, phase: &Phase) -> Option<f64> {
                 match self {
-                    $(Self::$law(law) => law.potential(subject, phase),)+
+                    $(Self::$law(law) => law.potential(body, phase),)+
                     Self::Scheduled { .. } => None,
                 }
             }
 
             /// Adds what the term, switched on, does to the equations of a series; `side` is the sign that its law is taken for.
-            pub(in crate::motion) fn add_to<'a, X: Exact>(
+            pub(in crate::motion) fn add_to<'a, X: LawNumber>(
                 &'a self,
-                linear: &mut Linear<'a, X>,
-                axes: &Axes<'_, X>,
+                series: &mut SeriesTerms<'a, X>,
+                axes: &PrincipalFrame<'_, X>,
                 side: f64,
             ) {
                 match self {
-                    $(Self::$law(law) => law.add_to(linear, axes, side),)+
-                    Self::Scheduled { term, .. } => term.add_to(linear, axes, side),
+                    $(Self::$law(law) => law.add_to(series, axes, side),)+
+                    Self::Scheduled { term, .. } => term.add_to(series, axes, side),
                 }
             }
 
             /// What changes its law at a time and `phase`, if its law has a sign that changes with the state.
-            pub(super) fn switch(&self, subject: &Subject, t: f64, phase: &Phase) -> Option<Switch> {
+            pub(super) fn switch(&self, body: &BodyAtPoint, t: f64, phase: &Phase) -> Option<Switch> {
                 match self {
-                    $(Self::$law(law) => law.switch(subject, t, phase),)+
-                    Self::Scheduled { term, .. } => term.switch(subject, t, phase),
+                    $(Self::$law(law) => law.switch(body, t, phase),)+
+                    Self::Scheduled { term, .. } => term.switch(body, t, phase),
                 }
             }
 
@@ -156,20 +156,20 @@ macro_rules! laws {
             pub(super) fn settled_wrench(
                 &self,
                 side: f64,
-                subject: &Subject,
+                body: &BodyAtPoint,
                 t: f64,
                 phase: &Phase,
             ) -> Wrench {
                 match self {
-                    $(Self::$law(law) => law.settled_wrench(side, subject, t, phase),)+
-                    Self::Scheduled { term, .. } => term.settled_wrench(side, subject, t, phase),
+                    $(Self::$law(law) => law.settled_wrench(side, body, t, phase),)+
+                    Self::Scheduled { term, .. } => term.settled_wrench(side, body, t, phase),
                 }
             }
 
             /// The function of the attitude (x, y, z, w), linear in it, whose sign its law has.
-            pub(in crate::motion) fn switching<X: Exact>(
+            pub(in crate::motion) fn switching<X: LawNumber>(
                 &self,
-                axes: &Axes<'_, X>,
+                axes: &PrincipalFrame<'_, X>,
             ) -> Option<Vector4<X>> {
                 match self {
                     $(Self::$law(law) => law.switching(axes),)+

@@ -2,7 +2,7 @@
 
 use super::bearing::Bearing;
 use super::carried::Carried;
-use super::law_switches::Change;
+use super::law_switches::LawSwitch;
 use super::laws::Term;
 use super::wrench::Wrench;
 use crate::error::Error;
@@ -15,12 +15,12 @@ use crate::motion::state::Phase;
 /// ```
 /// use std::ops::ControlFlow;
 /// use polhode::mass::{Amount, solids};
-/// use polhode::motion::loads::{Bearing, Carried, Change, Load, Wrench};
+/// use polhode::motion::loads::{Bearing, Carried, LawSwitch, Load, Wrench};
 /// use polhode::motion::simulate::{Method, NoEvents, Phase, State, Task, Tolerance, simulate};
 /// use polhode::nalgebra::{UnitQuaternion, Vector3};
 ///
 /// /// A brake that is on for the first second. A closure would do ([`Callback`](super::Callback)); what a trait adds are
-/// /// states and laws of its own: [`Carried`], [`Change`], [`Bearing`].
+/// /// states and laws of its own: [`Carried`], [`LawSwitch`], [`Bearing`].
 /// struct Brake {
 ///     is_on: bool,
 /// }
@@ -51,8 +51,8 @@ use crate::motion::state::Phase;
 /// let tolerance = Tolerance::new(1e-12, 0.0)?;
 /// let task = Task::free(&ball, Phase::in_place(&state), &[0.0, 3.0], Method::Auto, tolerance);
 /// let mut brake = Brake { is_on: true };
-/// let (carried, changes, bearings): (Vec<&dyn Carried>, Vec<Change>, &[Bearing]) =
-///     (brake.carried(), brake.changes(), brake.bearings());
+/// let (carried, changes, bearings): (Vec<&dyn Carried>, Vec<LawSwitch>, &[Bearing]) =
+///     (brake.carried(), brake.law_switches(), brake.bearings());
 /// assert!(carried.is_empty() && changes.is_empty() && bearings.is_empty());
 /// let go_on = &mut |_| ControlFlow::Continue(());
 /// let run = simulate(&task, &mut brake, &mut NoEvents::new(), go_on).into_result()?;
@@ -92,12 +92,12 @@ pub trait Load {
     }
 
     /// What may change the law that it was settled for; nothing of a law without signs.
-    fn changes(&self) -> Vec<Change> {
+    fn law_switches(&self) -> Vec<LawSwitch> {
         Vec::new()
     }
 
-    /// Takes the law beyond one of its [changes](Self::changes).
-    fn change(&mut self, change: &Change) {
+    /// Takes the law beyond one of its [changes](Self::law_switches).
+    fn switch_law(&mut self, change: &LawSwitch) {
         let _ = change;
     }
 

@@ -1,13 +1,13 @@
 //! When and in which state a law is asked.
 
-use super::body_at_point::Subject;
+use super::body_at_point::BodyAtPoint;
 use crate::motion::state::Phase;
 
 /// When, on what and in which state a law acts within a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Now<'a> {
     /// What it acts on.
-    pub subject: &'a Subject,
+    pub body: &'a BodyAtPoint,
     /// The time.
     pub t: f64,
     /// A time within the span under way, which has no breaks.

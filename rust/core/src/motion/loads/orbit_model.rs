@@ -18,31 +18,31 @@ use crate::numerics::threads::Watch;
 ///
 /// ```
 /// use std::ops::ControlFlow;
-/// use polhode::motion::loads::{Oblate, Path, kepler::Orbit};
+/// use polhode::motion::loads::{Oblate, OrbitModel, kepler::Orbit};
 /// use polhode::nalgebra::Vector3;
 ///
 /// let orbit = Orbit::new(1.0, &Vector3::x(), &Vector3::y())?;
-/// let path = Path::kepler(&orbit, None)?; // which begins with the motion
-/// assert!(path.needs_epoch() && path.as_kepler().is_some() && path.as_oblate().is_none());
-/// let begun = path.anchored(10.0);
+/// let model = OrbitModel::kepler(&orbit, None)?; // which begins with the motion
+/// assert!(model.needs_epoch() && model.as_kepler().is_some() && model.as_oblate().is_none());
+/// let begun = model.with_epoch(10.0);
 /// assert!((begun.at(0.0, 10.0 + std::f64::consts::PI).0 + Vector3::x()).norm() < 1e-14);
-/// let flattened = Path::oblate(Oblate::new(&orbit, 1e-3, 0.9, &Vector3::z())?, Some(0.0))?;
+/// let flattened = OrbitModel::oblate(Oblate::new(&orbit, 1e-3, 0.9, &Vector3::z())?, Some(0.0))?;
 /// assert!(flattened.as_oblate().is_some());
 /// // Through positions that are known at some times, and at no others.
-/// let sampled = Path::sampled(&[0.0, 1.0, 2.0], &[Vector3::x(), Vector3::y(), -Vector3::x()])?;
+/// let sampled = OrbitModel::sampled(&[0.0, 1.0, 2.0], &[Vector3::x(), Vector3::y(), -Vector3::x()])?;
 /// assert_eq!(sampled.breaks(), [0.0, 1.0, 2.0]);
 /// // Where there are very many, somebody may want to end it.
 /// let (times, still) = ([0.0, 1.0], [Vector3::x(); 2]);
-/// let watched = Path::sampled_watched(&times, &still, &mut |_| ControlFlow::Continue(()))?;
-/// assert_eq!(watched, Path::sampled(&times, &still)?);
+/// let watched = OrbitModel::sampled_watched(&times, &still, &mut |_| ControlFlow::Continue(()))?;
+/// assert_eq!(watched, OrbitModel::sampled(&times, &still)?);
 /// assert!(sampled.check(0.0, 0.0, 2.0).is_ok() && sampled.check(0.0, 0.0, 2.5).is_err());
 /// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Path(Way);
+pub struct OrbitModel(OrbitKind);
 
 #[derive(Clone, Debug, PartialEq)]
-enum Way {
+enum OrbitKind {
     /// With the time at which it has the state it was given with; the start of the motion where there is none.
     Kepler(Orbit, Option<f64>),
     /// As above.
@@ -51,14 +51,14 @@ enum Way {
     Sampled(Arc<Spline>),
 }
 
-impl Path {
+impl OrbitModel {
     /// A Kepler orbit that has its state at `epoch`, or at the start of the motion.
     ///
     /// # Errors
     /// An `epoch` that is not finite.
     pub fn kepler(orbit: &Orbit, epoch: Option<f64>) -> Result<Self, Error> {
         epoch.map_or(Ok(0.0), |epoch| finite("epoch", epoch))?;
-        Ok(Self(Way::Kepler(*orbit, epoch)))
+        Ok(Self(OrbitKind::Kepler(*orbit, epoch)))
     }
 
     /// An orbit about an oblate attractor, likewise.
@@ -67,7 +67,7 @@ impl Path {
     /// An `epoch` that is not finite.
     pub fn oblate(orbit: Oblate, epoch: Option<f64>) -> Result<Self, Error> {
         epoch.map_or(Ok(0.0), |epoch| finite("epoch", epoch))?;
-        Ok(Self(Way::Oblate(Arc::new(orbit), epoch)))
+        Ok(Self(OrbitKind::Oblate(Arc::new(orbit), epoch)))
     }
 
     /// The spline through `positions` at the ascending `times`.
@@ -100,15 +100,15 @@ impl Path {
             "the spline through position",
         ];
         let spline = Spline::through(names, times, positions, watch)?;
-        Ok(Self(Way::Sampled(Arc::new(spline))))
+        Ok(Self(OrbitKind::Sampled(Arc::new(spline))))
     }
 
     /// The Kepler orbit and its epoch, where it is one.
     #[must_use]
     pub fn as_kepler(&self) -> Option<(&Orbit, Option<f64>)> {
         match &self.0 {
-            Way::Kepler(orbit, epoch) => Some((orbit, *epoch)),
-            Way::Oblate(..) | Way::Sampled(_) => None,
+            OrbitKind::Kepler(orbit, epoch) => Some((orbit, *epoch)),
+            OrbitKind::Oblate(..) | OrbitKind::Sampled(_) => None,
         }
     }
 
@@ -116,8 +116,8 @@ impl Path {
     #[must_use]
     pub fn as_oblate(&self) -> Option<&Oblate> {
         match &self.0 {
-            Way::Oblate(orbit, _) => Some(orbit),
-            Way::Kepler(..) | Way::Sampled(_) => None,
+            OrbitKind::Oblate(orbit, _) => Some(orbit),
+            OrbitKind::Kepler(..) | OrbitKind::Sampled(_) => None,
         }
     }
 
@@ -125,9 +125,9 @@ impl Path {
     #[must_use]
     pub fn at(&self, start: f64, t: f64) -> (Vector3<f64>, Vector3<f64>) {
         match &self.0 {
-            Way::Kepler(orbit, epoch) => orbit.at(t - epoch.unwrap_or(start)),
-            Way::Oblate(orbit, epoch) => orbit.at(t - epoch.unwrap_or(start)),
-            Way::Sampled(spline) => spline.at(t).into(),
+            OrbitKind::Kepler(orbit, epoch) => orbit.at(t - epoch.unwrap_or(start)),
+            OrbitKind::Oblate(orbit, epoch) => orbit.at(t - epoch.unwrap_or(start)),
+            OrbitKind::Sampled(spline) => spline.at(t).into(),
         }
     }
 
@@ -142,9 +142,9 @@ impl Path {
         let (distance, size) = (r.norm(), swept.norm());
         let (normal, outward) = (swept / size, r / distance);
         let across = match &self.0 {
-            Way::Kepler(..) => 0.0,
-            Way::Oblate(orbit, _) => orbit.acceleration(&r).dot(&normal),
-            Way::Sampled(spline) => spline.bend(t).dot(&normal),
+            OrbitKind::Kepler(..) => 0.0,
+            OrbitKind::Oblate(orbit, _) => orbit.acceleration(&r).dot(&normal),
+            OrbitKind::Sampled(spline) => spline.bend(t).dot(&normal),
         };
         let (y, z) = (-normal, -outward);
         let axes = Matrix3::from_columns(&[y.cross(&z), y, z]);
@@ -159,13 +159,16 @@ impl Path {
     /// Whether it begins with the motion, wherever in time that is.
     #[must_use]
     pub fn needs_epoch(&self) -> bool {
-        matches!(self.0, Way::Kepler(_, None) | Way::Oblate(_, None))
+        matches!(
+            self.0,
+            OrbitKind::Kepler(_, None) | OrbitKind::Oblate(_, None)
+        )
     }
 
     /// That of a motion that began at `t`, for the rest of it.
     #[must_use]
-    pub fn anchored(mut self, t: f64) -> Self {
-        if let Way::Kepler(_, epoch) | Way::Oblate(_, epoch) = &mut self.0 {
+    pub fn with_epoch(mut self, t: f64) -> Self {
+        if let OrbitKind::Kepler(_, epoch) | OrbitKind::Oblate(_, epoch) = &mut self.0 {
             *epoch = epoch.or(Some(t));
         }
         self
@@ -175,8 +178,8 @@ impl Path {
     #[must_use]
     pub fn breaks(&self) -> &[f64] {
         match &self.0 {
-            Way::Sampled(spline) => spline.knots(),
-            Way::Kepler(..) | Way::Oblate(..) => &[],
+            OrbitKind::Sampled(spline) => spline.knots(),
+            OrbitKind::Kepler(..) | OrbitKind::Oblate(..) => &[],
         }
     }
 
@@ -187,13 +190,13 @@ impl Path {
     /// [`OrbitBeyondReach`](crate::error::MotionFault::OrbitBeyondReach); too many revolutions about an oblate attractor.
     pub fn check(&self, start: f64, from: f64, to: f64) -> Result<(), Error> {
         match &self.0 {
-            Way::Kepler(orbit, epoch) => [from, to]
+            OrbitKind::Kepler(orbit, epoch) => [from, to]
                 .iter()
                 .try_for_each(|t| orbit.check(t - epoch.unwrap_or(start))),
-            Way::Oblate(orbit, epoch) => [from, to]
+            OrbitKind::Oblate(orbit, epoch) => [from, to]
                 .iter()
                 .try_for_each(|t| orbit.check(t - epoch.unwrap_or(start))),
-            Way::Sampled(spline) => spline.check_at(from).and_then(|()| spline.check_at(to)),
+            OrbitKind::Sampled(spline) => spline.check_at(from).and_then(|()| spline.check_at(to)),
         }
     }
 }

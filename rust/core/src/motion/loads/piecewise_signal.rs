@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::parameter::Parameter;
-use super::principal_frame::{Axes, Exact};
+use super::principal_frame::{LawNumber, PrincipalFrame};
 use crate::error::{Error, MotionFault, all_finite, finite};
 
 /// A number that changes at known times.
@@ -11,20 +11,20 @@ use crate::error::{Error, MotionFault, all_finite, finite};
 /// # Examples
 ///
 /// ```
-/// use polhode::motion::loads::Held;
+/// use polhode::motion::loads::PiecewiseSignal;
 ///
-/// let torque = Held::table("torque", &[0.0, 2.0], &[1.0, 3.0])?;
-/// assert_eq!((torque.value(0.5), torque.times()), (Held::constant("torque", 1.0)?.value(9.0), &[0.0, 2.0][..]));
+/// let torque = PiecewiseSignal::table("torque", &[0.0, 2.0], &[1.0, 3.0])?;
+/// assert_eq!((torque.value(0.5), torque.times()), (PiecewiseSignal::constant("torque", 1.0)?.value(9.0), &[0.0, 2.0][..]));
 /// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Held {
+pub struct PiecewiseSignal {
     /// Ascending; none of a constant.
     times: Arc<[f64]>,
     values: Arc<[f64]>,
 }
 
-impl Held {
+impl PiecewiseSignal {
     /// The same at all times.
     ///
     /// # Errors
@@ -95,7 +95,12 @@ impl Held {
     }
 
     /// The value at time `t` in numbers of any kind, those that it is made of being numbers of the term from `first` on.
-    pub(super) fn number<X: Exact>(&self, t: f64, axes: &Axes<'_, X>, first: usize) -> X {
+    pub(super) fn number<X: LawNumber>(
+        &self,
+        t: f64,
+        axes: &PrincipalFrame<'_, X>,
+        first: usize,
+    ) -> X {
         let index = self.index(t);
         axes.number(self.values[index], first + index)
     }
@@ -106,7 +111,12 @@ impl Held {
     }
 
     /// How fast the straight lines change after `t`, likewise.
-    pub(super) fn slope<X: Exact>(&self, t: f64, axes: &Axes<'_, X>, first: usize) -> X {
+    pub(super) fn slope<X: LawNumber>(
+        &self,
+        t: f64,
+        axes: &PrincipalFrame<'_, X>,
+        first: usize,
+    ) -> X {
         let mut slope = X::from(self.line(t)[1]);
         if axes.varies(first, self.values.len()) {
             for (index, [_, share]) in self.shares(t) {
@@ -178,7 +188,8 @@ mod tests {
 
     #[test]
     fn it_is_held_or_runs_straight() {
-        let table = Held::table("torque", &[0.0, 1.0, 3.0], &[2.0, 4.0, 0.0]).expect("ascending");
+        let table = PiecewiseSignal::table("torque", &[0.0, 1.0, 3.0], &[2.0, 4.0, 0.0])
+            .expect("ascending");
         let held = [0.0, 0.5, 1.0, 2.9, 3.0, 9.0].map(|t| table.value(t));
         assert_eq!(held, [2.0, 2.0, 4.0, 4.0, 0.0, 0.0]);
         let line = [0.0, 0.5, 1.0, 2.0].map(|t| table.line(t));
@@ -188,7 +199,7 @@ mod tests {
                 && table.covers("speed", 0.0, 9.0, true).is_err()
         );
         assert!(table.covers("torque", -1e-9, 1.0, false).is_err());
-        let constant = Held::constant("torque", 7.0).expect("finite");
+        let constant = PiecewiseSignal::constant("torque", 7.0).expect("finite");
         assert_eq!(
             (constant.value(-5.0), constant.line(3.0)),
             (7.0, [7.0, 0.0])
@@ -206,7 +217,7 @@ mod tests {
                 assert_eq!([sum(0), sum(1)], held.line(t), "{t}");
             }
         }
-        assert!(Held::table("torque", &[0.0, 0.0], &[1.0, 1.0]).is_err());
-        assert!(Held::table("torque", &[], &[]).is_err());
+        assert!(PiecewiseSignal::table("torque", &[0.0, 0.0], &[1.0, 1.0]).is_err());
+        assert!(PiecewiseSignal::table("torque", &[], &[]).is_err());
     }
 }

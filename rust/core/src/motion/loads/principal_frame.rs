@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use super::body_at_point::Subject;
+use super::body_at_point::BodyAtPoint;
 use super::variables::{Block, CENTER, Fixed, MASS, Variables, Varied};
 use crate::motion::attitude::components;
 use crate::numerics::double_double::DoubleDouble;
@@ -10,7 +10,7 @@ use crate::numerics::number::Real;
 use crate::numerics::quaternion::normalized;
 
 /// A number in which laws can be stated.
-pub(crate) trait Exact: Real {
+pub(crate) trait LawNumber: Real {
     /// What tells which of the numbers of a problem are varied.
     type Variables: Variables<Self>;
 
@@ -23,7 +23,7 @@ pub(crate) trait Exact: Real {
     fn until_later(self, switch: Self, rate: f64) -> Self;
 }
 
-impl Exact for f64 {
+impl LawNumber for f64 {
     type Variables = Fixed;
 
     fn quaternion(rotation: &UnitQuaternion<f64>) -> [Self; 4] {
@@ -35,7 +35,7 @@ impl Exact for f64 {
     }
 }
 
-impl Exact for DoubleDouble {
+impl LawNumber for DoubleDouble {
     type Variables = Fixed;
 
     fn quaternion(rotation: &UnitQuaternion<f64>) -> [Self; 4] {
@@ -47,7 +47,7 @@ impl Exact for DoubleDouble {
     }
 }
 
-impl Exact for Varied {
+impl LawNumber for Varied {
     type Variables = Block;
 
     fn quaternion(rotation: &UnitQuaternion<f64>) -> [Self; 4] {
@@ -64,9 +64,9 @@ impl Exact for Varied {
 
 /// The principal axes of what a load acts on.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Axes<'s, X: Exact> {
+pub(crate) struct PrincipalFrame<'s, X: LawNumber> {
     /// What it acts on.
-    pub subject: &'s Subject,
+    pub body: &'s BodyAtPoint,
     /// Columns, in B.
     pub columns: &'s Matrix3<X>,
     /// (x, y, z, w) of the rotation from principal axes to B.
@@ -79,7 +79,7 @@ pub(crate) struct Axes<'s, X: Exact> {
     pub middle: f64,
 }
 
-impl<X: Exact> Axes<'_, X> {
+impl<X: LawNumber> PrincipalFrame<'_, X> {
     /// A vector of B, components in principal axes.
     pub(crate) fn principal(&self, vector: &Vector3<X>) -> Vector3<X> {
         self.columns.tr_mul(vector)
@@ -124,24 +124,24 @@ impl<X: Exact> Axes<'_, X> {
 
     /// m.
     pub(super) fn mass(&self) -> X {
-        self.variables.number(self.subject.mass, MASS)
+        self.variables.number(self.body.mass, MASS)
     }
 
     /// P from the origin of B: C where the body is free.
     pub(super) fn point(&self) -> Vector3<X> {
-        if self.subject.pivoted {
-            exact(&self.subject.point)
+        if self.body.pivoted {
+            exact(&self.body.point)
         } else {
-            self.variables.vector(&self.subject.point, CENTER)
+            self.variables.vector(&self.body.point, CENTER)
         }
     }
 
     /// C from P.
     pub(super) fn center(&self) -> Vector3<X> {
-        if self.subject.pivoted {
-            self.variables.vector(&self.subject.center, CENTER)
+        if self.body.pivoted {
+            self.variables.vector(&self.body.center, CENTER)
         } else {
-            exact(&self.subject.center)
+            exact(&self.body.center)
         }
     }
 }

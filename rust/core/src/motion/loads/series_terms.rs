@@ -3,20 +3,20 @@
 use nalgebra::{Matrix3, Matrix3x4, Vector3, Vector4};
 
 use super::forcing::{Orbiting, Timed};
-use super::formula::Formula;
-use super::principal_frame::Exact;
+use super::formula::TorqueFormula;
+use super::principal_frame::LawNumber;
 use crate::motion::kinematics::Frame;
 
 /// Torques about the reference point in principal axes, linear in what varies, and what is not linear besides. What no law has
 /// stated is `None`, which is not the same as a zero that a law has stated: see [`Self::parts`].
 #[derive(Clone, Debug)]
-pub(crate) struct Linear<'a, X: Exact> {
+pub(crate) struct SeriesTerms<'a, X: LawNumber> {
     /// Constant in the body.
     pub constant: Vector3<X>,
     on_omega: Option<Matrix3<X>>,
     on_attitude: Option<Matrix3x4<X>>,
     /// Torques that are not linear in ω.
-    pub formulas: Vec<Formula<X>>,
+    pub formulas: Vec<TorqueFormula<X>>,
     /// Torques `M R_PN v` of vectors v fixed in space.
     pub on_space: Vec<(Vector3<X>, Matrix3<X>)>,
     force: Option<Vector3<X>>,
@@ -26,12 +26,12 @@ pub(crate) struct Linear<'a, X: Exact> {
     /// Gravity gradients, likewise.
     pub gradients: Vec<(usize, &'a dyn Orbiting<X>)>,
     /// The states that the load has of its own.
-    pub own: Vec<Own<X>>,
+    pub internal_states: Vec<InternalState<X>>,
     /// Σ J a aᵀ of the wheels that turn freely, which is not part of the tensor of the equations, but is pulled by gravity.
     pub turning: Matrix3<X>,
 }
 
-impl<X: Exact> Default for Linear<'_, X> {
+impl<X: LawNumber> Default for SeriesTerms<'_, X> {
     fn default() -> Self {
         Self {
             constant: Vector3::zeros(),
@@ -43,13 +43,13 @@ impl<X: Exact> Default for Linear<'_, X> {
             thrust: None,
             timed: Vec::new(),
             gradients: Vec::new(),
-            own: Vec::new(),
+            internal_states: Vec::new(),
             turning: Matrix3::zeros(),
         }
     }
 }
 
-impl<X: Exact> Linear<'_, X> {
+impl<X: LawNumber> SeriesTerms<'_, X> {
     /// Adds a torque that is this matrix times ω.
     pub(crate) fn add_on_omega(&mut self, matrix: &Matrix3<X>) {
         *self.on_omega.get_or_insert_with(Matrix3::zeros) += matrix;
@@ -91,7 +91,7 @@ impl<X: Exact> Linear<'_, X> {
     }
 
     /// What the laws have stated, be it zero; `has_path` where the path of a free body is part of the motion.
-    pub(crate) fn parts(&self, has_path: bool) -> Parts {
+    pub(crate) fn structure(&self, has_path: bool) -> SeriesStructure {
         let is_upright = |vector: &Vector3<X>| vector.x == X::zero() && vector.y == X::zero();
         let sees_all = (self.timed.iter()).any(|(_, torque)| torque.frame() == Frame::Space)
             || has_path && self.thrust.is_some();
@@ -101,15 +101,15 @@ impl<X: Exact> Linear<'_, X> {
             fixed if fixed.iter().all(|(vector, _)| is_upright(vector)) => 1,
             _ => 3,
         };
-        Parts {
+        SeriesStructure {
             directions,
             on_omega: self.on_omega.is_some(),
             on_attitude: self.on_attitude.is_some(),
-            quadratic: self.formulas.iter().any(Formula::has_speed),
+            quadratic: self.formulas.iter().any(TorqueFormula::has_speed),
             gradients: self.gradients.len(),
             is_timed: !self.timed.is_empty(),
             is_pushed: has_path && (self.force.is_some() || self.thrust.is_some()),
-            own: self.own.len(),
+            internal_states: self.internal_states.len(),
         }
     }
 }
@@ -120,7 +120,7 @@ impl<X: Exact> Linear<'_, X> {
     reason = "the parts come in every combination"
 )]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Parts {
+pub(crate) struct SeriesStructure {
     /// How many directions fixed in space its torques and forces are made of: none, the vertical axis, or all three.
     pub directions: usize,
     /// Whether a torque is linear in ω.
@@ -136,10 +136,10 @@ pub(crate) struct Parts {
     /// Whether a force acts on a free body.
     pub is_pushed: bool,
     /// How many states the laws have of their own.
-    pub own: usize,
+    pub internal_states: usize,
 }
 
-impl Parts {
+impl SeriesStructure {
     /// Those of either of two motions.
     #[must_use]
     pub(crate) fn of_both(self, other: Self) -> Self {
@@ -151,7 +151,7 @@ impl Parts {
             gradients: self.gradients.max(other.gradients),
             is_timed: self.is_timed || other.is_timed,
             is_pushed: self.is_pushed || other.is_pushed,
-            own: self.own.max(other.own),
+            internal_states: self.internal_states.max(other.internal_states),
         }
     }
 
@@ -164,7 +164,7 @@ impl Parts {
 
 /// A state z of the load's own: what it does to the body, and what becomes of it. Vectors in principal axes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Own<X: Exact> {
+pub(crate) struct InternalState<X: LawNumber> {
     /// The torque `z p` about the reference point.
     pub torque: Vector3<X>,
     /// The momentum `z g` that turns with the body: a torque `−ω × z g`.
@@ -186,7 +186,7 @@ pub(crate) struct Own<X: Exact> {
     pub reported_on_omega: Vector3<X>,
 }
 
-impl<X: Exact> Default for Own<X> {
+impl<X: LawNumber> Default for InternalState<X> {
     fn default() -> Self {
         Self {
             torque: Vector3::zeros(),
@@ -209,13 +209,13 @@ mod tests {
     use super::*;
     use crate::motion::loads::variables::Fixed;
     use crate::motion::loads::{
-        Axes, Damping, Drive, Feedback, GravityGradient, Held, Rotor, Sampled, Slug, Subject, Term,
-        Wheel,
+        BodyAtPoint, Damping, Drive, Feedback, GravityGradient, PiecewiseSignal, PrincipalFrame,
+        Rotor, Sampled, Slug, Term, Wheel,
     };
 
     /// What a term alone adds to the equations of a body, at a time and on a side of its switch.
-    fn parts(term: &Term, pivoted: bool, middle: f64, side: f64) -> Parts {
-        let subject = Subject {
+    fn structure(term: &Term, pivoted: bool, middle: f64, side: f64) -> SeriesStructure {
+        let body = BodyAtPoint {
             mass: 2.0,
             inertia: Matrix3::identity(),
             point: Vector3::zeros(),
@@ -223,17 +223,17 @@ mod tests {
             pivoted,
             start: 0.0,
         };
-        let axes = Axes {
-            subject: &subject,
+        let axes = PrincipalFrame {
+            body: &body,
             columns: &Matrix3::identity(),
             q_bp: &[0.0, 0.0, 0.0, 1.0],
             variables: Fixed,
             first: 0,
             middle,
         };
-        let mut linear = Linear::<f64>::default();
-        term.add_to(&mut linear, &axes, side);
-        linear.parts(!pivoted)
+        let mut series = SeriesTerms::<f64>::default();
+        term.add_to(&mut series, &axes, side);
+        series.structure(!pivoted)
     }
 
     #[test]
@@ -246,28 +246,32 @@ mod tests {
             || Feedback::new(&one, &zero, &UnitQuaternion::identity()).expect("a feedback");
         let samples = |frame| Sampled::new(&[0.0, 9.0], &[up, aside], frame).expect("ascending");
         let orbit = GravityGradient::new(1.0, &aside, &Vector3::x(), None).expect("an orbit");
-        let speeds = Held::table("speed", &[0.0, 3.0, 9.0], &[0.0, 1.0, 0.0]).expect("ascending");
+        let speeds =
+            PiecewiseSignal::table("speed", &[0.0, 3.0, 9.0], &[0.0, 1.0, 0.0]).expect("ascending");
         let wheel = |drive| Term::from(Wheel::new(&up, 0.1, 0.0, 0.0, drive).expect("a wheel"));
-        let none = Parts::default();
-        let on_omega = Parts {
+        let none = SeriesStructure::default();
+        let on_omega = SeriesStructure {
             on_omega: true,
             ..none
         };
-        let along = |directions| Parts { directions, ..none };
-        let pushed = |directions| Parts {
+        let along = |directions| SeriesStructure { directions, ..none };
+        let pushed = |directions| SeriesStructure {
             is_pushed: true,
             ..along(directions)
         };
-        let is_timed = |directions| Parts {
+        let is_timed = |directions| SeriesStructure {
             is_timed: true,
             ..along(directions)
         };
-        let asked = Parts {
+        let asked = SeriesStructure {
             on_attitude: true,
             ..on_omega
         };
-        let own = |own: usize, parts: Parts| Parts { own, ..parts };
-        let alike = |term: Term, parts: Parts| (term, parts, parts);
+        let with_states = |internal_states: usize, structure: SeriesStructure| SeriesStructure {
+            internal_states,
+            ..structure
+        };
+        let alike = |term: Term, structure: SeriesStructure| (term, structure, structure);
         let damping = |quadratic| Term::from(Damping::new(&zero, quadratic).expect("finite"));
         let gravity = Term::uniform_gravity(&up).expect("finite");
         // Free, and pivoted.
@@ -281,7 +285,7 @@ mod tests {
             alike(damping(&zero), on_omega),
             alike(
                 damping(&one),
-                Parts {
+                SeriesStructure {
                     quadratic: true,
                     ..on_omega
                 },
@@ -292,45 +296,45 @@ mod tests {
             alike(samples(Frame::Space).into(), is_timed(3)),
             alike(
                 orbit.into(),
-                Parts {
+                SeriesStructure {
                     gradients: 1,
                     ..none
                 },
             ),
             alike(
                 Slug::new(0.1, 0.2).expect("positive").into(),
-                own(3, on_omega),
+                with_states(3, on_omega),
             ),
-            alike(wheel(Drive::Speed(speeds)), own(1, on_omega)),
-            alike(wheel(Drive::Feedback(feedback())), own(1, asked)),
+            alike(wheel(Drive::Speed(speeds)), with_states(1, on_omega)),
+            alike(wheel(Drive::Feedback(feedback())), with_states(1, asked)),
         ] {
             for (middle, side) in [(0.0, 1.0), (1.5, -1.0), (6.0, 1.0), (6.0, -1.0)] {
-                assert_eq!(parts(&term, false, middle, side), free, "{term:?}");
-                assert_eq!(parts(&term, true, middle, side), pivoted, "{term:?}");
+                assert_eq!(structure(&term, false, middle, side), free, "{term:?}");
+                assert_eq!(structure(&term, true, middle, side), pivoted, "{term:?}");
             }
         }
     }
 
     #[test]
     fn the_parts_of_two_motions_are_those_of_either() {
-        let one = Parts {
+        let one = SeriesStructure {
             directions: 1,
             is_timed: true,
-            own: 2,
-            ..Parts::default()
+            internal_states: 2,
+            ..SeriesStructure::default()
         };
-        let other = Parts {
+        let other = SeriesStructure {
             directions: 3,
             on_attitude: true,
-            own: 2,
-            ..Parts::default()
+            internal_states: 2,
+            ..SeriesStructure::default()
         };
-        let both = Parts {
+        let both = SeriesStructure {
             directions: 3,
             is_timed: true,
             on_attitude: true,
-            own: 2,
-            ..Parts::default()
+            internal_states: 2,
+            ..SeriesStructure::default()
         };
         assert_eq!((one.of_both(other), other.of_both(one)), (both, both));
         assert!(both.may_flip() && !one.may_flip());

@@ -200,7 +200,7 @@ mod tests {
     use nalgebra::UnitQuaternion;
 
     use super::*;
-    use crate::motion::loads::{Aim, Frame, MagneticField, Path, Sampled};
+    use crate::motion::loads::{AttitudeTarget, Frame, MagneticField, OrbitModel, Sampled};
 
     /// Makes something of samples; tells what is wrong with it.
     type Make<'a> = dyn Fn(&mut Watch<'_>) -> Option<Error> + 'a;
@@ -217,8 +217,8 @@ mod tests {
             let made: [&Make<'_>; 4] = [
                 &|watch| Sampled::new_watched(&times, &values, Frame::Body, watch).err(),
                 &|watch| MagneticField::sampled_watched(&times, &values, watch).err(),
-                &|watch| Path::sampled_watched(&times, &values, watch).err(),
-                &|watch| Aim::sampled_watched(&times, &attitudes, watch).err(),
+                &|watch| OrbitModel::sampled_watched(&times, &values, watch).err(),
+                &|watch| AttitudeTarget::sampled_watched(&times, &attitudes, watch).err(),
             ];
             for (make, most) in made.iter().flat_map(|make| [(make, 1), (make, 9)]) {
                 let mut looks = 0;

@@ -20,14 +20,14 @@ use crate::motion::state::Phase;
 
 /// What moves a body with wheels at rest in their bearings.
 #[derive(Clone, Debug)]
-pub(crate) struct Resting {
+pub(crate) struct Stiction {
     euler: EulerEquations,
     wheels: Vec<Bearing>,
     /// (I' + Σ J a aᵀ)⁻¹, in B.
     inverse: Matrix3<f64>,
 }
 
-impl Resting {
+impl Stiction {
     /// Of those of the `bearings` that rest, in a body with these equations; nothing where all turn.
     pub(crate) fn of(euler: &EulerEquations, bearings: &[Bearing]) -> Option<Self> {
         let wheels: Vec<_> = bearings
@@ -59,7 +59,7 @@ impl Resting {
         let moments = Vector3::from(self.euler.moments());
         let mut momentum = axes * moments.component_mul(&axes.tr_mul(&phase.omega));
         for wheel in &self.wheels {
-            momentum += wheel.axis * phase.own[wheel.index];
+            momentum += wheel.axis * phase.internal_state[wheel.index];
         }
         phase.omega = self.inverse * momentum;
         self.keep(phase);
@@ -108,10 +108,10 @@ pub fn wrench_at<L: Load>(
 ) -> Result<Wrench, L::Error> {
     load.settle(t, phase);
     let mut bearings = load.bearings().to_vec();
-    let mut motors = vec![0.0; phase.own.len()];
+    let mut motors = vec![0.0; phase.internal_state.len()];
     let mut wrench = load.act(t, phase, &mut motors)?;
     // One after the other slips, first the one that is furthest beyond its most.
-    while let Some(resting) = Resting::of(euler, &bearings) {
+    while let Some(resting) = Stiction::of(euler, &bearings) {
         let mut rates = motors.clone();
         let torque = resting.hold(&phase.omega, &wrench.torque, &mut rates);
         let held = |bearing: &Bearing| rates[bearing.index] - motors[bearing.index];

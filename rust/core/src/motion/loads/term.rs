@@ -76,7 +76,7 @@ impl Term {
 
     /// How many states it has of its own.
     #[must_use]
-    pub fn own(&self) -> usize {
+    pub fn internal_states(&self) -> usize {
         self.carried().map_or(0, Carried::count)
     }
 
@@ -89,30 +89,30 @@ impl Term {
     /// Whether it pushes, so that a free body's position depends on it.
     #[must_use]
     pub fn exerts_force(&self) -> bool {
-        self.character(false).exerts_force
+        self.traits(false).exerts_force
     }
 
     /// Whether it depends on ω or on the velocity.
     #[must_use]
     pub fn depends_on_rates(&self) -> bool {
-        self.character(false).depends_on_rates
+        self.traits(false).depends_on_rates
     }
 
     /// Whether it depends on the body it acts on.
     #[must_use]
     pub fn needs_body(&self) -> bool {
-        self.character(false).needs_body
+        self.traits(false).needs_body
     }
 
     /// Whether it begins with the motion, wherever in time that is.
     #[must_use]
     pub fn needs_epoch(&self) -> bool {
-        self.character(false).needs_epoch
+        self.traits(false).needs_epoch
     }
 
     /// What of the angular momentum about the reference point it leaves as it is, on a pivoted body or on a free one.
     #[must_use]
     pub fn keeps(&self, pivoted: bool) -> Kept {
-        self.character(pivoted).keeps
+        self.traits(pivoted).keeps
     }
 }

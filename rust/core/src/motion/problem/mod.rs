@@ -20,5 +20,5 @@ pub use self::crossing::{Crossing, Direction, Rule, Watched};
 pub use self::limits::{MOST_STEPS, check_scales, check_times};
 pub use self::method::Method;
 pub use self::outcome::{Effort, End, Run};
-pub use self::task::{Footing, Task};
+pub use self::task::{ReferencePoint, Task};
 pub use self::tolerance::{TIGHTEST, TIGHTEST_TWOFOLD, Tolerance};

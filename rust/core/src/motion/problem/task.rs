@@ -7,35 +7,35 @@ use crate::error::{Error, all_finite};
 use crate::mass::RigidBody;
 use crate::mass::refined::RefinedPrincipal;
 use crate::motion::euler_equations::EulerEquations;
-use crate::motion::loads::{Carried, Subject};
+use crate::motion::loads::{BodyAtPoint, Carried};
 use crate::motion::state::Phase;
 
 /// A body and the point its motion refers to: what all motions of the body have in common.
 #[derive(Clone, Copy, Debug)]
-pub struct Footing {
+pub struct ReferencePoint {
     /// The body and its reference point, as a load sees them.
-    pub subject: Subject,
+    pub body_at_point: BodyAtPoint,
     /// Euler's equations about the reference point.
     pub euler: EulerEquations,
 }
 
-impl Footing {
+impl ReferencePoint {
     /// `body` free, its centre of mass the reference point, from the time `start` on.
     #[must_use]
     pub fn free(body: &RigidBody, start: f64) -> Self {
-        Self::of(body, Subject::free(body, start))
+        Self::of(body, BodyAtPoint::free(body, start))
     }
 
     /// `body` with the origin of its frame fixed in N, from the time `start` on.
     #[must_use]
     pub fn pivoted(body: &RigidBody, start: f64) -> Self {
-        Self::of(body, Subject::pivoted(body, start))
+        Self::of(body, BodyAtPoint::pivoted(body, start))
     }
 
-    fn of(body: &RigidBody, subject: Subject) -> Self {
+    fn of(body: &RigidBody, body_at_point: BodyAtPoint) -> Self {
         Self {
-            subject,
-            euler: EulerEquations::refined_about(body, &subject.point),
+            euler: EulerEquations::refined_about(body, &body_at_point.point),
+            body_at_point,
         }
     }
 }
@@ -46,7 +46,7 @@ pub struct Task<'a> {
     /// The body.
     pub body: &'a RigidBody,
     /// The body and its reference point, as a load sees them.
-    pub subject: Subject,
+    pub body_at_point: BodyAtPoint,
     /// Euler's equations about the reference point.
     pub euler: EulerEquations,
     /// The state at the first time.
@@ -58,7 +58,7 @@ pub struct Task<'a> {
     /// How accurately.
     pub tolerance: Tolerance,
     /// Principal moments and axes about the reference point of a body whose wheels turn freely, without what turns.
-    pub casing: Option<Box<RefinedPrincipal>>,
+    pub body_without_wheels: Option<Box<RefinedPrincipal>>,
 }
 
 impl<'a> Task<'a> {
@@ -72,8 +72,8 @@ impl<'a> Task<'a> {
         tolerance: Tolerance,
     ) -> Self {
         let start = times.first().copied().unwrap_or_default();
-        let footing = Footing::free(body, start);
-        Self::on(&footing, body, initial, times, method, tolerance)
+        let reference_point = ReferencePoint::free(body, start);
+        Self::about(&reference_point, body, initial, times, method, tolerance)
     }
 
     /// `body` with the origin of its frame fixed in N.
@@ -86,14 +86,14 @@ impl<'a> Task<'a> {
         tolerance: Tolerance,
     ) -> Self {
         let start = times.first().copied().unwrap_or_default();
-        let footing = Footing::pivoted(body, start);
-        Self::on(&footing, body, initial, times, method, tolerance)
+        let reference_point = ReferencePoint::pivoted(body, start);
+        Self::about(&reference_point, body, initial, times, method, tolerance)
     }
 
-    /// `body` on a footing of its own, which starts at the first time.
+    /// `body` on a reference point of its own, which starts at the first time.
     #[must_use]
-    pub fn on(
-        footing: &Footing,
+    pub fn about(
+        reference_point: &ReferencePoint,
         body: &'a RigidBody,
         initial: Phase,
         times: &'a [f64],
@@ -102,13 +102,13 @@ impl<'a> Task<'a> {
     ) -> Self {
         Self {
             body,
-            subject: footing.subject,
-            euler: footing.euler,
+            body_at_point: reference_point.body_at_point,
+            euler: reference_point.euler,
             initial,
             times,
             method,
             tolerance,
-            casing: None,
+            body_without_wheels: None,
         }
     }
 
@@ -123,15 +123,15 @@ impl<'a> Task<'a> {
             omega,
             position,
             velocity,
-            own,
+            internal_state,
         } = &self.initial;
         all_finite("attitude", &attitude.coords)?;
         all_finite("omega", omega)?;
-        if !self.subject.pivoted {
+        if !self.body_at_point.pivoted {
             all_finite("position", position)?;
             all_finite("velocity", velocity)?;
         }
-        all_finite("the states of the load", own)
+        all_finite("the states of the load", internal_state)
     }
 
     /// The task of a body that carries this along: its equations are those of the body without the wheels that turn freely. States of
@@ -144,21 +144,22 @@ impl<'a> Task<'a> {
         carried: impl Iterator<Item = &'c dyn Carried>,
     ) -> Result<Self, Error> {
         let carried: Vec<_> = carried.collect();
-        if self.initial.own.is_empty() {
+        if self.initial.internal_state.is_empty() {
             let omega = self.initial.omega;
             let begun = carried
                 .iter()
                 .flat_map(|it| it.begin(self.times[0], &omega));
-            self.initial.own = begun.collect();
+            self.initial.internal_state = begun.collect();
         }
         let turning: Vec<_> = carried.iter().filter_map(|it| it.turning()).collect();
         if turning.is_empty() {
             return Ok(self);
         }
-        let casing = RefinedPrincipal::about(self.body, &self.subject.point).without(&turning)?;
+        let body_without_wheels =
+            RefinedPrincipal::about(self.body, &self.body_at_point.point).without(&turning)?;
         Ok(Self {
-            euler: EulerEquations::of_refined(&casing),
-            casing: Some(Box::new(casing)),
+            euler: EulerEquations::of_refined(&body_without_wheels),
+            body_without_wheels: Some(Box::new(body_without_wheels)),
             ..self
         })
     }

@@ -7,14 +7,14 @@ use super::one::by_method;
 use super::plan::{Ask, Plan};
 use crate::error::Error;
 use crate::motion::integrate::taylor;
-use crate::motion::loads::{Load, Subject, Term};
+use crate::motion::loads::{BodyAtPoint, Load, Term};
 use crate::motion::problem::{End, Method, Run, Task};
 use crate::motion::state::Phase;
 use crate::numerics::threads::fill_blocks;
 
 /// What is called as rows run, besides the analytic terms of their loads: other loads, and events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Calls {
+pub enum CallbackPolicy {
     /// Nothing.
     Nothing,
     /// What any thread may call.
@@ -24,12 +24,12 @@ pub enum Calls {
 }
 
 /// The rows of a stack: where each begins, what acts on it and what is looked for.
-pub trait Rows: Sync {
+pub trait Batch: Sync {
     /// As of the loads.
     type Error: From<Error> + Send;
 
     /// What is called as they run.
-    fn calls(&self) -> Calls;
+    fn callbacks(&self) -> CallbackPolicy;
 
     /// The number of the body of a row, and its state at the first time with the attitude as given: of unit length to rounding
     /// alone.
@@ -38,30 +38,30 @@ pub trait Rows: Sync {
     /// The analytic terms of the load in a row; their kinds are the same in all rows.
     fn terms(&self, row: usize) -> &[Term];
 
-    /// Runs a row: calls [`Row::under`] with what acts on it and with what is looked for.
-    fn run(&self, row: Row<'_>) -> Run<Self::Error>;
+    /// Runs a row: calls [`Member::integrate`] with what acts on it and with what is looked for.
+    fn run(&self, row: Member<'_>) -> Run<Self::Error>;
 
     /// Whether no further row is begun after one that failed like this.
     fn ends_all(&self, error: &Self::Error) -> bool;
 }
 
 /// A row that is about to be run.
-pub struct Row<'r> {
+pub struct Member<'r> {
     /// Its number in the stack.
     pub number: usize,
     task: &'r Task<'r>,
     watch: &'r mut dyn FnMut(f64) -> ControlFlow<()>,
 }
 
-impl Row<'_> {
+impl Member<'_> {
     /// What its load acts on.
     #[must_use]
-    pub fn subject(&self) -> Subject {
-        self.task.subject
+    pub fn body(&self) -> BodyAtPoint {
+        self.task.body_at_point
     }
 
     /// Its motion under `load`.
-    pub fn under<L: Load>(
+    pub fn integrate<L: Load>(
         self,
         load: &mut L,
         events: &mut dyn Events<Error = L::Error>,
@@ -75,22 +75,22 @@ impl Row<'_> {
 ///
 /// Rows that call on this thread go one after the other, all others to all cores, and Taylor series that call nothing side by side
 /// in the lanes of each core. `watch` gets the fraction done, but from within rows on several cores none, and may stop all.
-/// Then, and where a row [ends all](Rows::ends_all), no further row is begun, and those begun are kept. Lanes do not ask whether
+/// Then, and where a row [ends all](Batch::ends_all), no further row is begun, and those begun are kept. Lanes do not ask whether
 /// a row ends all.
-pub fn simulate_many<R: Rows>(
+pub fn simulate_many<R: Batch>(
     plan: &Plan<'_>,
     rows: &R,
     runs: &mut [Option<Run<R::Error>>],
     watch: &Ask<'_>,
 ) {
-    let (count, calls) = (runs.len(), rows.calls());
+    let (count, calls) = (runs.len(), rows.callbacks());
     let common = plan.common();
     let task = |row| {
         let (body, initial) = rows.start(row);
         plan.task(common.as_ref(), body, initial)
     };
     let fill = |row, slot: &mut Option<Run<R::Error>>, fraction: &dyn Fn(f64) -> Option<f64>| {
-        let run = slot.insert(rows.run(Row {
+        let run = slot.insert(rows.run(Member {
             number: row,
             task: &task(row),
             watch: &mut |part| watch(fraction(part)),
@@ -102,14 +102,14 @@ pub fn simulate_many<R: Rows>(
         };
         if is_over { Err(()) } else { Ok(()) }
     };
-    if count == 1 || calls == Calls::OnThisThread {
+    if count == 1 || calls == CallbackPolicy::OnThisThread {
         for (row, slot) in runs.iter_mut().enumerate() {
             let fraction = |part| Some((row as f64 + part) / count as f64);
             if fill(row, slot, &fraction).is_err() {
                 break;
             }
         }
-    } else if calls == Calls::Nothing && plan.method() == Method::Taylor {
+    } else if calls == CallbackPolicy::Nothing && plan.method() == Method::Taylor {
         taylor::solve_many(&task, &|row| rows.terms(row), runs, &|begun| {
             watch(Some(begun))
         });
@@ -135,16 +135,16 @@ mod tests {
 
     /// Every row another motion of one of two bodies, under terms and what may fail.
     struct Stack {
-        calls: Calls,
+        calls: CallbackPolicy,
         terms: Vec<Term>,
         /// The row that fails, and whether it ends all.
         fails: Option<(usize, bool)>,
     }
 
-    impl Rows for Stack {
+    impl Batch for Stack {
         type Error = Error;
 
-        fn calls(&self) -> Calls {
+        fn callbacks(&self) -> CallbackPolicy {
             self.calls
         }
 
@@ -161,12 +161,12 @@ mod tests {
             &self.terms
         }
 
-        fn run(&self, row: Row<'_>) -> Run<Error> {
+        fn run(&self, row: Member<'_>) -> Run<Error> {
             if self.fails.is_some_and(|(number, _)| number == row.number) {
-                return row.under(&mut Failing, &mut NoEvents::new());
+                return row.integrate(&mut Failing, &mut NoEvents::new());
             }
-            let mut load = Analytic::new(&self.terms, row.subject());
-            row.under(&mut load, &mut NoEvents::new())
+            let mut load = Analytic::new(&self.terms, row.body());
+            row.integrate(&mut load, &mut NoEvents::new())
         }
 
         fn ends_all(&self, _: &Error) -> bool {
@@ -248,7 +248,7 @@ mod tests {
         (runs, told.into_inner().expect("no panic"))
     }
 
-    fn never(calls: Calls, terms: Vec<Term>) -> Stack {
+    fn never(calls: CallbackPolicy, terms: Vec<Term>) -> Stack {
         let fails = None;
         Stack {
             calls,
@@ -266,7 +266,11 @@ mod tests {
             (Method::Auto, Vec::new()),
         ] {
             let plan = plan(&bodies, &TIMES, method, &terms);
-            for calls in [Calls::Nothing, Calls::OnAnyThread, Calls::OnThisThread] {
+            for calls in [
+                CallbackPolicy::Nothing,
+                CallbackPolicy::OnAnyThread,
+                CallbackPolicy::OnThisThread,
+            ] {
                 let stack = never(calls, terms.clone());
                 for count in [0, 1, 2, all] {
                     let (runs, _) = go(&plan, &stack, count, 1.0);
@@ -275,11 +279,11 @@ mod tests {
                         let (body, phase) = stack.start(row);
                         let mut task = plan.task(None, body, phase);
                         task.method = method;
-                        let mut load = Analytic::new(&terms, task.subject);
+                        let mut load = Analytic::new(&terms, task.body_at_point);
                         let watch = &mut |_| ControlFlow::Continue(());
                         let alone = simulate(&task, &mut load, &mut NoEvents::new(), watch);
                         assert_eq!(run.end, End::Complete);
-                        if calls == Calls::Nothing && level() == Level::Baseline {
+                        if calls == CallbackPolicy::Nothing && level() == Level::Baseline {
                             let error = (run.phase.omega - alone.phase.omega).norm();
                             assert!(error < 1e-12, "{method:?} {row}: {error:e}");
                         } else {
@@ -295,7 +299,7 @@ mod tests {
     fn what_was_done_is_kept_where_all_is_stopped() {
         let (bodies, terms) = (bodies(), weight_and_twist());
         let by_steps = plan(&bodies, &TIMES, Method::Dop853, &terms);
-        let in_turn = never(Calls::OnThisThread, terms.clone());
+        let in_turn = never(CallbackPolicy::OnThisThread, terms.clone());
         let (runs, told) = go(&by_steps, &in_turn, 8, 0.45);
         assert!(told.is_sorted() && told.last().is_some_and(|done| *done > 0.45));
         for (row, run) in runs.iter().enumerate() {
@@ -309,8 +313,8 @@ mod tests {
             assert_eq!(end, expected, "{row}");
         }
         // On several cores rows tell no fraction; lanes ask about every 64 steps.
-        let apart = never(Calls::OnAnyThread, terms.clone());
-        let quick = never(Calls::Nothing, terms[..1].to_vec());
+        let apart = never(CallbackPolicy::OnAnyThread, terms.clone());
+        let quick = never(CallbackPolicy::Nothing, terms[..1].to_vec());
         let lanes = plan(&bodies, &[0.0, 1e6], Method::Taylor, &quick.terms);
         for (plan, stack) in [(&by_steps, &apart), (&lanes, &quick)] {
             let (runs, _) = go(plan, stack, 300, -1.0);
@@ -324,7 +328,7 @@ mod tests {
     fn the_first_that_fails_ends_all_where_it_is_to() {
         let (bodies, terms) = (bodies(), weight_and_twist());
         let plan = plan(&bodies, &TIMES, Method::Dop853, &terms);
-        for calls in [Calls::OnAnyThread, Calls::OnThisThread] {
+        for calls in [CallbackPolicy::OnAnyThread, CallbackPolicy::OnThisThread] {
             for (failing, ends_all) in [(0, true), (3, true), (3, false), (7, true)] {
                 let stack = Stack {
                     calls,
@@ -339,7 +343,7 @@ mod tests {
                         assert_eq!(end, Some(&End::Failed(error)));
                     } else if row < failing || !ends_all {
                         assert_eq!(end, Some(&End::Complete));
-                    } else if calls == Calls::OnThisThread {
+                    } else if calls == CallbackPolicy::OnThisThread {
                         assert_eq!(end, None);
                     }
                 }

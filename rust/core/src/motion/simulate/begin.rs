@@ -1,9 +1,9 @@
 //! The one place where the methods of steps are told apart.
 
-use super::closed_form_run::Exact;
+use super::closed_form_run::ClosedFormRun;
 use super::equations::{FEW, MANY, MOVING, SOME, TURNING};
-use super::runge_kutta_run::Solved;
-use super::splitting_run::Kicked;
+use super::runge_kutta_run::RungeKuttaRun;
+use super::splitting_run::SplittingRun;
 use super::stepper::{Span, Stepper};
 use crate::error::{Error, MotionFault};
 use crate::motion::integrate::{Dop853, Radau, RungeKutta};
@@ -22,12 +22,12 @@ pub(super) fn begin<'a, L: Load>(
 where
     L::Error: 'a,
 {
-    let moves = !task.subject.pivoted && load.exerts_force();
-    let own = span.phase.own.len();
-    if own > 0 {
+    let moves = !task.body_at_point.pivoted && load.exerts_force();
+    let states = span.phase.internal_state.len();
+    if states > 0 {
         return match method {
             Method::Radau | Method::Dop853 | Method::Auto | Method::Taylor
-                if own > MANY - MOVING =>
+                if states > MANY - MOVING =>
             {
                 Err(Error::Motion(MotionFault::MethodCannotServe {
                     method: method.name(),
@@ -44,25 +44,27 @@ where
                 })
                 .into())
             }
-            Method::Radau if own <= FEW - MOVING => solved::<L, Radau<FEW>, FEW>(task, span, load),
-            Method::Radau if own <= SOME - MOVING => {
+            Method::Radau if states <= FEW - MOVING => {
+                solved::<L, Radau<FEW>, FEW>(task, span, load)
+            }
+            Method::Radau if states <= SOME - MOVING => {
                 solved::<L, Radau<SOME>, SOME>(task, span, load)
             }
             Method::Radau => solved::<L, Radau<MANY>, MANY>(task, span, load),
-            _ if own <= FEW - MOVING => solved::<L, Dop853<FEW>, FEW>(task, span, load),
-            _ if own <= SOME - MOVING => solved::<L, Dop853<SOME>, SOME>(task, span, load),
+            _ if states <= FEW - MOVING => solved::<L, Dop853<FEW>, FEW>(task, span, load),
+            _ if states <= SOME - MOVING => solved::<L, Dop853<SOME>, SOME>(task, span, load),
             _ => solved::<L, Dop853<MANY>, MANY>(task, span, load),
         };
     }
     match method {
-        Method::Exact => Ok(Box::new(Exact::<L::Error>::new(
+        Method::Exact => Ok(Box::new(ClosedFormRun::<L::Error>::new(
             task,
             span,
             load.analytic(),
         )?)),
         Method::Radau if moves => solved::<L, Radau<MOVING>, MOVING>(task, span, load),
         Method::Radau => solved::<L, Radau<TURNING>, TURNING>(task, span, load),
-        Method::Splitting => Ok(Box::new(Kicked::new(task, span, load)?)),
+        Method::Splitting => Ok(Box::new(SplittingRun::new(task, span, load)?)),
         // Auto was settled, and a series has a driver of its own.
         Method::Auto | Method::Taylor | Method::Dop853 if moves => {
             solved::<L, Dop853<MOVING>, MOVING>(task, span, load)
@@ -83,5 +85,5 @@ fn solved<'a, L: Load, M: RungeKutta<N> + 'a, const N: usize>(
 where
     L::Error: 'a,
 {
-    Ok(Box::new(Solved::<L, M, N>::new(task, span, load)?))
+    Ok(Box::new(RungeKuttaRun::<L, M, N>::new(task, span, load)?))
 }

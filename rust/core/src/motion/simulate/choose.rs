@@ -32,8 +32,8 @@ impl Method {
                 terms.is_empty()
             }
         });
-        let has_series = terms
-            .is_some_and(|terms| (terms.iter()).all(|term| term.character(pivoted).has_series));
+        let has_series =
+            terms.is_some_and(|terms| (terms.iter()).all(|term| term.traits(pivoted).has_series));
         let of_steps = if has_series {
             Self::Taylor
         } else {
@@ -79,7 +79,7 @@ impl Method {
 pub fn most_demanding<T: AsRef<[Term]>>(rows: &[T], pivoted: bool) -> &[Term] {
     let lacks_series = |terms: &&T| {
         let mut all = terms.as_ref().iter();
-        all.any(|term| !term.character(pivoted).has_series)
+        all.any(|term| !term.traits(pivoted).has_series)
     };
     (rows.iter().find(lacks_series).or(rows.first())).map_or(&[], T::as_ref)
 }

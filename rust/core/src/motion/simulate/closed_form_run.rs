@@ -9,7 +9,7 @@ use super::stepper::{Carry, Dense, Span, Stepper};
 use crate::error::{Error, MotionFault};
 use crate::motion::free::FreeMotion;
 use crate::motion::heavy_top::HeavyTop;
-use crate::motion::loads::{Change, Term};
+use crate::motion::loads::{LawSwitch, Term};
 use crate::motion::problem::{Effort, End, Run, Task};
 use crate::motion::state::{ClosedForm, Phase, State};
 use crate::numerics::power_of_two::{exponent, length, times_power_of_two};
@@ -59,7 +59,7 @@ pub(super) fn solve<E: From<Error>>(
 
 /// A body that turns as a closed form says, and the uniform motion of its reference point.
 struct Closed {
-    motion: Motion,
+    motion: ClosedMotion,
     /// What the angular speed does not exceed by much.
     fastest: f64,
     position: Vector3<f64>,
@@ -67,7 +67,7 @@ struct Closed {
 }
 
 /// The closed form.
-enum Motion {
+enum ClosedMotion {
     Free(FreeMotion),
     Top(HeavyTop),
 }
@@ -77,7 +77,7 @@ impl Closed {
         let Phase {
             attitude, omega, ..
         } = phase;
-        let (motion, fastest) = if task.subject.pivoted {
+        let (motion, fastest) = if task.body_at_point.pivoted {
             let top = closed_top(task.body)?;
             let gravity = gravity_alone(terms).unwrap_or_default();
             // ½ I_t ω_t² grows by 2 m g l at most: from the highest point to the lowest.
@@ -87,10 +87,10 @@ impl Closed {
             let squares = scaled.norm_squared() + 4.0 * times_power_of_two(fall, -2 * unit);
             let fastest = times_power_of_two(squares.sqrt(), unit);
             let motion = HeavyTop::of(&top, omega, attitude, &gravity)?;
-            (Motion::Top(motion), fastest)
+            (ClosedMotion::Top(motion), fastest)
         } else {
             let motion = FreeMotion::of(task.body, omega, attitude)?;
-            (Motion::Free(motion), length(omega))
+            (ClosedMotion::Free(motion), length(omega))
         };
         Ok(Self {
             motion,
@@ -102,16 +102,16 @@ impl Closed {
 
     fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
         match &self.motion {
-            Motion::Free(motion) => motion.sample(times, attitudes, omegas),
-            Motion::Top(motion) => motion.sample(times, attitudes, omegas),
+            ClosedMotion::Free(motion) => motion.sample(times, attitudes, omegas),
+            ClosedMotion::Top(motion) => motion.sample(times, attitudes, omegas),
         }
     }
 
     /// That the states are known from `start` until this long after it.
     fn reaches(&self, start: f64, elapsed: f64) -> Result<(), Error> {
         match &self.motion {
-            Motion::Free(motion) => motion.reaches(elapsed)?,
-            Motion::Top(motion) => motion.reaches(elapsed)?,
+            ClosedMotion::Free(motion) => motion.reaches(elapsed)?,
+            ClosedMotion::Top(motion) => motion.reaches(elapsed)?,
         }
         if self.place(elapsed).iter().all(|x| x.is_finite()) {
             return Ok(());
@@ -130,21 +130,21 @@ impl Closed {
             omega: state.omega,
             position: self.place(elapsed),
             velocity: self.velocity,
-            own: Box::default(),
+            internal_state: Box::default(),
         }
     }
 
     fn at(&self, elapsed: f64) -> Phase {
         let state = match &self.motion {
-            Motion::Free(motion) => motion.at(elapsed),
-            Motion::Top(motion) => motion.at(elapsed),
+            ClosedMotion::Free(motion) => motion.at(elapsed),
+            ClosedMotion::Top(motion) => motion.at(elapsed),
         };
         self.placed(elapsed, state)
     }
 }
 
 /// Steps of part of a turn, for runs that look for events.
-pub(super) struct Exact<E> {
+pub(super) struct ClosedFormRun<E> {
     closed: Closed,
     length: f64,
     step: f64,
@@ -153,7 +153,7 @@ pub(super) struct Exact<E> {
     error: std::marker::PhantomData<E>,
 }
 
-impl<E: From<Error>> Exact<E> {
+impl<E: From<Error>> ClosedFormRun<E> {
     pub(super) fn new(task: &Task<'_>, span: &Span, terms: Option<&[Term]>) -> Result<Self, E> {
         let closed = Closed::new(task, terms.unwrap_or_default(), &span.phase)?;
         let length = span.to - span.from;
@@ -171,7 +171,7 @@ impl<E: From<Error>> Exact<E> {
     }
 }
 
-impl<E: From<Error>> Dense for Exact<E> {
+impl<E: From<Error>> Dense for ClosedFormRun<E> {
     type Error = E;
 
     fn elapsed(&self) -> f64 {
@@ -187,7 +187,7 @@ impl<E: From<Error>> Dense for Exact<E> {
     }
 }
 
-impl<E: From<Error>> Stepper for Exact<E> {
+impl<E: From<Error>> Stepper for ClosedFormRun<E> {
     fn advance(&mut self) -> Result<(), E> {
         self.steps += 1;
         let next = self.steps as f64 * self.step;
@@ -217,7 +217,7 @@ impl<E: From<Error>> Stepper for Exact<E> {
         Carry::default()
     }
 
-    fn changes(&self) -> Vec<Change> {
+    fn law_switches(&self) -> Vec<LawSwitch> {
         Vec::new()
     }
 }

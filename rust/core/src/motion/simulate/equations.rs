@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Quaternion, SVector, UnitQuaternion, Vector3};
 use crate::motion::attitude::{from_axes, rate};
 use crate::motion::euler_equations::EulerEquations;
 use crate::motion::integrate::{Compensated, System};
-use crate::motion::loads::{Bearing, Change, Load, Resting, Subject, Wrench};
+use crate::motion::loads::{Bearing, BodyAtPoint, LawSwitch, Load, Stiction, Wrench};
 use crate::motion::problem::Tolerance;
 use crate::motion::state::Phase;
 
@@ -21,7 +21,7 @@ pub(super) const MANY: usize = 64;
 
 /// The principal axes P as seen from B.
 #[derive(Clone, Copy, Debug)]
-struct Axes {
+struct AxesInBody {
     q_bp: UnitQuaternion<f64>,
     columns: Matrix3<f64>,
     /// Whether they are those of B, as of most bodies that are given by their moments.
@@ -29,10 +29,10 @@ struct Axes {
 }
 
 /// What makes a phase, which is in body axes, of the numbers of a state.
-struct View {
-    axes: Axes,
+struct PhaseView {
+    axes: AxesInBody,
     /// The wheels at rest in bearings with dry friction, in this span.
-    resting: Option<Resting>,
+    resting: Option<Stiction>,
     /// When the reference point, if no force acts on it, was where; it keeps its velocity.
     origin: (f64, Vector3<f64>, Vector3<f64>),
 }
@@ -43,7 +43,7 @@ pub(super) struct Scales {
     omega: f64,
     position: f64,
     velocity: f64,
-    own: Vec<f64>,
+    internal_state: Vec<f64>,
 }
 
 /// `q̇ = ½ q∘ω`, `I ω̇ + ω×Iω = N`; and with N = [`MOVING`] or more `ṙ = v`, `m v̇ = F`, and states of the load's own.
@@ -52,7 +52,7 @@ pub(super) struct Equations<'a, L, const N: usize> {
     mass: f64,
     /// Whether the reference point is fixed in N.
     is_held: bool,
-    view: View,
+    view: PhaseView,
     load: &'a mut L,
     /// The state that the load is asked for. It is written in place, since a copy of it would wait until it is written.
     now: Phase,
@@ -68,35 +68,35 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
     /// From the state `phase` at the time `start`.
     pub(super) fn new(
         euler: &EulerEquations,
-        subject: &Subject,
+        body: &BodyAtPoint,
         start: f64,
         phase: &Phase,
         load: &'a mut L,
         tolerance: Tolerance,
         scales: Scales,
     ) -> Self {
-        let own = phase.own.len();
+        let states = phase.internal_state.len();
         let scales = Scales {
-            own: if scales.own.is_empty() {
-                vec![0.0; own]
+            internal_state: if scales.internal_state.is_empty() {
+                vec![0.0; states]
             } else {
-                scales.own
+                scales.internal_state
             },
             ..scales
         };
         Self {
             sizes: load.sizes(),
-            rates: vec![0.0; own],
+            rates: vec![0.0; states],
             euler: *euler,
-            mass: subject.mass,
-            is_held: subject.pivoted,
-            view: View {
-                axes: Axes {
+            mass: body.mass,
+            is_held: body.pivoted,
+            view: PhaseView {
+                axes: AxesInBody {
                     q_bp: from_axes(euler.axes()),
                     columns: *euler.axes(),
                     are_of_body: *euler.axes() == Matrix3::identity(),
                 },
-                resting: Resting::of(euler, load.bearings()),
+                resting: Stiction::of(euler, load.bearings()),
                 origin: (start, phase.position, phase.velocity),
             },
             load,
@@ -116,7 +116,10 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
             q.i, q.j, q.k, q.w, w.x, w.y, w.z, r.x, r.y, r.z, v.x, v.y, v.z,
         ];
         let mut y = SVector::<f64, N>::zeros();
-        for (number, given) in y.iter_mut().zip(numbers.iter().chain(&phase.own)) {
+        for (number, given) in y
+            .iter_mut()
+            .zip(numbers.iter().chain(&phase.internal_state))
+        {
             *number = *given;
         }
         y
@@ -132,15 +135,15 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
 
     /// How many states the load has of its own.
     #[inline]
-    fn own(&self) -> usize {
-        self.scales.own.len()
+    fn internal_states(&self) -> usize {
+        self.scales.internal_state.len()
     }
 }
 
 impl<L: Load, const N: usize> Equations<'_, L, N> {
     /// What may change the law of the load within a step.
-    pub(super) fn changes(&self) -> Vec<Change> {
-        self.load.changes()
+    pub(super) fn law_switches(&self) -> Vec<LawSwitch> {
+        self.load.law_switches()
     }
 
     /// As of the load.
@@ -155,7 +158,7 @@ impl<L: Load, const N: usize> Equations<'_, L, N> {
         t: f64,
         phase: &Phase,
     ) -> Result<f64, L::Error> {
-        let mut rates = vec![0.0; self.own()];
+        let mut rates = vec![0.0; self.internal_states()];
         let wrench = self.load.act(t, phase, &mut rates)?;
         let motor = rates[bearing.index()];
         if let Some(resting) = &self.view.resting {
@@ -165,7 +168,7 @@ impl<L: Load, const N: usize> Equations<'_, L, N> {
     }
 }
 
-impl View {
+impl PhaseView {
     /// The state `y` at time `t` into `phase`, which has room for the load's own states.
     #[inline]
     fn show<const N: usize>(&self, t: f64, y: &SVector<f64, N>, phase: &mut Phase) {
@@ -182,8 +185,8 @@ impl View {
             let (start, position, velocity) = self.origin;
             (phase.position, phase.velocity) = (position + velocity * (t - start), velocity);
         }
-        let own = phase.own.len();
-        (phase.own).copy_from_slice(&y.as_slice()[N.min(MOVING)..][..own]);
+        let states = phase.internal_state.len();
+        (phase.internal_state).copy_from_slice(&y.as_slice()[N.min(MOVING)..][..states]);
         if let Some(resting) = &self.resting {
             resting.keep(phase);
         }
@@ -214,7 +217,7 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
         view.show(t, y, phase);
         let rates = &mut slope.as_mut_slice()[N.min(MOVING)..];
         rates.fill(0.0);
-        let rates = &mut rates[..phase.own.len()];
+        let rates = &mut rates[..phase.internal_state.len()];
         // Vector by vector, as they were written: a copy of the whole would wait for them.
         let (force, mut torque) = match self.load.act(t, phase, rates) {
             Ok(Wrench { force, torque }) => (force, torque),
@@ -292,16 +295,16 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
             }
         };
         let fastest = self.scales.omega.max(vector(y_new, 4).norm());
-        let own = (0..self.own()).map(|i| {
+        let of_states = (0..self.internal_states()).map(|i| {
             let size = error[MOVING + i].abs();
             let [per_omega, least] = self.sizes[i];
             let natural = (per_omega * self.scales.omega).max(least);
             // Of a state that has been zero all the time nobody knows yet what is large: what it would come to while the body turns
             // by a radian. Relative to itself the error of one that grows as a power of the time is the same at any step.
-            let begun = if self.scales.own[i] == 0.0 && fastest > 0.0 {
+            let begun = if self.scales.internal_state[i] == 0.0 && fastest > 0.0 {
                 self.rates[i].abs() / fastest
             } else {
-                self.scales.own[i]
+                self.scales.internal_state[i]
             };
             let scale = begun.max(y_new[MOVING + i].abs()).max(natural);
             if size == 0.0 || scale == 0.0 {
@@ -311,7 +314,7 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
             }
         });
         let body = parts.iter().chain(&moving).fold(0.0, largest_or_nan);
-        own.fold(body, |most, part| largest_or_nan(most, &part))
+        of_states.fold(body, |most, part| largest_or_nan(most, &part))
     }
 
     #[inline]
@@ -322,7 +325,7 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
             self.scales.velocity = self.scales.velocity.max(vector(&y.value, 10).norm());
             for (largest, now) in self
                 .scales
-                .own
+                .internal_state
                 .iter_mut()
                 .zip(&y.value.as_slice()[MOVING..])
             {

@@ -3,10 +3,10 @@
 use std::ops::ControlFlow;
 
 use super::events::Events;
-use super::roots_in_step::{Look, MOST_LOOKS, View, sign};
+use super::roots_in_step::{Look, MOST_LOOKS, RootSearch, sign};
 use super::stepper::Dense;
 use crate::error::{Error, MotionFault};
-use crate::motion::loads::Change;
+use crate::motion::loads::LawSwitch;
 use crate::motion::problem::{Crossing, Direction, Rule, Watched};
 use crate::motion::state::Phase;
 
@@ -16,7 +16,7 @@ const STAGE: f64 = 100.0;
 const PARTS: f64 = 16.0;
 
 /// The functions as a run goes on.
-pub(super) struct Lookout<'a, E> {
+pub(super) struct EventDetector<'a, E> {
     events: &'a mut dyn Events<Error = E>,
     rules: Vec<Rule>,
     /// The sign each function had when it was last not zero, and zero after it was found at zero.
@@ -31,7 +31,7 @@ pub(super) struct Lookout<'a, E> {
     pub(super) crossings: Vec<Crossing>,
 }
 
-impl<'a, E: From<Error>> Lookout<'a, E> {
+impl<'a, E: From<Error>> EventDetector<'a, E> {
     pub(super) fn new(
         events: &'a mut dyn Events<Error = E>,
         t: f64,
@@ -88,7 +88,7 @@ impl<'a, E: From<Error>> Lookout<'a, E> {
                 continue; // told by the load
             }
             let turn = stepper.turn(to - from);
-            let mut view = View {
+            let mut search = RootSearch {
                 function: &mut |stepper, at, phase| match watched {
                     Watched::Limit(state) => Ok(stepper.over_limit(state, at, phase)),
                     _ => events.value(event, start + at, phase),
@@ -107,7 +107,7 @@ impl<'a, E: From<Error>> Lookout<'a, E> {
             };
             let (last_sign, mut count) = (&mut self.signs[event], self.counts[event]);
             let forward = self.span > 0.0;
-            view.looks(before, turn, &mut |view, after| {
+            search.looks(before, turn, &mut |search, after| {
                 let (was, is) = (*last_sign, sign(after.value));
                 let bracket = [before, after];
                 before = after;
@@ -129,7 +129,7 @@ impl<'a, E: From<Error>> Lookout<'a, E> {
                     let place = if is == 0.0 {
                         after.at
                     } else {
-                        view.locate(bracket, was)?
+                        search.locate(bracket, was)?
                     };
                     found.push((place, event));
                     count += 1;
@@ -172,11 +172,11 @@ impl<'a, E: From<Error>> Lookout<'a, E> {
     }
 
     /// A change of the law of the load, at this time and state; whether the run is to end there.
-    pub(super) fn note(&mut self, change: &Change, time: f64, phase: &Phase) -> bool {
+    pub(super) fn note(&mut self, change: &LawSwitch, time: f64, phase: &Phase) -> bool {
         let watched = match change {
-            Change::Stop(bearing) => Watched::Stop(bearing.index()),
-            Change::Slip(bearing) => Watched::Slip(bearing.index()),
-            Change::Sign(_) => return false,
+            LawSwitch::Stop(bearing) => Watched::Stop(bearing.index()),
+            LawSwitch::Slip(bearing) => Watched::Slip(bearing.index()),
+            LawSwitch::Sign(_) => return false,
         };
         let mut is_last = false;
         for event in 0..self.rules.len() {

@@ -2,10 +2,10 @@
 
 use std::ops::ControlFlow;
 
-use super::roots_in_step::{Look, MOST_LOOKS, View, sign};
+use super::roots_in_step::{Look, MOST_LOOKS, RootSearch, sign};
 use super::stepper::Dense;
 use crate::error::Error;
-use crate::motion::loads::Change;
+use crate::motion::loads::LawSwitch;
 use crate::motion::state::Phase;
 
 /// A body that turns further than that in a step, in radians, may pass a zero twice, however it moves at the ends.
@@ -14,13 +14,13 @@ const LONG: f64 = 2.0;
 /// The first change within the step that began at `from` in the state `before`, and the time since the start of the span, which is
 /// `start`.
 pub(super) fn first<E: From<Error>>(
-    changes: &[Change],
+    changes: &[LawSwitch],
     stepper: &mut dyn Dense<Error = E>,
     start: f64,
     from: f64,
     before: &Phase,
-) -> Result<Option<(Change, f64)>, E> {
-    let mut first: Option<(Change, f64)> = None;
+) -> Result<Option<(LawSwitch, f64)>, E> {
+    let mut first: Option<(LawSwitch, f64)> = None;
     for change in changes {
         if let Some(place) = of(change, stepper, start, from, before)?
             && first
@@ -30,12 +30,12 @@ pub(super) fn first<E: From<Error>>(
             first = Some((change.clone(), place));
         }
     }
-    if let Some((Change::Slip(bearing), place)) = &first {
+    if let Some((LawSwitch::Slip(bearing), place)) = &first {
         let place = *place;
         // The way that the wheel turns then is against what held it.
         let phase = at(stepper, from, before, place)?;
         let slipping = bearing.slipping(stepper.held(bearing, place, &phase)?);
-        return Ok(Some((Change::Slip(slipping), place)));
+        return Ok(Some((LawSwitch::Slip(slipping), place)));
     }
     Ok(first)
 }
@@ -56,21 +56,21 @@ fn at<E>(
 
 /// A function that is negative beyond the change.
 fn until<E>(
-    change: &Change,
+    change: &LawSwitch,
     stepper: &mut dyn Dense<Error = E>,
     start: f64,
     at: f64,
     phase: &Phase,
 ) -> Result<f64, E> {
     Ok(match change {
-        Change::Sign(switch) => switch.value_and_rate(start + at, phase)[0],
-        Change::Stop(bearing) => bearing.until_stop(phase),
-        Change::Slip(bearing) => bearing.until_slip(stepper.held(bearing, at, phase)?),
+        LawSwitch::Sign(switch) => switch.value_and_rate(start + at, phase)[0],
+        LawSwitch::Stop(bearing) => bearing.until_stop(phase),
+        LawSwitch::Slip(bearing) => bearing.until_slip(stepper.held(bearing, at, phase)?),
     })
 }
 
 fn of<E: From<Error>>(
-    change: &Change,
+    change: &LawSwitch,
     stepper: &mut dyn Dense<Error = E>,
     start: f64,
     from: f64,
@@ -79,7 +79,7 @@ fn of<E: From<Error>>(
     let to = stepper.elapsed();
     let turn = stepper.turn(to - from);
     let value = until(change, stepper, start, from, before)?;
-    if let Change::Sign(switch) = change {
+    if let LawSwitch::Sign(switch) = change {
         let forward = (to - from).signum();
         let [[w, rate], [w_end, rate_end]] =
             [(from, before), (to, &stepper.phase())].map(|(at, phase)| {
@@ -95,7 +95,7 @@ fn of<E: From<Error>>(
     } else if value < 0.0 {
         return Ok(Some(from));
     }
-    let mut view = View {
+    let mut search = RootSearch {
         function: &mut |stepper, at, phase| until(change, stepper, start, at, phase),
         event: None,
         stepper,
@@ -110,12 +110,12 @@ fn of<E: From<Error>>(
         value: value.max(0.0),
     };
     let mut found = None;
-    view.looks(last, turn, &mut |view, look| {
+    search.looks(last, turn, &mut |search, look| {
         if look.value < 0.0 {
             found = Some(if last.value <= 0.0 {
                 last.at
             } else {
-                view.locate([last, look], sign(last.value))?
+                search.locate([last, look], sign(last.value))?
             });
             return Ok(ControlFlow::Break(()));
         }

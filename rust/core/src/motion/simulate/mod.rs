@@ -19,9 +19,9 @@
 //! ```
 //! use std::ops::ControlFlow;
 //! use polhode::mass::{Amount, solids};
-//! use polhode::motion::loads::{Callback, Carried, Subject, Term};
+//! use polhode::motion::loads::{Callback, Carried, BodyAtPoint, Term};
 //! use polhode::motion::simulate::{
-//!     Crossing, Direction, End, Events, Footing, MOST_STEPS, Method, Phase, Rule, Run, State, TIGHTEST, TIGHTEST_TWOFOLD, Task,
+//!     Crossing, Direction, End, Events, ReferencePoint, MOST_STEPS, Method, Phase, Rule, Run, State, TIGHTEST, TIGHTEST_TWOFOLD, Task,
 //!     Tolerance, Watched, check_scales, simulate,
 //! };
 //! use polhode::nalgebra::{UnitQuaternion, Vector3};
@@ -49,9 +49,9 @@
 //! assert!(tolerance.most_steps < MOST_STEPS && tolerance.relative > TIGHTEST);
 //! let times = [0.0, 100.0];
 //! check_scales(&rod, true, &times)?;
-//! let footing = Footing::pivoted(&rod, times[0]);
-//! assert_eq!(footing.subject, Subject::pivoted(&rod, 0.0));
-//! let task: Task = Task::on(&footing, &rod, start, &times, Method::Auto, tolerance);
+//! let reference_point = ReferencePoint::pivoted(&rod, times[0]);
+//! assert_eq!(reference_point.body_at_point, BodyAtPoint::pivoted(&rod, 0.0));
+//! let task: Task = Task::about(&reference_point, &rod, start, &times, Method::Auto, tolerance);
 //! assert!(Tolerance::new(1e-20, 0.0)?.is_beyond_doubles() && Tolerance::new(0.5 * TIGHTEST_TWOFOLD, 0.0).is_err());
 //!
 //! let weight = |_: f64, phase: &Phase| {
@@ -70,7 +70,7 @@
 //! assert_eq!(run.with_error(|error| error.to_string()).end, End::Event);
 //! let slug = Term::Slug(polhode::motion::loads::Slug::new(0.01, 0.1)?);
 //! let carried: Option<&dyn Carried> = slug.carried();
-//! assert_eq!(task.carrying(carried.into_iter())?.initial.own.len(), 3);
+//! assert_eq!(task.carrying(carried.into_iter())?.initial.internal_state.len(), 3);
 //! # Ok::<(), polhode::Error>(())
 //! ```
 
@@ -91,13 +91,13 @@ mod stepper;
 mod steps;
 mod taylor_run_with_events;
 
-pub use self::batch::{Calls, Row, Rows, simulate_many};
+pub use self::batch::{Batch, CallbackPolicy, Member, simulate_many};
 pub use self::choose::most_demanding;
 pub use self::events::{Events, NoEvents};
 pub use self::one::simulate;
 pub use self::plan::{Ask, Plan, Refusal};
 pub use super::problem::{
-    Crossing, Direction, Effort, End, Footing, MOST_STEPS, Method, Rule, Run, TIGHTEST,
+    Crossing, Direction, Effort, End, MOST_STEPS, Method, ReferencePoint, Rule, Run, TIGHTEST,
     TIGHTEST_TWOFOLD, Task, Tolerance, Watched, check_scales, check_times,
 };
 pub use super::state::{Phase, State};

@@ -28,7 +28,7 @@ pub fn simulate<L: Load>(
     }
     let plan = Plan::new(
         slice::from_ref(task.body),
-        task.subject.pivoted,
+        task.body_at_point.pivoted,
         task.times,
         task.method,
         task.tolerance,
@@ -107,7 +107,7 @@ mod tests {
         let tolerance = Tolerance::new(rtol, 0.0).expect("tolerance");
         let body = body.expect("body");
         let task = Task::free(&body, initial, times, Method::Dop853, tolerance);
-        let mut load = Analytic::new(load, task.subject);
+        let mut load = Analytic::new(load, task.body_at_point);
         let run = simulate(&task, &mut load, &mut NoEvents::new(), &mut watch);
         assert_eq!(run.end, End::Complete);
         run.samples

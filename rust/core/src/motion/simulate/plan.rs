@@ -9,7 +9,7 @@ use super::choose::closed_top;
 use crate::error::Error;
 use crate::mass::RigidBody;
 use crate::motion::loads::Term;
-use crate::motion::problem::{Footing, Method, Task, Tolerance, check_scales, check_times};
+use crate::motion::problem::{Method, ReferencePoint, Task, Tolerance, check_scales, check_times};
 use crate::motion::state::Phase;
 
 /// Asked now and then whether to go on, with the fraction done where that is known.
@@ -22,9 +22,9 @@ pub type Ask<'a> = dyn Fn(Option<f64>) -> ControlFlow<()> + Sync + 'a;
 /// ```
 /// use std::ops::ControlFlow;
 /// use polhode::mass::{Amount, RigidBody, solids};
-/// use polhode::motion::loads::{Analytic, Damping, Subject, Term};
+/// use polhode::motion::loads::{Analytic, Damping, BodyAtPoint, Term};
 /// use polhode::motion::simulate::{
-///     Ask, Calls, Method, NoEvents, Phase, Plan, Refusal, Row, Rows, Run, State, Tolerance, most_demanding, simulate_many,
+///     Ask, CallbackPolicy, Method, NoEvents, Phase, Plan, Refusal, Member, Batch, Run, State, Tolerance, most_demanding, simulate_many,
 /// };
 /// use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
 ///
@@ -33,11 +33,11 @@ pub type Ask<'a> = dyn Fn(Option<f64>) -> ControlFlow<()> + Sync + 'a;
 ///     terms: Vec<[Term; 1]>,
 /// }
 ///
-/// impl Rows for Balls {
+/// impl Batch for Balls {
 ///     type Error = polhode::Error;
 ///
-///     fn calls(&self) -> Calls {
-///         Calls::Nothing
+///     fn callbacks(&self) -> CallbackPolicy {
+///         CallbackPolicy::Nothing
 ///     }
 ///
 ///     fn start(&self, row: usize) -> (usize, Phase) {
@@ -49,10 +49,10 @@ pub type Ask<'a> = dyn Fn(Option<f64>) -> ControlFlow<()> + Sync + 'a;
 ///         &self.terms[row]
 ///     }
 ///
-///     fn run(&self, row: Row<'_>) -> Run<Self::Error> {
-///         let subject: Subject = row.subject();
+///     fn run(&self, row: Member<'_>) -> Run<Self::Error> {
+///         let body: BodyAtPoint = row.body();
 ///         let terms = &self.terms[row.number];
-///         row.under(&mut Analytic::new(terms, subject), &mut NoEvents::new())
+///         row.integrate(&mut Analytic::new(terms, body), &mut NoEvents::new())
 ///     }
 ///
 ///     fn ends_all(&self, _: &Self::Error) -> bool {
@@ -166,25 +166,30 @@ impl<'a> Plan<'a> {
         self.method
     }
 
-    /// The footing of the body, where there is one alone: its rows share it.
-    pub(super) fn common(&self) -> Option<Footing> {
+    /// The reference point of the body, where there is one alone: its rows share it.
+    pub(super) fn common(&self) -> Option<ReferencePoint> {
         match self.bodies {
-            [body] => Some(self.footing(body)),
+            [body] => Some(self.reference_point(body)),
             _ => None,
         }
     }
 
-    fn footing(&self, body: &RigidBody) -> Footing {
+    fn reference_point(&self, body: &RigidBody) -> ReferencePoint {
         let start = self.times.first().copied().unwrap_or_default();
         if self.pivoted {
-            Footing::pivoted(body, start)
+            ReferencePoint::pivoted(body, start)
         } else {
-            Footing::free(body, start)
+            ReferencePoint::free(body, start)
         }
     }
 
     /// What is to be simulated of body number `body` from `given` on, whose attitude is of unit length to rounding alone.
-    pub(super) fn task(&self, common: Option<&Footing>, body: usize, given: Phase) -> Task<'a> {
+    pub(super) fn task(
+        &self,
+        common: Option<&ReferencePoint>,
+        body: usize,
+        given: Phase,
+    ) -> Task<'a> {
         let body = &self.bodies[body];
         // To these the attitude says more than its rounded length does.
         let is_exact =
@@ -197,12 +202,12 @@ impl<'a> Plan<'a> {
             },
             ..given
         };
-        let footing = match common {
-            Some(footing) => footing,
-            None => &self.footing(body),
+        let reference_point = match common {
+            Some(reference_point) => reference_point,
+            None => &self.reference_point(body),
         };
-        Task::on(
-            footing,
+        Task::about(
+            reference_point,
             body,
             initial,
             self.times,

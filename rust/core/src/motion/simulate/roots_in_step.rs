@@ -54,10 +54,11 @@ pub(super) type Function<'a, E> =
     dyn FnMut(&mut dyn Dense<Error = E>, f64, &Phase) -> Result<f64, E> + 'a;
 
 /// What is done with each look in turn; it may look closer by, and end the search.
-pub(super) type Visit<'a, E> = dyn FnMut(&mut View<'_, E>, Look) -> Result<ControlFlow<()>, E> + 'a;
+pub(super) type Visit<'a, E> =
+    dyn FnMut(&mut RootSearch<'_, E>, Look) -> Result<ControlFlow<()>, E> + 'a;
 
 /// A function along one step, or a part of it.
-pub(super) struct View<'b, E> {
+pub(super) struct RootSearch<'b, E> {
     pub(super) function: &'b mut Function<'b, E>,
     /// Its number among those that a caller has, if it is one of them.
     pub(super) event: Option<usize>,
@@ -73,7 +74,7 @@ pub(super) struct View<'b, E> {
     pub(super) left: &'b mut u64,
 }
 
-impl<E: From<Error>> View<'_, E> {
+impl<E: From<Error>> RootSearch<'_, E> {
     fn look(&mut self, at: f64) -> Result<Look, E> {
         let phase = if at == self.stepper.elapsed() {
             self.stepper.phase()
@@ -153,17 +154,17 @@ impl<E: From<Error>> View<'_, E> {
             nodes.push(self.look(place(node, degree))?);
         }
         nodes.push(end);
-        let mut shape = Shape::of(&nodes);
-        let mut resolved = self.resolved(&nodes, &shape)?;
-        if resolved.is_none() && degree < DEGREE && shape.may_be_followed {
+        let mut interpolant = Interpolant::of(&nodes);
+        let mut resolved = self.resolved(&nodes, &interpolant)?;
+        if resolved.is_none() && degree < DEGREE && interpolant.may_be_followed {
             // Every second point of the higher degree is known.
             let mut all = vec![begin];
             for (known, node) in nodes[1..].iter().zip((1..).step_by(2)) {
                 all.extend([self.look(place(node, DEGREE))?, *known]);
             }
-            shape = Shape::of(&all);
+            interpolant = Interpolant::of(&all);
             nodes = all;
-            resolved = self.resolved(&nodes, &shape)?;
+            resolved = self.resolved(&nodes, &interpolant)?;
         }
         let is_instant = {
             let [one, other] = [begin.at, end.at].map(|at| (self.start + at).abs());
@@ -171,7 +172,7 @@ impl<E: From<Error>> View<'_, E> {
         };
         let looks = match resolved {
             Some(looks) => looks,
-            None if depth < DEPTH && !is_instant && shape.may_be_followed => {
+            None if depth < DEPTH && !is_instant && interpolant.may_be_followed => {
                 if depth >= DEEP {
                     *self.left = self.left.saturating_sub(DEEP_LOOKS);
                 }
@@ -197,16 +198,20 @@ impl<E: From<Error>> View<'_, E> {
     }
 
     /// The looks through a part between which the function rises or falls all the way, if its polynomial resolves it.
-    fn resolved(&mut self, nodes: &[Look], shape: &Shape) -> Result<Option<Vec<Look>>, E> {
-        if shape.is_constant {
+    fn resolved(
+        &mut self,
+        nodes: &[Look],
+        interpolant: &Interpolant,
+    ) -> Result<Option<Vec<Look>>, E> {
+        if interpolant.is_constant {
             return Ok(Some(nodes.to_vec()));
         }
-        if !shape.is_resolved {
+        if !interpolant.is_resolved {
             return Ok(None);
         }
         let [begin, end] = [nodes[0].at, nodes[nodes.len() - 1].at];
         let place = |x: f64| begin + (end - begin) * x;
-        let extremes = shape.extremes();
+        let extremes = interpolant.extremes();
         let places = if extremes.is_empty() {
             &[GOLDEN][..]
         } else {
@@ -215,15 +220,15 @@ impl<E: From<Error>> View<'_, E> {
         let mut between = nodes.to_vec();
         for &x in places {
             let look = self.look(place(x))?;
-            let off = (look.value - shape.at(x)).abs();
-            if off.is_nan() || off > shape.tolerance {
+            let off = (look.value - interpolant.at(x)).abs();
+            if off.is_nan() || off > interpolant.tolerance {
                 return Ok(None);
             }
             between.push(look);
         }
         for (index, &x) in extremes.iter().enumerate() {
             let extreme = between[nodes.len() + index];
-            if extreme.value.abs() <= shape.doubt {
+            if extreme.value.abs() <= interpolant.doubt {
                 let before = index.checked_sub(1).map_or(0.0, |before| extremes[before]);
                 let after = extremes.get(index + 1).map_or(1.0, |after| *after);
                 between[nodes.len() + index] =
@@ -331,7 +336,7 @@ fn is_within(place: f64, one: f64, other: f64) -> bool {
 }
 
 /// A function through Chebyshev points, as a polynomial.
-struct Shape {
+struct Interpolant {
     /// To rounding: there is nothing to resolve.
     is_constant: bool,
     is_resolved: bool,
@@ -345,7 +350,7 @@ struct Shape {
     chebyshev: Vec<f64>,
 }
 
-impl Shape {
+impl Interpolant {
     /// Through values at `x_j = (1 − cos πj/n)/2`.
     fn of(nodes: &[Look]) -> Self {
         let n = nodes.len() - 1;
@@ -448,7 +453,7 @@ mod tests {
                 omega: Vector3::zeros(),
                 position: Vector3::zeros(),
                 velocity: Vector3::zeros(),
-                own: Box::default(),
+                internal_state: Box::default(),
             }
         }
 
@@ -468,7 +473,7 @@ mod tests {
             at: 0.0,
             value: value(0.0),
         };
-        let mut view = View {
+        let mut search = RootSearch {
             function: &mut |_, at, _| {
                 count += 1;
                 Ok(value(at))
@@ -481,9 +486,9 @@ mod tests {
             halved: None,
             left,
         };
-        view.looks(before, turn, &mut |view, look| {
+        search.looks(before, turn, &mut |search, look| {
             if before.value * look.value < 0.0 {
-                zeros.push(view.locate([before, look], sign(before.value))?);
+                zeros.push(search.locate([before, look], sign(before.value))?);
             }
             before = look;
             Ok(ControlFlow::Continue(()))
@@ -608,7 +613,7 @@ mod tests {
             at,
             value: value(at),
         });
-        let mut view = View {
+        let mut search = RootSearch {
             function: &mut function,
             event: None,
             stepper: &mut Still,
@@ -618,7 +623,7 @@ mod tests {
             halved: None,
             left: &mut 0,
         };
-        let found = view.locate(bracket, sign(bracket[0].value));
+        let found = search.locate(bracket, sign(bracket[0].value));
         (found.expect("a zero"), count)
     }
 

@@ -3,22 +3,22 @@
 use super::equations::Equations;
 use super::stepper::{Carry, Dense, Span, Stepper};
 use crate::motion::integrate::RungeKutta;
-use crate::motion::loads::{Bearing, Change, Load};
+use crate::motion::loads::{Bearing, LawSwitch, Load};
 use crate::motion::problem::{Effort, Task};
 use crate::motion::state::Phase;
 
 /// A run of the method `M`, whose state has `N` numbers.
-pub(super) struct Solved<'a, L, M, const N: usize> {
+pub(super) struct RungeKuttaRun<'a, L, M, const N: usize> {
     equations: Equations<'a, L, N>,
     start: f64,
     method: M,
 }
 
-impl<'a, L: Load, M: RungeKutta<N>, const N: usize> Solved<'a, L, M, N> {
+impl<'a, L: Load, M: RungeKutta<N>, const N: usize> RungeKuttaRun<'a, L, M, N> {
     pub(super) fn new(task: &Task<'_>, span: &Span, load: &'a mut L) -> Result<Self, L::Error> {
         let mut equations = Equations::new(
             &task.euler,
-            &task.subject,
+            &task.body_at_point,
             span.from,
             &span.phase,
             load,
@@ -35,7 +35,7 @@ impl<'a, L: Load, M: RungeKutta<N>, const N: usize> Solved<'a, L, M, N> {
     }
 }
 
-impl<L: Load, M: RungeKutta<N>, const N: usize> Dense for Solved<'_, L, M, N> {
+impl<L: Load, M: RungeKutta<N>, const N: usize> Dense for RungeKuttaRun<'_, L, M, N> {
     type Error = L::Error;
 
     #[inline]
@@ -65,7 +65,7 @@ impl<L: Load, M: RungeKutta<N>, const N: usize> Dense for Solved<'_, L, M, N> {
     }
 }
 
-impl<L: Load, M: RungeKutta<N>, const N: usize> Stepper for Solved<'_, L, M, N> {
+impl<L: Load, M: RungeKutta<N>, const N: usize> Stepper for RungeKuttaRun<'_, L, M, N> {
     #[inline]
     fn advance(&mut self) -> Result<(), L::Error> {
         self.method.advance(&mut self.equations)
@@ -90,7 +90,7 @@ impl<L: Load, M: RungeKutta<N>, const N: usize> Stepper for Solved<'_, L, M, N> 
     }
 
     #[inline]
-    fn changes(&self) -> Vec<Change> {
-        self.equations.changes()
+    fn law_switches(&self) -> Vec<LawSwitch> {
+        self.equations.law_switches()
     }
 }

@@ -3,18 +3,18 @@
 use super::stepper::{Carry, Dense, Span, Stepper};
 use crate::error::{Error, MotionFault};
 use crate::motion::integrate::Splitting;
-use crate::motion::loads::{Change, Load};
+use crate::motion::loads::{LawSwitch, Load};
 use crate::motion::problem::{Effort, Task};
 use crate::motion::state::Phase;
 
 /// A run of [`Splitting`].
-pub(super) struct Kicked<'a, L> {
+pub(super) struct SplittingRun<'a, L> {
     load: &'a mut L,
     carry: Carry,
     stepper: Splitting,
 }
 
-impl<'a, L: Load> Kicked<'a, L> {
+impl<'a, L: Load> SplittingRun<'a, L> {
     pub(super) fn new(task: &Task<'_>, span: &Span, load: &'a mut L) -> Result<Self, L::Error> {
         if load.depends_on_rates() {
             return Err(Error::Motion(MotionFault::MethodCannotServe {
@@ -26,7 +26,7 @@ impl<'a, L: Load> Kicked<'a, L> {
         }
         let stepper = Splitting::new(
             &task.euler,
-            (!task.subject.pivoted).then_some(task.subject.mass),
+            (!task.body_at_point.pivoted).then_some(task.body_at_point.mass),
             [span.from, span.to],
             &span.phase,
             load,
@@ -41,7 +41,7 @@ impl<'a, L: Load> Kicked<'a, L> {
     }
 }
 
-impl<L: Load> Dense for Kicked<'_, L> {
+impl<L: Load> Dense for SplittingRun<'_, L> {
     type Error = L::Error;
 
     fn elapsed(&self) -> f64 {
@@ -57,7 +57,7 @@ impl<L: Load> Dense for Kicked<'_, L> {
     }
 }
 
-impl<L: Load> Stepper for Kicked<'_, L> {
+impl<L: Load> Stepper for SplittingRun<'_, L> {
     fn advance(&mut self) -> Result<(), L::Error> {
         self.stepper.advance(self.load)
     }
@@ -78,7 +78,7 @@ impl<L: Load> Stepper for Kicked<'_, L> {
         }
     }
 
-    fn changes(&self) -> Vec<Change> {
-        self.load.changes()
+    fn law_switches(&self) -> Vec<LawSwitch> {
+        self.load.law_switches()
     }
 }

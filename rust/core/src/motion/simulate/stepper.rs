@@ -2,7 +2,7 @@
 
 use super::equations::Scales;
 use crate::motion::integrate::splitting::Scheme;
-use crate::motion::loads::{Bearing, Change};
+use crate::motion::loads::{Bearing, LawSwitch};
 use crate::motion::problem::Effort;
 use crate::motion::state::Phase;
 
@@ -52,7 +52,7 @@ pub(super) trait Stepper: Dense {
     fn carry(&self) -> Carry;
 
     /// What may change the law of its load within a step.
-    fn changes(&self) -> Vec<Change>;
+    fn law_switches(&self) -> Vec<LawSwitch>;
 }
 
 /// What one span leaves to the next.

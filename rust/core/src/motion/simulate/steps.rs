@@ -3,12 +3,12 @@
 use std::ops::ControlFlow;
 
 use super::begin::begin;
-use super::event_detector::Lookout;
+use super::event_detector::EventDetector;
 use super::events::Events;
 use super::law_switches;
 use super::stepper::{Carry, Span, Stepper};
 use crate::error::{Error, MotionFault};
-use crate::motion::loads::{Change, Load, Resting};
+use crate::motion::loads::{LawSwitch, Load, Stiction};
 use crate::motion::problem::limits::{HELD, check_steps, spans};
 use crate::motion::problem::{Effort, End, Method, Run, Task};
 use crate::motion::state::Phase;
@@ -33,7 +33,8 @@ impl<E> Run<E> {
         }
         let (start, end) = (task.times[0], bounds[bounds.len() - 1]);
         let over_limit = |state| load.over_limit(state, start, &task.initial);
-        let mut lookout = Lookout::new(events, start, &task.initial, end - start, &over_limit)?;
+        let mut lookout =
+            EventDetector::new(events, start, &task.initial, end - start, &over_limit)?;
         let mut carry = Carry::default();
         for pair in bounds.windows(2) {
             let [mut from, to] = [pair[0], pair[1]];
@@ -41,7 +42,7 @@ impl<E> Run<E> {
             load.jump(from, &mut self.phase)?;
             load.settle(from, &self.phase);
             // Where the law of the load changes with the state, by what.
-            let mut flip: Option<(Change, f64)> = None;
+            let mut flip: Option<(LawSwitch, f64)> = None;
             let mut flips_at_once = 0_usize;
             loop {
                 let span = Span {
@@ -126,9 +127,9 @@ impl<E> Run<E> {
 
     /// Takes the law of the load beyond a change. A wheel that stops turns by what its time is off: it comes to rest without a change of
     /// the momentum.
-    fn change<L: Load<Error = E>>(&mut self, change: &Change, task: &Task<'_>, load: &mut L) {
-        load.change(change);
-        if let Some(resting) = Resting::of(&task.euler, load.bearings()) {
+    fn change<L: Load<Error = E>>(&mut self, change: &LawSwitch, task: &Task<'_>, load: &mut L) {
+        load.switch_law(change);
+        if let Some(resting) = Stiction::of(&task.euler, load.bearings()) {
             resting.stop(&mut self.phase);
         }
     }
@@ -149,7 +150,7 @@ impl<E> Run<E> {
         span: &Span,
         stepper: &mut dyn Stepper<Error = E>,
         may_flip: bool,
-        lookout: &mut Lookout<'_, E>,
+        lookout: &mut EventDetector<'_, E>,
         watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Reached<E>, E>
     where
@@ -157,7 +158,7 @@ impl<E> Run<E> {
     {
         let (from, length) = (span.from, span.to - span.from);
         let changes = if may_flip {
-            stepper.changes()
+            stepper.law_switches()
         } else {
             Vec::new()
         };
@@ -234,7 +235,7 @@ enum Reached<E> {
     /// Its end.
     End,
     /// A step within which the law of the load changes: by what, and when.
-    Flip { change: Change, time: f64 },
+    Flip { change: LawSwitch, time: f64 },
     /// The end of the run.
     Over(End<E>),
 }

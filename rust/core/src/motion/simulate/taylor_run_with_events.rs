@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
-use super::event_detector::Lookout;
+use super::event_detector::EventDetector;
 use super::events::Events;
 use super::stepper::Dense;
 use crate::error::Error;
@@ -22,14 +22,15 @@ pub(super) fn solve<E: From<Error>>(
 ) -> Run<E> {
     let (start, end) = (task.times[0], task.times[task.times.len() - 1]);
     let mut halt = None;
-    let mut lookout = match Lookout::new(events, start, &task.initial, end - start, &|_| -1.0) {
+    let mut lookout = match EventDetector::new(events, start, &task.initial, end - start, &|_| -1.0)
+    {
         Ok(lookout) => lookout,
         Err(error) => return Run::at_start(task, End::Failed(error)),
     };
     // Looks for events within a step of many turns count as steps.
     let (most, mut looks) = (task.tolerance.most_steps, 0);
     let mut run = solve_seen(task, terms, &mut |step| {
-        let mut summed = Summed {
+        let mut summed = TaylorStep {
             step,
             error: PhantomData,
         };
@@ -81,12 +82,12 @@ pub(super) fn solve<E: From<Error>>(
 }
 
 /// A step of Taylor series as events see it.
-struct Summed<'a, E> {
+struct TaylorStep<'a, E> {
     step: &'a Step,
     error: PhantomData<E>,
 }
 
-impl<E> Dense for Summed<'_, E> {
+impl<E> Dense for TaylorStep<'_, E> {
     type Error = E;
 
     fn elapsed(&self) -> f64 {

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::half_periods::{Periods, whole_off};
-use crate::motion::free::clock::{Clock, HalfPeriod};
+use crate::motion::free::clock::{HalfPeriod, JacobiFunctionsOfTime};
 use crate::motion::free::invariants::Invariants;
 use crate::numerics::jet::Jet;
 
@@ -44,7 +44,7 @@ impl Invariants {
             return rates;
         }
         let stretches = (phase / STRETCH).ceil().max(1.0);
-        let clock = Clock::at(self, rest / stretches);
+        let clock = JacobiFunctionsOfTime::at(self, rest / stretches);
         let mut done = 0.0;
         while done < stretches {
             if done > 0.0 {
@@ -125,7 +125,7 @@ impl Rates {
 
     /// By the time of a clock that is set to zero now.
     #[inline]
-    fn advance(&mut self, motion: &Invariants, clock: &Clock) {
+    fn advance(&mut self, motion: &Invariants, clock: &JacobiFunctionsOfTime) {
         let w: [Slopes; 3] = std::array::from_fn(|k| Jet::variable(self.omega[k], k));
         let [a1, a2, a3] = motion.contrast_slopes();
         let [p, q] = motion.squares(&w);

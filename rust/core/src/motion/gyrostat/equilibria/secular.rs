@@ -13,7 +13,7 @@ const STEPS: usize = 60;
 
 /// A multiplier, as its distance `1 − μ I_k = unit·s` from the pole of an axis: no digit of it is lost close by.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct Multiplier {
     /// k.
     axis: usize,
     /// A power of two at a small `h_k`, so that s is of order one at the pole's roots.
@@ -34,12 +34,12 @@ struct Term<T> {
 
 /// f as seen from one pole.
 #[derive(Clone, Copy)]
-struct View<T> {
+struct SecularAtPole<T> {
     unit: i32,
     terms: [Term<T>; 3],
 }
 
-impl<T: Real> View<T> {
+impl<T: Real> SecularAtPole<T> {
     /// `f/L² − 1` and, per s, half its slope.
     fn value_and_slope(&self, s: T) -> (T, T) {
         let (mut value, mut slope) = (-T::from(1.0), T::default());
@@ -103,7 +103,7 @@ impl<'a> Secular<'a> {
     }
 
     /// All multipliers at which f is L².
-    pub(super) fn roots(&self) -> Vec<Place> {
+    pub(super) fn roots(&self) -> Vec<Multiplier> {
         let (Some(&first), Some(&last)) = (self.poles.first(), self.poles.last()) else {
             return Vec::new();
         };
@@ -122,7 +122,7 @@ impl<'a> Secular<'a> {
     }
 
     /// The minimum of f between each two neighbouring poles.
-    pub(super) fn minima(&self) -> Vec<Place> {
+    pub(super) fn minima(&self) -> Vec<Multiplier> {
         self.poles
             .windows(2)
             .map(|pair| self.minimum(pair[0], pair[1]))
@@ -130,7 +130,7 @@ impl<'a> Secular<'a> {
     }
 
     /// The root beyond all poles, on the side where `1 − μ I_k` has this sign.
-    fn outer(&self, k: usize, side: f64) -> Place {
+    fn outer(&self, k: usize, side: f64) -> Multiplier {
         let view = self.view::<f64>(k);
         let is_above = |s: f64| view.value_and_slope(s).0 > 0.0;
         let near = side * view.terms[k].part.abs();
@@ -144,7 +144,13 @@ impl<'a> Secular<'a> {
     }
 
     /// The root between the pole of one axis and the minimum toward another pole.
-    fn inner(&self, minimum: &Place, from: usize, to: usize, below: DoubleDouble) -> Place {
+    fn inner(
+        &self,
+        minimum: &Multiplier,
+        from: usize,
+        to: usize,
+        below: DoubleDouble,
+    ) -> Multiplier {
         if below.high < 1e-9 {
             // Too close for doubles to see a side: f is a parabola.
             let view = self.view::<DoubleDouble>(minimum.axis);
@@ -187,11 +193,11 @@ impl<'a> Secular<'a> {
     }
 
     /// The minimum between the poles of two axes, the lower pole first.
-    fn minimum(&self, low: usize, high: usize) -> Place {
+    fn minimum(&self, low: usize, high: usize) -> Multiplier {
         // f falls from the lower pole on: in which half does it rise again?
         let view = self.view::<f64>(low);
         let middle = self.middle(low, high);
-        let falls = |view: &View<f64>, s: f64| view.slope_and_curvature(s).0 > 0.0;
+        let falls = |view: &SecularAtPole<f64>, s: f64| view.slope_and_curvature(s).0 > 0.0;
         let (k, end, from_low) = if falls(&view, middle) {
             (high, self.middle(high, low), false)
         } else {
@@ -214,7 +220,7 @@ impl<'a> Secular<'a> {
     }
 
     /// Newton's method to twice the precision.
-    fn refined(&self, k: usize, start: DoubleDouble) -> Place {
+    fn refined(&self, k: usize, start: DoubleDouble) -> Multiplier {
         let view = self.view::<DoubleDouble>(k);
         let mut s = start;
         for _ in 0..STEPS {
@@ -231,8 +237,8 @@ impl<'a> Secular<'a> {
         self.place(k, s)
     }
 
-    fn place(&self, axis: usize, s: DoubleDouble) -> Place {
-        Place {
+    fn place(&self, axis: usize, s: DoubleDouble) -> Multiplier {
+        Multiplier {
             axis,
             unit: self.unit(axis),
             s,
@@ -243,7 +249,7 @@ impl<'a> Secular<'a> {
         exponent(self.frame.rotor[axis].high).min(0)
     }
 
-    fn view<T: Real>(&self, k: usize) -> View<T> {
+    fn view<T: Real>(&self, k: usize) -> SecularAtPole<T> {
         let ReducedAxes { moments, rotor, .. } = self.frame;
         let number = |x: DoubleDouble| T::pair(x.high, x.low);
         let unit = self.unit(k);
@@ -258,11 +264,11 @@ impl<'a> Secular<'a> {
             }),
             is_own: j == k,
         });
-        View { unit, terms }
+        SecularAtPole { unit, terms }
     }
 }
 
-impl Place {
+impl Multiplier {
     /// The multiplier `1/I_k` itself, of an axis without a part of h.
     pub(super) fn at_pole(axis: usize) -> Self {
         Self {

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::axes::{Group, ReducedAxes, Vector, norm};
-use super::secular::{NOTHING, Place, Secular};
+use super::secular::{Multiplier, NOTHING, Secular};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
 
@@ -177,20 +177,20 @@ struct Maker<'a> {
 
 impl Maker<'_> {
     /// The equilibrium at a root of f.
-    fn root(&mut self, place: &Place) {
+    fn root(&mut self, place: &Multiplier) {
         let n = place.shares(self.frame);
         self.add(place, &n, Extent::Point);
     }
 
     /// The fold that a minimum of f stands for.
-    fn fold(&mut self, minimum: &Place) {
+    fn fold(&mut self, minimum: &Multiplier) {
         let n = minimum.shares(self.frame);
         self.meet(Meeting::Fold, &n, norm(&n));
     }
 
     /// What is at the pole of moments without a part of h: two points, a circle, or every state.
     fn pole(&mut self, group: &Group) {
-        let place = Place::at_pole(group.first);
+        let place = Multiplier::at_pole(group.first);
         let mut n = place.shares(self.frame);
         let others = norm(&n);
         if others.high > 0.0 && group.count < 3 {
@@ -230,7 +230,7 @@ impl Maker<'_> {
         });
     }
 
-    fn add(&mut self, place: &Place, n: &Vector, extent: Extent) {
+    fn add(&mut self, place: &Multiplier, n: &Vector, extent: Extent) {
         let I = &self.frame.moments;
         let length = norm(n);
         let n = n.map(|x| x / length);

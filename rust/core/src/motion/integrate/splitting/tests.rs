@@ -3,7 +3,7 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use super::Splitting;
 use crate::mass::RigidBody;
 use crate::motion::euler_equations::EulerEquations;
-use crate::motion::loads::{Analytic, Subject, Term};
+use crate::motion::loads::{Analytic, BodyAtPoint, Term};
 use crate::motion::state::{Phase, State};
 
 fn top(moments: [f64; 3]) -> RigidBody {
@@ -27,7 +27,7 @@ fn energy_and_vertical_momentum_of_a_heavy_body_do_not_drift() {
             omega: Vector3::new(0.3, 0.1, 12.0),
         });
         let gravity = [Term::uniform_gravity(&Vector3::new(0.0, 0.0, -9.81)).expect("finite")];
-        let mut load = Analytic::new(&gravity, Subject::pivoted(&body, 0.0));
+        let mut load = Analytic::new(&gravity, BodyAtPoint::pivoted(&body, 0.0));
         let times = [0.0, 200.0];
         let mut run =
             Splitting::new(&euler, None, times, &phase, &mut load, 1e-8, None).expect("smooth");
@@ -61,7 +61,7 @@ fn between_steps_and_backward() {
         omega: Vector3::new(0.3, 0.1, 3.0),
     });
     let gravity = [Term::uniform_gravity(&Vector3::new(0.0, 0.0, -9.81)).expect("finite")];
-    let mut load = Analytic::new(&gravity, Subject::pivoted(&body, 0.0));
+    let mut load = Analytic::new(&gravity, BodyAtPoint::pivoted(&body, 0.0));
     let mut go = |times: [f64; 2], phase: &Phase| {
         let mut run =
             Splitting::new(&euler, None, times, phase, &mut load, 1e-12, None).expect("smooth");

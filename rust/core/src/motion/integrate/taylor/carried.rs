@@ -6,7 +6,7 @@ use super::pack::{Lined, Pack, cross_term, plus};
 use super::series::Series;
 use super::step::{compensate, exp2, limit};
 use super::twin::COUNT;
-use crate::motion::loads::Own;
+use crate::motion::loads::InternalState;
 use crate::motion::loads::variables::WIDTH;
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
@@ -95,7 +95,7 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
     pub(super) fn enter(
         &mut self,
         row: usize,
-        own: &[Own<L::Real>],
+        own: &[InternalState<L::Real>],
         inverse_moments: [L::Real; 3],
         unit: f64,
     ) {
@@ -122,7 +122,7 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
 
     /// Leaves one row without effect.
     pub(super) fn vacate(&mut self, row: usize) {
-        let none = Own::default();
+        let none = InternalState::default();
         let count = self.states.len();
         self.set(row, &vec![L::Real::default(); count]);
         self.enter(row, &vec![none; count], [L::Real::default(); 3], 1.0);

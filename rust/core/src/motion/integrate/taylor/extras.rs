@@ -10,7 +10,7 @@ use super::gradient::Gradient;
 use super::pack::{Pack, plus};
 use super::series::Series;
 use super::terms::{Analytic, Forced};
-use crate::motion::loads::{Forcing, OnOrbit, Parts};
+use crate::motion::loads::{Forcing, OnOrbit, SeriesStructure};
 use crate::numerics::number::Number;
 
 /// Those that the load has; most loads have none.
@@ -42,7 +42,7 @@ enum Orbits {
 
 impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
     #[inline(always)]
-    pub(super) fn new(parts: &Parts) -> Self {
+    pub(super) fn new(parts: &SeriesStructure) -> Self {
         let mut gradients = Vec::new();
         for _ in 0..parts.gradients {
             gradients.push(Gradient::new());
@@ -277,9 +277,9 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
 }
 
 /// Whether nothing but one gravity gradient depends on the attitude: then its series may be as seen from any frame.
-fn is_of_orbit_alone(parts: &Parts) -> bool {
+fn is_of_orbit_alone(parts: &SeriesStructure) -> bool {
     let sees_space = parts.directions > 0 || parts.on_attitude || parts.is_pushed;
-    parts.gradients == 1 && !sees_space && !parts.is_timed && parts.own == 0
+    parts.gradients == 1 && !sees_space && !parts.is_timed && parts.internal_states == 0
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::pack::Pack;
 use super::series::Coefficient;
-use crate::motion::loads::Parts;
+use crate::motion::loads::SeriesStructure;
 use crate::numerics::number::Number;
 
 type Square<T> = [[T; 3]; 3];
@@ -99,7 +99,7 @@ impl<L: Number, const R: usize, const B: usize> Field<Pack<L, R>, B> {
     #[inline(always)]
     pub(super) fn acceleration(
         &self,
-        parts: Parts,
+        parts: SeriesStructure,
         k: usize,
         products: [Pack<L, R>; 3],
         at: &Coefficient<Pack<L, R>, B>,

@@ -4,7 +4,7 @@ use super::frame::Precision;
 use super::pack::{Lined, Pack};
 use super::series::Series;
 use super::twin::COUNT;
-use crate::motion::loads::{Formula, Step};
+use crate::motion::loads::{FormulaStep, TorqueFormula};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
 use crate::numerics::number::{Number, Real};
@@ -23,7 +23,7 @@ struct Vector<T>([[T; 3]; COUNT]);
 #[derive(Clone, Debug)]
 #[repr(align(64))] // see Pack
 struct Worked<T> {
-    steps: Vec<Step>,
+    steps: Vec<FormulaStep>,
     vector: usize,
     /// The matrix over the moments: zero in a row in which the formula does not act.
     matrix: [[T; 3]; 3],
@@ -71,7 +71,7 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Pack<L, R>> {
     pub(super) fn set<'a>(
         &mut self,
         row: usize,
-        formulas: impl Iterator<Item = (&'a Formula<L::Real>, [[L::Real; 3]; 3])>,
+        formulas: impl Iterator<Item = (&'a TorqueFormula<L::Real>, [[L::Real; 3]; 3])>,
     ) {
         self.vacate(row);
         let mut taken = vec![false; self.worked.len()];
@@ -224,18 +224,18 @@ impl<N: Number<Real: Precision>, S: Series<Pack<N, R>, B>, const R: usize, const
 }
 
 impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
-    fn new(formula: &Formula<L::Real>) -> Self {
+    fn new(formula: &TorqueFormula<L::Real>) -> Self {
         let zero = Pack::new(0.0);
         let (mut scalars, mut vectors, mut speed) = (Vec::new(), Vec::new(), None);
         for step in &formula.steps {
             match step {
-                Step::Square | Step::Speed(_) => {
-                    if matches!(step, Step::Speed(_)) {
+                FormulaStep::Square | FormulaStep::Speed(_) => {
+                    if matches!(step, FormulaStep::Speed(_)) {
                         speed = Some(scalars.len());
                     }
                     scalars.push(Scalar([zero; COUNT]));
                 }
-                Step::Times(..) => vectors.push(Vector([[zero; 3]; COUNT])),
+                FormulaStep::Times(..) => vectors.push(Vector([[zero; 3]; COUNT])),
             }
         }
         Self {
@@ -245,7 +245,12 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
             scalars,
             vectors,
             speed,
-            is_quadratic: formula.steps == [Step::Square, Step::Speed(0), Step::Times(1, 0)]
+            is_quadratic: formula.steps
+                == [
+                    FormulaStep::Square,
+                    FormulaStep::Speed(0),
+                    FormulaStep::Times(1, 0),
+                ]
                 && formula.vector == 1,
             half_over_speed: zero,
         }
@@ -292,16 +297,16 @@ impl<L: Number<Real: Precision>, const R: usize> Worked<Pack<L, R>> {
         let (mut scalars, mut vectors) = (0, 0);
         for i in 0..self.steps.len() {
             match self.steps[i] {
-                Step::Square => {
+                FormulaStep::Square => {
                     self.scalars[scalars].0[k] = square(k, series);
                     scalars += 1;
                 }
-                Step::Speed(of) => {
+                FormulaStep::Speed(of) => {
                     let square = self.scalars[of].0[k];
                     let _speeds = self.set_speed(k, scalars, square, still);
                     scalars += 1;
                 }
-                Step::Times(factor, vector) => {
+                FormulaStep::Times(factor, vector) => {
                     let factor = &self.scalars[factor].0;
                     let product = if vector == 0 {
                         times(k, factor, |j| series.get(j).w)

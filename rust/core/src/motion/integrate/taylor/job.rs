@@ -6,10 +6,10 @@ use super::frame::Precision;
 use super::{series, twin};
 use crate::error::Error;
 use crate::motion::loads::variables::Fixed;
-use crate::motion::loads::{Parts, Term};
+use crate::motion::loads::{SeriesStructure, Term};
 use crate::motion::problem::{End, Run, Task, check_times};
 
-pub(super) fn settings(task: &Task<'_>, parts: Parts) -> Settings {
+pub(super) fn settings(task: &Task<'_>, parts: SeriesStructure) -> Settings {
     let tolerance = task.tolerance;
     let highest = if tolerance.is_beyond_doubles() {
         twin::HIGHEST_ORDER
@@ -36,7 +36,7 @@ pub(super) fn job<'a, X: Precision<Variables = Fixed>>(
     let course = (task.clone())
         .carrying(terms.iter().filter_map(Term::carried))
         .and_then(|task| {
-            (run.samples[0].own).clone_from(&task.initial.own);
+            (run.samples[0].internal_state).clone_from(&task.initial.internal_state);
             Course::new(&task, terms, Fixed)
         });
     match course {

@@ -10,7 +10,7 @@ use super::job::{rows, settings};
 use super::kernels::{OneByOne, Precisely, ROWS, SideBySide};
 use crate::error::Error;
 use crate::motion::loads::variables::Fixed;
-use crate::motion::loads::{Parts, Term};
+use crate::motion::loads::{SeriesStructure, Term};
 use crate::motion::problem::{Run, Task};
 use crate::numerics::dispatch::dispatch;
 use crate::numerics::threads::{fill_blocks, locked, thread_count};
@@ -112,9 +112,9 @@ impl Tasks<'_, '_> {
     ) -> (Vec<Option<Run<Error>>>, ControlFlow<()>) {
         let (first, count, example) = (some.start, some.len(), (self.task)(some.start));
         let mut runs = vec![None; count];
-        let mut common = Parts::default();
+        let mut common = SeriesStructure::default();
         for row in some {
-            let (terms, subject) = ((self.terms)(row), &example.subject);
+            let (terms, subject) = ((self.terms)(row), &example.body_at_point);
             common = common.of_both(parts::<f64>(terms, subject, Fixed, !subject.pivoted));
         }
         let settings = settings(&example, common);

@@ -34,7 +34,7 @@ fn go(
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
     see: Option<See>,
 ) {
-    let subject = &task.subject;
+    let subject = &task.body_at_point;
     let parts = parts::<f64>(terms, subject, Fixed, !subject.pivoted);
     let settings = settings(task, parts);
     // How the run ended stands in it.

@@ -40,7 +40,7 @@ pub(in crate::motion::integrate) fn run_varied(
         tell(k, state, own);
     };
     // The path of the body is left out.
-    let parts = parts::<Varied>(terms, &task.subject, block, false);
+    let parts = parts::<Varied>(terms, &task.body_at_point, block, false);
     let settings = Settings::of_derivatives(ORDER, parts);
     let job = Job {
         course,

@@ -5,15 +5,15 @@ use nalgebra::{Vector3, Vector4};
 use super::feedback::Feedback;
 use super::slug::{not_negative, positive};
 use crate::error::{Error, MotionFault, finite};
-use crate::motion::loads::body_at_point::Subject;
+use crate::motion::loads::body_at_point::BodyAtPoint;
 use crate::motion::loads::carried::Carried;
 use crate::motion::loads::drive::Drive;
-use crate::motion::loads::law::{Character, Kept, Law};
+use crate::motion::loads::law::{Kept, Law, Traits};
 use crate::motion::loads::law_switches::Switch;
 use crate::motion::loads::now::Now;
 use crate::motion::loads::parameter::Parameter;
-use crate::motion::loads::principal_frame::{Axes, Exact, exact};
-use crate::motion::loads::series_terms::{Linear, Own};
+use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame, exact};
+use crate::motion::loads::series_terms::{InternalState, SeriesTerms};
 use crate::motion::loads::wrench::Wrench;
 use crate::motion::state::Phase;
 
@@ -114,23 +114,23 @@ impl Wheel {
     }
 
     /// Ω from the state.
-    fn speed(&self, own: &[f64], omega: &Vector3<f64>) -> f64 {
+    fn speed(&self, state: &[f64], omega: &Vector3<f64>) -> f64 {
         if self.has_speed() {
-            own[0] / self.inertia
+            state[0] / self.inertia
         } else {
-            own[0] / self.inertia - self.unit.dot(omega)
+            state[0] / self.inertia - self.unit.dot(omega)
         }
     }
 
     /// The rate of the state: ḣ, or JΩ̇ where the speed is given.
-    fn rate_of_state(&self, now: &Now<'_>, own: &[f64]) -> f64 {
+    fn rate_of_state(&self, now: &Now<'_>, state: &[f64]) -> f64 {
         let motor = match &self.drive {
             Drive::Speed(speed) => return self.inertia * speed.line(now.middle)[1],
             Drive::Torque(torque) => torque.value(now.middle),
             Drive::Feedback(law) => self.asked(law, now),
             Drive::Limited(law, limit) => self.asked(law, now).clamp(-limit, *limit),
         };
-        motor - self.friction * self.speed(own, &now.phase.omega)
+        motor - self.friction * self.speed(state, &now.phase.omega)
     }
 
     /// What a feedback asks of the motor.
@@ -139,7 +139,7 @@ impl Wheel {
     }
 
     /// a of unit length, in principal axes.
-    fn direction<X: Exact>(&self, axes: &Axes<'_, X>) -> Vector3<X> {
+    fn direction<X: LawNumber>(&self, axes: &PrincipalFrame<'_, X>) -> Vector3<X> {
         let scale = self.axis.amax().log2().floor().exp2();
         let mut scaled = exact::<X>(&(self.axis / scale));
         if axes.varies(AXIS, 3) {
@@ -152,16 +152,16 @@ impl Wheel {
 }
 
 impl Law for Wheel {
-    fn character(&self, _: bool) -> Character {
-        Character {
+    fn traits(&self, _: bool) -> Traits {
+        Traits {
             exerts_force: false,
             depends_on_rates: true,
             needs_body: !self.has_speed(),
-            needs_epoch: self.feedback().is_some_and(|law| law.aim.needs_epoch()),
+            needs_epoch: self.feedback().is_some_and(|law| law.target.needs_epoch()),
             keeps: Kept::All,
             has_series: !matches!(self.drive, Drive::Limited(..))
                 && self.bearing().is_none()
-                && (self.feedback()).is_none_or(|law| law.aim.fixed().is_some()),
+                && (self.feedback()).is_none_or(|law| law.target.fixed().is_some()),
         }
     }
 
@@ -186,9 +186,9 @@ impl Law for Wheel {
         Err(MotionFault::StatesStay { what: "scaled" }.into())
     }
 
-    fn anchored(mut self, t: f64) -> Self {
+    fn with_epoch(mut self, t: f64) -> Self {
         if let Drive::Feedback(law) | Drive::Limited(law, _) = &mut self.drive {
-            *law = law.clone().anchored(t);
+            *law = law.clone().with_epoch(t);
         }
         self
     }
@@ -197,7 +197,7 @@ impl Law for Wheel {
         self.drive.breaks()
     }
 
-    fn check(&self, subject: &Subject, from: f64, to: f64) -> Result<(), Error> {
+    fn check(&self, body: &BodyAtPoint, from: f64, to: f64) -> Result<(), Error> {
         if to < from && self.bearing().is_some() {
             return Err(Error::OutOfDomain {
                 what: "t",
@@ -205,20 +205,20 @@ impl Law for Wheel {
                 value: to,
             });
         }
-        self.drive.check(subject, from, to)
+        self.drive.check(body, from, to)
     }
 
     /// At a start; of a wheel at rest without what its bearing holds, which follows from all loads on the body.
-    fn wrench(&self, subject: &Subject, t: f64, phase: &Phase) -> Wrench {
-        let own = self.begin(t, &phase.omega);
+    fn wrench(&self, body: &BodyAtPoint, t: f64, phase: &Phase) -> Wrench {
+        let state = self.begin(t, &phase.omega);
         let now = Now {
-            subject,
+            body,
             t,
             middle: t,
             phase,
-            side: (self.switch(subject, t, phase)).map_or(1.0, |switch| switch.side),
+            side: (self.switch(body, t, phase)).map_or(1.0, |switch| switch.side),
         };
-        let mut torque = self.torque(&now, &own);
+        let mut torque = self.torque(&now, &state);
         if self.bearing().is_some() && self.rate != 0.0 {
             torque += self.unit * (self.dry_friction * self.rate.signum());
         }
@@ -226,7 +226,7 @@ impl Law for Wheel {
     }
 
     /// A wheel without motor and friction takes no energy.
-    fn potential(&self, _: &Subject, _: &Phase) -> Option<f64> {
+    fn potential(&self, _: &BodyAtPoint, _: &Phase) -> Option<f64> {
         let is_free = match &self.drive {
             Drive::Torque(torque) => torque.times().is_empty() && torque.value(0.0) == 0.0,
             Drive::Feedback(_) | Drive::Limited(..) | Drive::Speed(_) => false,
@@ -234,7 +234,12 @@ impl Law for Wheel {
         (is_free && self.friction == 0.0 && self.dry_friction == 0.0).then_some(0.0)
     }
 
-    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, side: f64) {
+    fn add_to<'a, X: LawNumber>(
+        &'a self,
+        series: &mut SeriesTerms<'a, X>,
+        axes: &PrincipalFrame<'_, X>,
+        side: f64,
+    ) {
         let a = self.direction(axes);
         let inertia = axes.number(self.inertia, INERTIA);
         let friction = if self.has_speed() {
@@ -242,47 +247,47 @@ impl Law for Wheel {
         } else {
             axes.number(self.friction, FRICTION)
         };
-        let mut own = Own {
+        let mut state = InternalState {
             momentum: a,
             size: self.inertia,
-            ..Own::default()
+            ..InternalState::default()
         };
         match &self.drive {
             Drive::Speed(speed) => {
-                own.constant = inertia * speed.slope(axes.middle, axes, SPEED);
-                own.reported_on_omega = a * inertia;
+                state.constant = inertia * speed.slope(axes.middle, axes, SPEED);
+                state.reported_on_omega = a * inertia;
             }
-            Drive::Torque(torque) => own.constant = torque.number(axes.middle, axes, DRIVE),
+            Drive::Torque(torque) => state.constant = torque.number(axes.middle, axes, DRIVE),
             // With a limit it has no series, nor with dry friction: the law without them.
             Drive::Feedback(law) | Drive::Limited(law, _) => {
-                let mut asked = Linear::default();
+                let mut asked = SeriesTerms::default();
                 law.add_to(&mut asked, &axes.part(DRIVE), side);
-                own.on_omega = -asked.on_omega().tr_mul(&a);
-                own.on_attitude = -asked.on_attitude().tr_mul(&a);
-                linear.add_on_attitude(&-(a * own.on_attitude.transpose()));
+                state.on_omega = -asked.on_omega().tr_mul(&a);
+                state.on_attitude = -asked.on_attitude().tr_mul(&a);
+                series.add_on_attitude(&-(a * state.on_attitude.transpose()));
             }
         }
         if !self.has_speed() {
-            linear.turning += a * a.transpose() * inertia;
-            own.on_itself = -(friction / inertia);
-            own.on_omega += a * friction;
+            series.turning += a * a.transpose() * inertia;
+            state.on_itself = -(friction / inertia);
+            state.on_omega += a * friction;
         }
         // −a ḣ.
-        linear.constant -= a * own.constant;
-        linear.add_on_omega(&-(a * own.on_omega.transpose()));
-        own.torque = -(a * own.on_itself);
-        linear.own.push(own);
+        series.constant -= a * state.constant;
+        series.add_on_omega(&-(a * state.on_omega.transpose()));
+        state.torque = -(a * state.on_itself);
+        series.internal_states.push(state);
     }
 
     fn may_switch(&self) -> bool {
         self.feedback().is_some()
     }
 
-    fn switch(&self, subject: &Subject, t: f64, phase: &Phase) -> Option<Switch> {
-        self.feedback()?.switch(subject, t, phase)
+    fn switch(&self, body: &BodyAtPoint, t: f64, phase: &Phase) -> Option<Switch> {
+        self.feedback()?.switch(body, t, phase)
     }
 
-    fn switching<X: Exact>(&self, axes: &Axes<'_, X>) -> Option<Vector4<X>> {
+    fn switching<X: LawNumber>(&self, axes: &PrincipalFrame<'_, X>) -> Option<Vector4<X>> {
         self.feedback()?.switching(&axes.part(DRIVE))
     }
 
@@ -331,11 +336,11 @@ impl Carried for Wheel {
         self.has_speed()
     }
 
-    fn reported(&self, own: &[f64], omega: &Vector3<f64>) -> Vec<f64> {
+    fn reported(&self, state: &[f64], omega: &Vector3<f64>) -> Vec<f64> {
         vec![if self.has_speed() {
-            own[0] + self.inertia * self.unit.dot(omega)
+            state[0] + self.inertia * self.unit.dot(omega)
         } else {
-            own[0]
+            state[0]
         }]
     }
 
@@ -372,23 +377,23 @@ impl Carried for Wheel {
         (share - 1.0) * (share + 1.0)
     }
 
-    fn torque(&self, now: &Now<'_>, own: &[f64]) -> Vector3<f64> {
-        let rate = self.rate_of_state(now, own);
-        self.unit.cross(&now.phase.omega) * own[0] - self.unit * rate
+    fn torque(&self, now: &Now<'_>, state: &[f64]) -> Vector3<f64> {
+        let rate = self.rate_of_state(now, state);
+        self.unit.cross(&now.phase.omega) * state[0] - self.unit * rate
     }
 
-    fn rates(&self, now: &Now<'_>, own: &[f64], rates: &mut [f64]) {
-        rates[0] = self.rate_of_state(now, own);
+    fn rates(&self, now: &Now<'_>, state: &[f64], rates: &mut [f64]) {
+        rates[0] = self.rate_of_state(now, state);
     }
 
     /// JΩ a.
-    fn momentum(&self, own: &[f64], omega: &Vector3<f64>) -> Vector3<f64> {
-        self.unit * (self.inertia * self.speed(own, omega))
+    fn momentum(&self, state: &[f64], omega: &Vector3<f64>) -> Vector3<f64> {
+        self.unit * (self.inertia * self.speed(state, omega))
     }
 
     /// `JΩ a·ω + ½ J Ω²`.
-    fn energy(&self, own: &[f64], omega: &Vector3<f64>) -> f64 {
-        let speed = self.speed(own, omega);
+    fn energy(&self, state: &[f64], omega: &Vector3<f64>) -> f64 {
+        let speed = self.speed(state, omega);
         self.inertia * speed * (self.unit.dot(omega) + 0.5 * speed)
     }
 }

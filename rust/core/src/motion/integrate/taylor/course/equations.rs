@@ -8,7 +8,8 @@ use crate::motion::integrate::taylor::frame::Precision;
 use crate::motion::kinematics::Frame;
 use crate::motion::loads::variables::{MASS, Variables};
 use crate::motion::loads::{
-    Axes, Exact, Forcing, Formula, Linear, Own, Parts, Subject, Term, When,
+    BodyAtPoint, Forcing, InternalState, LawNumber, PrincipalFrame, SeriesStructure, SeriesTerms,
+    Term, TorqueFormula, When,
 };
 use crate::numerics::number::Real;
 use crate::numerics::power_of_two::power_below;
@@ -38,13 +39,14 @@ impl<X: Precision> Course<'_, X> {
             vector.map(X::rounded).amax() * matrix.map(X::rounded).amax() * over_moment
         });
         let middle = self.middle();
-        let timed = (linear.timed.iter())
-            .map(|(_, torque)| torque.square_of_rate(&self.task.subject, middle, over_moment));
+        let timed = (linear.timed.iter()).map(|(_, torque)| {
+            torque.square_of_rate(&self.task.body_at_point, middle, over_moment)
+        });
         let gradients = (linear.gradients.iter())
-            .map(|(_, gradient)| gradient.square_of_rate(&self.task.subject));
+            .map(|(_, gradient)| gradient.square_of_rate(&self.task.body_at_point));
         let timed = timed.chain(gradients);
         let (mut momentum, mut torque, mut decay) = (Vector3::zeros(), Vector3::zeros(), 0.0_f64);
-        for (state, &value) in linear.own.iter().zip(own) {
+        for (state, &value) in linear.internal_states.iter().zip(own) {
             momentum += state.momentum.map(X::rounded) * value.rounded();
             torque += state.torque.map(X::rounded) * value.rounded();
             decay = decay.max(state.on_itself.rounded().abs());
@@ -75,7 +77,7 @@ impl<X: Precision> Course<'_, X> {
             .map(|(i, j, k)| self.kappa[i] + (along[j] - along[k]) * self.inverse_moments[i]);
         let aside =
             [(0, 1, 2), (1, 2, 0), (2, 0, 1)].map(|(i, j, k)| self.products[i] + across[(j, k)]);
-        let mass = (self.variables).number(self.task.subject.mass, MASS);
+        let mass = (self.variables).number(self.task.body_at_point.mass, MASS);
         let mut field = Field {
             kappa: self.kappa.into(),
             inverse_moments: self.inverse_moments.into(),
@@ -106,7 +108,7 @@ impl<X: Precision> Course<'_, X> {
     /// The formulas of the segment under way, each with its matrix over the moments in units of rates.
     pub(in crate::motion::integrate::taylor) fn formulas(
         &self,
-    ) -> impl Iterator<Item = (&Formula<X>, [[X; 3]; 3])> {
+    ) -> impl Iterator<Item = (&TorqueFormula<X>, [[X; 3]; 3])> {
         let inverse = Matrix3::from_diagonal(&self.inverse_moments);
         self.linear.formulas.iter().map(move |formula| {
             // Units are powers of two.
@@ -162,8 +164,8 @@ impl<X: Precision> Course<'_, X> {
     }
 
     /// What the states of the load do in the segment under way.
-    pub(in crate::motion::integrate::taylor) fn own(&self) -> &[Own<X>] {
-        &self.linear.own
+    pub(in crate::motion::integrate::taylor) fn own(&self) -> &[InternalState<X>] {
+        &self.linear.internal_states
     }
 
     pub(in crate::motion::integrate::taylor) fn inverse_moments(&self) -> &Vector3<X> {
@@ -174,18 +176,18 @@ impl<X: Precision> Course<'_, X> {
 /// What the equations of a motion of `subject` under these terms are made of, in numbers of which `variables` are varied: what
 /// they add, switched on or not. The principal axes do not matter for it. `has_path` where the path of the body is part of the
 /// motion.
-pub(in crate::motion::integrate::taylor) fn parts<X: Exact>(
+pub(in crate::motion::integrate::taylor) fn parts<X: LawNumber>(
     terms: &[Term],
-    subject: &Subject,
+    subject: &BodyAtPoint,
     variables: X::Variables,
     has_path: bool,
-) -> Parts {
+) -> SeriesStructure {
     let (zero, one) = (X::zero(), X::one());
-    let mut linear = Linear::default();
+    let mut linear = SeriesTerms::default();
     let firsts = variables.columns(&mut terms.iter().map(Term::count));
     for (k, term) in terms.iter().enumerate() {
-        let axes = Axes {
-            subject,
+        let axes = PrincipalFrame {
+            body: subject,
             columns: &Matrix3::identity(),
             q_bp: &[zero, zero, zero, one],
             variables,
@@ -194,7 +196,7 @@ pub(in crate::motion::integrate::taylor) fn parts<X: Exact>(
         };
         term.add_to(&mut linear, &axes, 1.0);
     }
-    linear.parts(has_path)
+    linear.structure(has_path)
 }
 
 fn rows<X: Real>(matrix: &Matrix3<X>) -> [[X; 3]; 3] {

@@ -6,7 +6,7 @@ use crate::error::{Error, MotionFault};
 use crate::mass::validity::ROUNDING;
 use crate::motion::integrate::taylor::frame::{Precision, Principal};
 use crate::motion::loads::variables::Variables;
-use crate::motion::loads::{Axes, Linear, Term};
+use crate::motion::loads::{PrincipalFrame, SeriesTerms, Term};
 use crate::motion::problem::Task;
 use crate::numerics::number::Real;
 use crate::numerics::quaternion::product;
@@ -55,7 +55,7 @@ pub(in crate::motion::integrate::taylor) struct Course<'a, X: Precision> {
     /// The ends of the segments, and which is under way.
     pub(super) breaks: Vec<f64>,
     pub(super) segment: usize,
-    pub(super) linear: Linear<'a, X>,
+    pub(super) linear: SeriesTerms<'a, X>,
     /// Of each feedback that acts, what changes its law.
     switches: Vec<Switch<X>>,
     /// The unit of rates: a power of two near the fastest of the motion.
@@ -100,7 +100,7 @@ impl<'a, X: Precision> Course<'a, X> {
             products: principal.products.into(),
             breaks,
             segment: 0,
-            linear: Linear::default(),
+            linear: SeriesTerms::default(),
             switches: Vec::new(),
             unit: 1.0,
         };
@@ -108,7 +108,7 @@ impl<'a, X: Precision> Course<'a, X> {
         let mut from = start;
         for &to in &course.breaks {
             for (_, term) in course.acting(from, to) {
-                term.check(&task.subject, from, to)?;
+                term.check(&task.body_at_point, from, to)?;
             }
             from = to;
         }
@@ -127,7 +127,7 @@ impl<'a, X: Precision> Course<'a, X> {
 
     /// What acts in the segment under way.
     fn linearize(&mut self, state: &[X; 7]) -> Result<(), Error> {
-        let mut linear = Linear::default();
+        let mut linear = SeriesTerms::default();
         let mut switches: Vec<Switch<X>> = Vec::new();
         for (first, term) in self.acting(self.segment_start(), self.breaks[self.segment]) {
             let (axes, mut side) = (self.principal_axes(first), 1.0);
@@ -141,10 +141,10 @@ impl<'a, X: Precision> Course<'a, X> {
                 };
                 switch.side = switch.sign(state);
                 side = switch.side;
-                let mut own = Linear::default();
+                let mut own = SeriesTerms::default();
                 term.add_to(&mut own, &axes, side);
                 switch.torque = own.on_attitude();
-                let states = (linear.own.len()..).zip(&own.own);
+                let states = (linear.internal_states.len()..).zip(&own.internal_states);
                 switch.own = states.map(|(i, state)| (i, state.on_attitude)).collect();
                 switches.push(switch);
             }
@@ -157,9 +157,9 @@ impl<'a, X: Precision> Course<'a, X> {
     }
 
     /// Those of the term whose first number is a variable of the column `first`.
-    pub(super) fn principal_axes(&self, first: usize) -> Axes<'_, X> {
-        Axes {
-            subject: &self.task.subject,
+    pub(super) fn principal_axes(&self, first: usize) -> PrincipalFrame<'_, X> {
+        PrincipalFrame {
+            body: &self.task.body_at_point,
             columns: &self.axes,
             q_bp: &self.q_bp,
             variables: self.variables,
@@ -169,7 +169,7 @@ impl<'a, X: Precision> Course<'a, X> {
     }
 
     /// A torque along an axis without moment of inertia has nothing to turn.
-    fn check_massless(&self, linear: &Linear<'_, X>, state: &[X; 7]) -> Result<(), Error> {
+    fn check_massless(&self, linear: &SeriesTerms<'_, X>, state: &[X; 7]) -> Result<(), Error> {
         for (n, moment) in self.task.euler.moments().into_iter().enumerate() {
             if moment > 0.0 {
                 continue;
@@ -195,7 +195,7 @@ impl<'a, X: Precision> Course<'a, X> {
                 let (size, matrix) = (vector.map(X::rounded).norm(), matrix.map(X::rounded));
                 parts.push((matrix.row(n).norm() * size, matrix.norm() * size));
             }
-            for own in &linear.own {
+            for own in &linear.internal_states {
                 let (torque, momentum) = (own.torque.map(X::rounded), own.momentum.map(X::rounded));
                 let mut across = momentum;
                 across[n] = 0.0;
@@ -311,11 +311,11 @@ fn turning<X: Precision>(
     variables: X::Variables,
     firsts: &[usize],
 ) -> Matrix3<X> {
-    let mut linear = Linear::default();
+    let mut linear = SeriesTerms::default();
     for (k, term) in terms.iter().enumerate() {
         if term.carried().is_some() {
-            let axes = Axes {
-                subject: &task.subject,
+            let axes = PrincipalFrame {
+                body: &task.body_at_point,
                 columns: &principal.axes,
                 q_bp: &principal.q_bp,
                 variables,

@@ -60,7 +60,7 @@ impl<X: Precision> Course<'_, X> {
             omega: (self.axes * Vector3::new(x, y, z)).map(X::rounded) * self.unit,
             position,
             velocity,
-            own: if besides.own.is_empty() {
+            internal_state: if besides.own.is_empty() {
                 Box::default()
             } else {
                 let own = self.own_in_body(&besides.own).into_iter();
@@ -72,7 +72,7 @@ impl<X: Precision> Course<'_, X> {
     /// The load's own states at the start, vectors among them in principal axes.
     pub(in crate::motion::integrate::taylor) fn own_at_start(&self) -> Vec<X> {
         let first = self.firsts.get(self.terms.len()).copied().unwrap_or(0);
-        let given = self.task.initial.own.iter().enumerate();
+        let given = self.task.initial.internal_state.iter().enumerate();
         let given: Vec<X> = given
             .map(|(i, &x)| self.variables.number(x, first + i))
             .collect();
@@ -91,7 +91,10 @@ impl<X: Precision> Course<'_, X> {
         own: &[X],
     ) -> Vec<X> {
         let omega = Vector3::from_column_slice(&state[..3]) * X::from(self.unit);
-        let states = self.own_in_body(own).into_iter().zip(&self.linear.own);
+        let states = self
+            .own_in_body(own)
+            .into_iter()
+            .zip(&self.linear.internal_states);
         states
             .map(|(value, state)| value + state.reported_on_omega.dot(&omega))
             .collect()
@@ -99,7 +102,7 @@ impl<X: Precision> Course<'_, X> {
 
     fn own_turned(&self, own: &[X], turn: impl Fn(Vector3<X>) -> Vector3<X>) -> Vec<X> {
         let mut turned = own.to_vec();
-        for (number, state) in self.linear.own.iter().enumerate() {
+        for (number, state) in self.linear.internal_states.iter().enumerate() {
             if let Some((first, component)) = state.turned {
                 let vector = turn(Vector3::from_column_slice(&own[first..first + 3]));
                 turned[number] = vector[component];

@@ -108,7 +108,7 @@ where
             directions: [[zero; 3]; B],
             state: Compensated::new(),
             push: settings.parts.is_pushed.then(|| Box::new(Push::new())),
-            carried: match settings.parts.own {
+            carried: match settings.parts.internal_states {
                 0 => None,
                 count => Some(Box::new(Carried::new(count))),
             },

@@ -1,6 +1,6 @@
 //! The order of the series and the size of their last terms.
 
-use crate::motion::loads::Parts;
+use crate::motion::loads::SeriesStructure;
 
 /// Relative to the tolerance of a step, the size of the last term of its series: the terms left out are a quarter of that,
 /// and at the tightest tolerance stay below the rounding of the state even where they all have the same sign.
@@ -15,12 +15,12 @@ pub(in super::super) struct Settings {
     pub(super) last_term: f64,
     /// The ω that counts as much as the largest |ω| so far: absolute over relative tolerance.
     pub(super) floor: f64,
-    pub(in super::super) parts: Parts,
+    pub(in super::super) parts: SeriesStructure,
 }
 
 impl Settings {
     /// For motions with derivatives, whose series say themselves how long a step may be.
-    pub(in super::super) fn of_derivatives(order: usize, parts: Parts) -> Self {
+    pub(in super::super) fn of_derivatives(order: usize, parts: SeriesStructure) -> Self {
         Self {
             order,
             last_term: 0.0,
@@ -35,7 +35,7 @@ impl Settings {
         relative: f64,
         absolute: f64,
         highest: usize,
-        parts: Parts,
+        parts: SeriesStructure,
     ) -> Self {
         let nats = -(LAST_TERM * relative).ln();
         let mut halves = (4..highest / 2).filter(|&half| half as f64 + 1.0 <= 0.36 * nats);

@@ -39,9 +39,9 @@ fn begun(extras: &mut Extras<Pair>, row: usize) -> (Vec<f64>, Vec<f64>) {
 #[test]
 fn pages_are_read_before_one_is_put_down() {
     let (places, new) = (neighbours(), PAGES);
-    let one_gradient = Parts {
+    let one_gradient = SeriesStructure {
         gradients: 1,
-        ..Parts::default()
+        ..SeriesStructure::default()
     };
     for seeker in 0..2 {
         let reader = 1 - seeker;
@@ -75,35 +75,38 @@ fn pages_are_read_before_one_is_put_down() {
 /// A law that sees space beside the orbit has the series in N; the attitude goes to the orbit's frame and back.
 #[test]
 fn series_are_seen_from_the_orbit_if_nothing_else_sees_space() {
-    let alone = Parts {
+    let alone = SeriesStructure {
         gradients: 1,
         on_omega: true,
         quadratic: true,
-        ..Parts::default()
+        ..SeriesStructure::default()
     };
     let besides = [
-        Parts {
+        SeriesStructure {
             gradients: 2,
             ..alone
         },
-        Parts {
+        SeriesStructure {
             directions: 1,
             ..alone
         },
-        Parts {
+        SeriesStructure {
             on_attitude: true,
             ..alone
         },
-        Parts {
+        SeriesStructure {
             is_pushed: true,
             ..alone
         },
-        Parts {
+        SeriesStructure {
             is_timed: true,
             ..alone
         },
-        Parts { own: 1, ..alone },
-        Parts {
+        SeriesStructure {
+            internal_states: 1,
+            ..alone
+        },
+        SeriesStructure {
             gradients: 0,
             ..alone
         },
