@@ -83,7 +83,6 @@ pub mod schedule;
 mod series_terms;
 mod spline;
 mod stiction;
-mod stumpff;
 mod term;
 pub(in crate::motion) mod variables;
 mod wrench;
