@@ -1,11 +1,14 @@
-//! What acts between two breaks, as far as it is linear in what varies: what the laws of a load add up to in a series.
+//! What the laws of a load add to the equations of a series between two breaks: terms that are linear in what varies, formulas of ω,
+//! and what depends on the time alone.
+
+use std::fmt::Debug;
 
 use nalgebra::{Matrix3, Matrix3x4, Vector3, Vector4};
 
-use super::forcing::{Orbiting, Timed};
-use super::formula::TorqueFormula;
-use super::principal_frame::LawNumber;
+use super::body_at_point::BodyAtPoint;
+use super::principal_frame::{LawNumber, PrincipalFrame};
 use crate::motion::kinematics::Frame;
+use crate::numerics::number::Real;
 
 /// Torques about the reference point in principal axes, linear in what varies, and what is not linear besides. What no law has
 /// stated is `None`, which is not the same as a zero that a law has stated: see [`Self::parts`].
@@ -202,6 +205,214 @@ impl<X: LawNumber> Default for InternalState<X> {
     }
 }
 
+/// A step of a formula. Scalars and vectors are numbered in the order of the steps that make them; the vector 0 is ω.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FormulaStep {
+    /// The scalar ω·ω.
+    Square,
+    /// The scalar |ω|, the root of the scalar of this number, which is ω·ω.
+    Speed(usize),
+    /// A scalar times a vector.
+    Times(usize, usize),
+}
+
+/// A scalar of a formula, and its degree in ω.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scalar {
+    number: usize,
+    degree: i32,
+}
+
+/// A vector of a formula, and its degree in ω.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Vector {
+    number: usize,
+    degree: i32,
+}
+
+/// ω.
+pub(crate) const OMEGA: Vector = Vector {
+    number: 0,
+    degree: 1,
+};
+
+/// The torque `M v` about the reference point: a matrix, and a vector that is made of ω step by step; in principal axes.
+#[derive(Clone, Debug)]
+pub(crate) struct TorqueFormula<X: LawNumber> {
+    /// How the vector is made.
+    pub steps: Vec<FormulaStep>,
+    /// The number of the vector.
+    pub vector: usize,
+    /// Its degree in ω, so that the torque is known in every unit of rates.
+    pub degree: i32,
+    /// M.
+    pub matrix: Matrix3<X>,
+}
+
+impl<X: LawNumber> TorqueFormula<X> {
+    /// Whether |ω| is a step of it.
+    pub(super) fn has_speed(&self) -> bool {
+        self.steps
+            .iter()
+            .any(|step| matches!(step, FormulaStep::Speed(_)))
+    }
+}
+
+/// A formula as a law states it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Steps {
+    list: Vec<FormulaStep>,
+    scalars: usize,
+    vectors: usize,
+}
+
+impl Steps {
+    fn scalar(&mut self, step: FormulaStep, degree: i32) -> Scalar {
+        self.list.push(step);
+        self.scalars += 1;
+        Scalar {
+            number: self.scalars - 1,
+            degree,
+        }
+    }
+
+    /// `ω·ω`.
+    pub(crate) fn square(&mut self) -> Scalar {
+        self.scalar(FormulaStep::Square, 2)
+    }
+
+    /// |ω|. Where ω passes through zero, a step must end: see [`TorqueFormula::has_speed`].
+    pub(crate) fn speed(&mut self) -> Scalar {
+        let square = self.square();
+        self.scalar(FormulaStep::Speed(square.number), 1)
+    }
+
+    /// A scalar times a vector.
+    pub(crate) fn times(&mut self, factor: Scalar, vector: Vector) -> Vector {
+        self.list
+            .push(FormulaStep::Times(factor.number, vector.number));
+        self.vectors += 1;
+        Vector {
+            number: self.vectors,
+            degree: factor.degree + vector.degree,
+        }
+    }
+
+    /// The torque `matrix · vector`, the matrix in principal axes.
+    pub(crate) fn torque<X: LawNumber>(
+        self,
+        matrix: Matrix3<X>,
+        vector: Vector,
+    ) -> TorqueFormula<X> {
+        TorqueFormula {
+            steps: self.list,
+            vector: vector.number,
+            degree: vector.degree,
+            matrix,
+        }
+    }
+}
+
+/// The parts of a load that go with the time, around one time; times and rates in units of the unit of rates.
+#[derive(Clone, Debug)]
+pub(crate) struct Forcing<X> {
+    /// Torques in principal axes over the moments: coefficients of a cubic.
+    pub in_body: [Vector3<X>; 4],
+    /// Torques in N: coefficients of a cubic.
+    pub in_space: [Vector3<X>; 4],
+    /// One for each gravity gradient that acts.
+    pub orbits: Vec<OnOrbit<X>>,
+    /// Whether these are known already and not asked for.
+    pub has_orbits: bool,
+}
+
+/// A state on an orbit, lengths over the distance r₀ of this time, times in the unit of rates.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OnOrbit<X> {
+    /// From the attractor, in N: a unit vector.
+    pub position: Vector3<X>,
+    /// In N.
+    pub velocity: Vector3<X>,
+    /// μ/r₀³.
+    pub pull: X,
+    /// 3μ/r₀³ times the factor of the load.
+    pub strength: X,
+}
+
+impl<X: Real> Default for Forcing<X> {
+    fn default() -> Self {
+        Self {
+            in_body: [Vector3::zeros(); 4],
+            in_space: [Vector3::zeros(); 4],
+            orbits: Vec::new(),
+            has_orbits: false,
+        }
+    }
+}
+
+impl<X: Real> Forcing<X> {
+    /// Nothing acts, and nothing is known.
+    pub(crate) fn clear(&mut self) {
+        self.in_body = [Vector3::zeros(); 4];
+        self.in_space = [Vector3::zeros(); 4];
+        self.orbits.clear();
+        self.has_orbits = false;
+    }
+}
+
+impl<X: Real> OnOrbit<X> {
+    /// That of a term that does not act.
+    #[must_use]
+    pub(crate) fn none() -> Self {
+        Self {
+            position: Vector3::new(X::zero(), X::zero(), X::one()),
+            velocity: Vector3::zeros(),
+            pull: X::zero(),
+            strength: X::zero(),
+        }
+    }
+}
+
+/// A time at which a step begins.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct When<X> {
+    /// Since the start of the motion, and when that was.
+    pub elapsed: X,
+    /// The start of the motion.
+    pub start: f64,
+    /// The time as a double.
+    pub time: f64,
+    /// A time within the segment, which has no breaks.
+    pub middle: f64,
+    /// The unit of rates.
+    pub unit: f64,
+}
+
+/// A torque that depends on the time: a cubic between two breaks.
+pub(crate) trait Timed<X: LawNumber>: Debug {
+    /// The frame that its components are in.
+    fn frame(&self) -> Frame;
+
+    /// The coefficients of the cubic around a time, in the body's axes or in N, in units of the unit of rates.
+    fn cubic(&self, axes: &PrincipalFrame<'_, X>, when: &When<X>) -> [Vector3<X>; 4];
+
+    /// About the square of the fastest rate that it makes in a segment with the time `middle` in it; `over_moment` is one over the
+    /// least moment of inertia.
+    fn square_of_rate(&self, body: &BodyAtPoint, middle: f64, over_moment: f64) -> f64;
+
+    /// The sizes of its torques around a time along a unit vector of B, and in all.
+    fn torques_along(&self, axis: &Vector3<f64>, middle: f64) -> Vec<(f64, f64)>;
+}
+
+/// A gravity gradient, whose torque `r×I r` has no component along an axis without a moment.
+pub(crate) trait Orbiting<X: LawNumber>: Debug {
+    /// Where the body is at a time.
+    fn on_orbit(&self, axes: &PrincipalFrame<'_, X>, when: &When<X>) -> OnOrbit<X>;
+
+    /// About the square of the fastest rate that it makes.
+    fn square_of_rate(&self, body: &BodyAtPoint) -> f64;
+}
+
 #[cfg(test)]
 mod tests {
     use nalgebra::UnitQuaternion;
@@ -338,5 +549,28 @@ mod tests {
         };
         assert_eq!((one.of_both(other), other.of_both(one)), (both, both));
         assert!(both.may_flip() && !one.may_flip());
+    }
+
+    #[test]
+    fn degrees_are_counted() {
+        let mut steps = Steps::default();
+        let (speed, square) = (steps.speed(), steps.square());
+        let once = steps.times(speed, OMEGA);
+        let twice = steps.times(square, once);
+        let formula = steps.torque(Matrix3::<f64>::identity(), twice);
+        assert_eq!((formula.degree, formula.vector), (4, 2));
+        let all = [
+            FormulaStep::Square,
+            FormulaStep::Speed(0),
+            FormulaStep::Square,
+            FormulaStep::Times(1, 0),
+            FormulaStep::Times(2, 1),
+        ];
+        assert_eq!(formula.steps, all);
+        assert!(formula.has_speed());
+        let mut steps = Steps::default();
+        let square = steps.square();
+        let cubic = steps.times(square, OMEGA);
+        assert!(!steps.torque(Matrix3::<f64>::identity(), cubic).has_speed());
     }
 }
