@@ -1,12 +1,12 @@
 //! Sums of analytic terms.
 
-use super::bearing::Bearing;
 use super::body_at_point::BodyAtPoint;
 use super::carried::Carried;
+use super::carried::Now;
 use super::law_switches::{LawSwitch, Switch};
 use super::laws::Term;
 use super::load::Load;
-use super::now::Now;
+use super::stiction::Bearing;
 use super::wrench::Wrench;
 use crate::error::Error;
 use crate::motion::state::Phase;

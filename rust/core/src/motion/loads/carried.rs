@@ -1,8 +1,9 @@
-//! What a load carries along in the body, with states of its own: wheels, slugs.
+//! What a load carries along in the body, with internal states: wheels, slugs.
 
 use nalgebra::Vector3;
 
-use super::now::Now;
+use super::body_at_point::BodyAtPoint;
+use crate::motion::state::Phase;
 
 /// What a law carries along in the body: an angular momentum beside I ω, and states of its own that go on with the motion.
 ///
@@ -63,4 +64,19 @@ pub trait Carried {
 
     /// Its kinetic energy beside ½ ω·I ω; of a momentum that is constant nothing.
     fn energy(&self, state: &[f64], omega: &Vector3<f64>) -> f64;
+}
+
+/// When, on what and in which state a law acts within a run.
+#[derive(Clone, Copy, Debug)]
+pub struct Now<'a> {
+    /// What it acts on.
+    pub body: &'a BodyAtPoint,
+    /// The time.
+    pub t: f64,
+    /// A time within the span under way, which has no breaks.
+    pub middle: f64,
+    /// The state.
+    pub phase: &'a Phase,
+    /// The sign that a law with one is taken for.
+    pub side: f64,
 }

@@ -5,7 +5,6 @@ use nalgebra::Vector3;
 use super::body_at_point::BodyAtPoint;
 use super::carried::Carried;
 use super::law_switches::Switch;
-use super::parameter::Parameter;
 use super::principal_frame::{LawNumber, PrincipalFrame};
 use super::series_terms::SeriesTerms;
 use super::wrench::Wrench;
@@ -146,5 +145,30 @@ pub(super) trait Law: Sized {
     /// What it carries along in the body. [`Self::wrench`] of a law with states is that where a motion starts.
     fn carried(&self) -> Option<&dyn Carried> {
         None
+    }
+}
+
+/// Numbers of a term of a load, under the name and with the shape that they have where the term is made.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Parameter {
+    /// The name.
+    pub name: &'static str,
+    /// How many in each direction; in C order.
+    pub shape: Vec<usize>,
+}
+
+impl Parameter {
+    /// Of this name and shape.
+    pub(super) fn new(name: &'static str, shape: &[usize]) -> Self {
+        Self {
+            name,
+            shape: shape.to_vec(),
+        }
+    }
+
+    /// How many numbers they are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.shape.iter().product()
     }
 }

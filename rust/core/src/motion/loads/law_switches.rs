@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::attitude_target::AttitudeTarget;
-use super::bearing::Bearing;
+use super::stiction::Bearing;
 use crate::motion::state::Phase;
 
 /// What may change the law of a load within a step.

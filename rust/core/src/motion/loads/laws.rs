@@ -25,13 +25,13 @@ pub use self::rotor::Rotor;
 pub use self::sampled::Sampled;
 pub use self::slug::Slug;
 pub use self::uniform_gravity::UniformGravity;
-pub use self::wheel::Wheel;
+pub use self::wheel::{Drive, Wheel};
 
 use super::body_at_point::BodyAtPoint;
 use super::carried::Carried;
+use super::law::Parameter;
 use super::law::{Kept, Law, Traits};
 use super::law_switches::Switch;
-use super::parameter::Parameter;
 use super::principal_frame::{LawNumber, PrincipalFrame};
 use super::schedule::Windows;
 use super::series_terms::SeriesTerms;

@@ -1,11 +1,12 @@
 //! A load, whoever computes it.
 
-use super::bearing::Bearing;
 use super::carried::Carried;
 use super::law_switches::LawSwitch;
 use super::laws::Term;
+use super::stiction::{Bearing, Stiction};
 use super::wrench::Wrench;
 use crate::error::Error;
+use crate::motion::euler_equations::EulerEquations;
 use crate::motion::state::Phase;
 
 /// A load as a function of time and state, whoever computes it.
@@ -150,4 +151,39 @@ pub trait Load {
         let _ = (t, phase);
         Ok(())
     }
+}
+
+/// What a load exerts at a state outside a run, on a body with these equations (without the wheels that turn freely): the bearings at
+/// rest hold as far as they can.
+///
+/// # Errors
+/// As [`Load::wrench`].
+pub fn wrench_at<L: Load>(
+    load: &mut L,
+    euler: &EulerEquations,
+    t: f64,
+    phase: &Phase,
+) -> Result<Wrench, L::Error> {
+    load.settle(t, phase);
+    let mut bearings = load.bearings().to_vec();
+    let mut motors = vec![0.0; phase.internal_state.len()];
+    let mut wrench = load.act(t, phase, &mut motors)?;
+    // One after the other slips, first the one that is furthest beyond its most.
+    while let Some(resting) = Stiction::of(euler, &bearings) {
+        let mut rates = motors.clone();
+        let torque = resting.hold(&phase.omega, &wrench.torque, &mut rates);
+        let held = |bearing: &Bearing| rates[bearing.index] - motors[bearing.index];
+        let slips =
+            |bearing: &Bearing| bearing.turns == 0.0 && bearing.until_slip(held(bearing)) < 0.0;
+        let share = |bearing: &Bearing| held(bearing).abs() / bearing.most;
+        let worst = (bearings.iter_mut())
+            .filter(|bearing| slips(bearing))
+            .max_by(|a, b| share(a).total_cmp(&share(b)));
+        let Some(worst) = worst else {
+            return Ok(Wrench { torque, ..wrench });
+        };
+        *worst = worst.slipping(held(worst));
+        wrench.torque -= worst.axis * worst.friction();
+    }
+    Ok(wrench)
 }

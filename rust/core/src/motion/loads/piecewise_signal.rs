@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use super::parameter::Parameter;
+use super::law::Parameter;
 use super::principal_frame::{LawNumber, PrincipalFrame};
+use super::spline::check_ascending;
 use crate::error::{Error, MotionFault, all_finite, finite};
 
 /// A number that changes at known times.
@@ -49,7 +50,7 @@ impl PiecewiseSignal {
         if times.is_empty() {
             return Err(Error::Empty { what: "times" });
         }
-        ascending("times", times)?;
+        check_ascending("times", times)?;
         all_finite(what, values)?;
         Ok(Self {
             times: times.into(),
@@ -163,23 +164,6 @@ impl PiecewiseSignal {
         let slope = (self.values[k] - self.values[k - 1]) / (to - from);
         [self.values[k - 1] + slope * (t - from), slope]
     }
-}
-
-/// That times are finite and ascend.
-pub(super) fn ascending(what: &'static str, times: &[f64]) -> Result<(), Error> {
-    all_finite(what, times)?;
-    for (k, pair) in times.windows(2).enumerate() {
-        if pair[1] <= pair[0] {
-            return Err(Error::Motion(MotionFault::NotMonotone {
-                what,
-                order: "ascending",
-                index: k + 1,
-                previous: pair[0],
-                next: pair[1],
-            }));
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -2,7 +2,6 @@
 
 use nalgebra::Vector3;
 
-use super::piecewise_signal::ascending;
 use crate::error::{Error, MotionFault, all_finite, finite};
 use crate::numerics::number::Real;
 use crate::numerics::threads::{Watch, each_watched};
@@ -40,7 +39,7 @@ impl Spline {
             });
         }
         let [when, span, what, through] = names;
-        ascending(when, times)?;
+        check_ascending(when, times)?;
         all_finite(what, values.iter().flatten())?;
         finite(span, times[times.len() - 1] - times[0])?;
         let pieces = pieces(times, values, watch)?;
@@ -191,6 +190,23 @@ fn slopes<X: Real>(
         Ok::<_, Error>(())
     })?;
     Ok(slopes)
+}
+
+/// Check that times are finite and ascend.
+pub(super) fn check_ascending(what: &'static str, times: &[f64]) -> Result<(), Error> {
+    all_finite(what, times)?;
+    for (k, pair) in times.windows(2).enumerate() {
+        if pair[1] <= pair[0] {
+            return Err(Error::Motion(MotionFault::NotMonotone {
+                what,
+                order: "ascending",
+                index: k + 1,
+                previous: pair[0],
+                next: pair[1],
+            }));
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]
