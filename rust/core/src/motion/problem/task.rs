@@ -1,9 +1,7 @@
-//! What is to be simulated, and how.
+//! What is to be simulated, by which method and how accurately.
 
-use super::limits::check_times;
-use super::method::Method;
-use super::tolerance::Tolerance;
-use crate::error::{Error, all_finite};
+use super::limits::{MOST_STEPS, check_times};
+use crate::error::{Error, all_finite, finite};
 use crate::mass::RigidBody;
 use crate::mass::refined::RefinedPrincipal;
 use crate::motion::euler_equations::EulerEquations;
@@ -162,5 +160,136 @@ impl<'a> Task<'a> {
             body_without_wheels: Some(Box::new(body_without_wheels)),
             ..self
         })
+    }
+}
+
+/// How a motion is found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Method {
+    /// The first of exact, Taylor and DOP853 that can serve the run.
+    #[default]
+    Auto,
+    /// In closed form: a free body without a load, and a symmetric top pivoted on its axis under uniform gravity.
+    Exact,
+    /// Taylor series of the order at which the work is least: analytic loads. At tolerances that doubles cannot serve in numbers
+    /// of twice their precision.
+    Taylor,
+    /// The explicit Runge-Kutta method of order 8 by Dormand and Prince: every load.
+    Dop853,
+    /// The implicit Runge-Kutta method Radau IIA of order 5: every load, for those that are stiff.
+    Radau,
+    /// Kicks between exact free motions at equal steps: loads that do not depend on rates, for long times.
+    Splitting,
+}
+
+impl Method {
+    /// Every method, in the order of this page.
+    ///
+    /// ```
+    /// use polhode::motion::simulate::Method;
+    ///
+    /// let named = |name| Method::ALL.iter().find(|method| method.name() == name);
+    /// assert_eq!(named("radau"), Some(&Method::Radau));
+    /// assert_eq!(named("euler"), None);
+    /// ```
+    pub const ALL: &'static [Self] = &[
+        Self::Auto,
+        Self::Exact,
+        Self::Taylor,
+        Self::Dop853,
+        Self::Radau,
+        Self::Splitting,
+    ];
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Exact => "exact",
+            Self::Taylor => "taylor",
+            Self::Dop853 => "dop853",
+            Self::Radau => "radau",
+            Self::Splitting => "splitting",
+        }
+    }
+}
+
+/// The tightest relative tolerance that float64 can serve.
+pub const TIGHTEST: f64 = 10.0 * f64::EPSILON;
+/// The tightest relative tolerance that numbers of twice the precision can serve.
+pub const TIGHTEST_TWOFOLD: f64 = 1e-28;
+
+/// How accurate each step is to be, and how many there may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    /// Of the attitude in radians (half), and of ω, position and velocity relative to the largest so far.
+    pub relative: f64,
+    /// Of ω, added to the relative one.
+    pub absolute: f64,
+    /// Steps of a run at most, [`MOST_STEPS`] or fewer.
+    pub most_steps: u64,
+}
+
+impl Tolerance {
+    /// Checked tolerances.
+    ///
+    /// # Errors
+    /// When `relative` is not within [`TIGHTEST_TWOFOLD`]..0.1 or `absolute` is negative.
+    pub fn new(relative: f64, absolute: f64) -> Result<Self, Error> {
+        finite("rtol", relative)?;
+        finite("atol", absolute)?;
+        if !(TIGHTEST_TWOFOLD..=0.1).contains(&relative) {
+            let law = "between 1e-28 and 0.1; below 2.3e-15 (ten units of rounding) the method \"taylor\" alone serves it";
+            return Err(Error::OutOfDomain {
+                what: "rtol",
+                law,
+                value: relative,
+            });
+        }
+        if absolute < 0.0 {
+            return Err(Error::OutOfDomain {
+                what: "atol",
+                law: "zero or more",
+                value: absolute,
+            });
+        }
+        Ok(Self {
+            relative,
+            absolute,
+            most_steps: MOST_STEPS,
+        })
+    }
+
+    /// The same with fewer steps at most.
+    #[must_use]
+    #[inline]
+    pub fn within(self, most_steps: u64) -> Self {
+        Self {
+            most_steps: most_steps.min(MOST_STEPS),
+            ..self
+        }
+    }
+
+    /// Whether it is tighter than doubles can serve.
+    #[must_use]
+    #[inline]
+    pub fn is_beyond_doubles(&self) -> bool {
+        self.relative < TIGHTEST
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn doubles_serve_down_to_the_tightest() {
+        let is_beyond =
+            |relative| Tolerance::new(relative, 0.0).map(|found| found.is_beyond_doubles());
+        assert_eq!(is_beyond(TIGHTEST), Ok(false));
+        assert_eq!(is_beyond(0.999 * TIGHTEST), Ok(true));
+        assert!(is_beyond(0.999 * TIGHTEST_TWOFOLD).is_err());
     }
 }
