@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use super::choose::{closed_top, gravity_alone};
+use super::plan::{closed_top, gravity_alone};
 use super::stepper::{Carry, Dense, Span, Stepper};
 use crate::error::{Error, MotionFault};
 use crate::motion::free::FreeMotion;

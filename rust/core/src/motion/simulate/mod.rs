@@ -4,15 +4,15 @@
 //!
 //! | what | file |
 //! |---|---|
-//! | which method serves; what all motions of a stack have in common | `choose`, `plan` |
-//! | one motion; many, on as many cores as may take part | `one`, `many` |
-//! | bodies and tops in closed form | `exact` |
-//! | methods of steps, through spans of time in which the load is smooth | `steps` |
-//! | what a run needs of such a method; the one place that makes it | `stepper`, `begin` |
-//! | the methods: Runge-Kutta, splitting, Taylor series looked through as they are summed | `solved`, `kicked`, `summed` |
-//! | what Runge-Kutta methods see of the mechanics | `equations` |
-//! | what is looked for, and the look through a step | [`events`], `lookout`, `along` |
-//! | where a load changes its law with the state | `flips` |
+//! | which method serves; what all motions of a stack have in common | `plan` |
+//! | one motion; many, on as many cores as may take part | `runs` |
+//! | the loop over the steps, through spans of time in which the load is smooth | `run_loop` |
+//! | what a run needs of a method of steps | `stepper` |
+//! | the methods: Runge-Kutta, splitting, Taylor series with events | `runge_kutta_run`, `splitting_run`, `taylor_run_with_events` |
+//! | bodies and tops in closed form | `closed_form_run` |
+//! | the search for events | [`events`] |
+//! | all zeros of a function within a step | `roots_in_step` |
+//! | where a load changes its law with the state | `law_switches` |
 //!
 //! # Examples
 //!
@@ -74,28 +74,21 @@
 //! # Ok::<(), polhode::Error>(())
 //! ```
 
-mod batch;
-mod begin;
-mod choose;
 mod closed_form_run;
-mod equations;
-mod event_detector;
 pub mod events;
 mod law_switches;
-mod one;
 mod plan;
 mod roots_in_step;
+mod run_loop;
 mod runge_kutta_run;
+mod runs;
 mod splitting_run;
 mod stepper;
-mod steps;
 mod taylor_run_with_events;
 
-pub use self::batch::{Batch, CallbackPolicy, Member, simulate_many};
-pub use self::choose::most_demanding;
 pub use self::events::{Events, NoEvents};
-pub use self::one::simulate;
-pub use self::plan::{Ask, Plan, Refusal};
+pub use self::plan::{Ask, Plan, Refusal, most_demanding};
+pub use self::runs::{Batch, CallbackPolicy, Member, simulate, simulate_many};
 pub use super::problem::{
     Crossing, Direction, Effort, End, MOST_STEPS, Method, ReferencePoint, Rule, Run, TIGHTEST,
     TIGHTEST_TWOFOLD, Task, Tolerance, Watched, check_scales, check_times,

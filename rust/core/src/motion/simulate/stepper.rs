@@ -1,6 +1,5 @@
 //! What a run needs of a method of steps.
 
-use super::equations::Scales;
 use crate::motion::integrate::splitting::Scheme;
 use crate::motion::loads::{Bearing, LawSwitch};
 use crate::motion::problem::Effort;
@@ -53,6 +52,15 @@ pub(super) trait Stepper: Dense {
 
     /// What may change the law of its load within a step.
     fn law_switches(&self) -> Vec<LawSwitch>;
+}
+
+/// The largest |ω|, |r|, |v| and states of the load's own so far: what errors are relative to.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scales {
+    pub(super) omega: f64,
+    pub(super) position: f64,
+    pub(super) velocity: f64,
+    pub(super) internal_state: Vec<f64>,
 }
 
 /// What one span leaves to the next.

@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
-use super::event_detector::EventDetector;
+use super::events::EventDetector;
 use super::events::Events;
 use super::stepper::Dense;
 use crate::error::Error;
