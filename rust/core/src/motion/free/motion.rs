@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::mode::Mode;
 use super::propagator::Propagator;
-use super::secular::Secular;
+use super::propagator::Secular;
 use super::separation::Separation;
 use super::steady_or_symmetric;
 use super::tumbling::Tumbling;

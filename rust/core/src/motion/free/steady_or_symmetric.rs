@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
+use super::propagator::Secular;
 use super::propagator::{AnySeries, Circular, EllipticArgument, Propagator};
-use super::secular::Secular;
 use super::tumbling::hypotenuse;
 use crate::mass::refined::Vector;
 use crate::numerics::double_double::DoubleDouble;
