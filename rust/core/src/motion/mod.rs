@@ -23,6 +23,7 @@
 
 pub mod angular_momentum;
 pub mod attitude;
+mod closed_form;
 pub mod euler_angles;
 pub mod euler_equations;
 pub mod free;

@@ -77,7 +77,6 @@
 //! # Ok::<(), polhode::Error>(())
 //! ```
 
-pub(super) mod evaluate;
 mod from_periods;
 mod invariants;
 pub mod mode;

@@ -11,7 +11,7 @@ use super::tumbling::Tumbling;
 use crate::error::{Error, all_finite};
 use crate::mass::RigidBody;
 use crate::mass::refined::{RefinedPrincipal, Vector};
-use crate::motion::free::evaluate;
+use crate::motion::closed_form;
 use crate::motion::state::{ClosedForm, State};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::power_below;
@@ -111,7 +111,7 @@ impl FreeMotion {
     /// The attitude is continuous in t as a quaternion, not only as a rotation.
     #[must_use]
     pub fn at(&self, t: f64) -> State {
-        evaluate::at(&self.propagator, t)
+        closed_form::at(&self.propagator, t)
     }
 
     /// The states at many times on the calling thread, quaternions as (x, y, z, w): the bits of [`Self::at`].
@@ -119,7 +119,7 @@ impl FreeMotion {
     /// # Panics
     /// If the lengths differ.
     pub fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
-        evaluate::sample(&self.propagator, times, attitudes, omegas);
+        closed_form::sample(&self.propagator, times, attitudes, omegas);
     }
 }
 

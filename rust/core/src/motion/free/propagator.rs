@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion};
 
-use crate::motion::free::evaluate::{ChooseFormula, StateFormula, UseFormula, at, combine};
+use crate::motion::closed_form::{ChooseFormula, StateFormula, UseFormula, at, combine};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lane::Lane;
 use crate::numerics::theta::{circular, hyperbolic};

@@ -13,7 +13,7 @@ use super::spinor::Spinor;
 use super::start::{Start, dot};
 use crate::error::{Error, MotionFault, all_finite};
 use crate::mass::refined::{RefinedPrincipal, Vector};
-use crate::motion::free::evaluate;
+use crate::motion::closed_form;
 use crate::motion::free::{self, FreeMotion};
 use crate::motion::state::{ClosedForm, State};
 use crate::numerics::double_double::DoubleDouble;
@@ -191,7 +191,7 @@ impl GyrostatMotion {
             MotionKind::Free(motion) => return motion.at(t),
             MotionKind::Within(propagator) => propagator,
         };
-        evaluate::at(propagator, t)
+        closed_form::at(propagator, t)
     }
 
     /// The states at many times on the calling thread, quaternions as (x, y, z, w): the bits of [`Self::at`].
@@ -203,7 +203,7 @@ impl GyrostatMotion {
             MotionKind::Free(motion) => return motion.sample(times, attitudes, omegas),
             MotionKind::Within(propagator) => propagator,
         };
-        evaluate::sample(propagator, times, attitudes, omegas);
+        closed_form::sample(propagator, times, attitudes, omegas);
     }
 }
 

@@ -4,7 +4,7 @@ use super::theta_series::{
     Circular, CircularProducts, Hyperbolic, HyperbolicProducts, Passing, Rational, ThetaSeries,
     Values, WithProducts,
 };
-use crate::motion::free::evaluate::{ChooseFormula, StateFormula, UseFormula, combine};
+use crate::motion::closed_form::{ChooseFormula, StateFormula, UseFormula, combine};
 use crate::numerics::double_double::{DoubleDouble, two_sum};
 use crate::numerics::lane::Lane;
 use crate::numerics::turns::{reach, sin_cos_turns, turns, whole_off};
