@@ -5,8 +5,8 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use super::products::Ratios;
+use super::products::{Given, omega, squares};
 use super::propagator::{Clocked, Endless, Propagator, Round};
-use super::rates::{Given, omega, squares};
 use super::spinor::{Regime, Spinor};
 use super::start::Start;
 use super::theta_series::{

@@ -7,19 +7,15 @@
 //!
 //! | file | idea |
 //! |---|---|
-//! | `inside.rs` | momentum and wheels, and the tensor that is left |
+//! | `internal_momentum.rs` | momentum and wheels, and the tensor that is left |
 //! | `mode.rs` | the ways to move |
 //! | `motion.rs` | a motion from its start, its states |
-//! | `start.rs` | the frame of L and ω at the start, and the matrix of the motion there |
-//! | `quartic.rs` | the quartic that the spinor of L obeys |
-//! | `pencil.rs` | the real quartic of energy and momentum, the invariants of both |
-//! | `remnant.rs` | what is left of it next to a separatrix, to four times the precision |
-//! | `curve.rs` | roots, periods and nome |
-//! | `logarithm.rs` | where the start is on the curve: an elliptic logarithm by means |
+//! | `start.rs` | the frame of L and ω at the start, the matrix of the motion there, and the quartic that the spinor of L obeys |
+//! | `pencil.rs` | the real quartic of energy and momentum, the invariants of both; the discriminant next to a separatrix |
+//! | `curve.rs` | roots, periods and nome; where the start is on the curve: an elliptic logarithm by means |
 //! | `spinor.rs` | M and ν from the start |
 //! | `constants.rs` | from these to what a state takes |
-//! | `products.rs` | products of the theta functions, as series of their own |
-//! | `rates.rs` | ω from the products |
+//! | `products.rs` | products of the theta functions, as series of their own, and ω from them |
 //! | `theta_series.rs` | the theta functions at any argument |
 //! | `propagator.rs` | the states, in lanes |
 //! | [`equilibria`] | steady rotations with one angular momentum |
@@ -61,17 +57,13 @@
 
 mod constants;
 mod curve;
-mod discriminant_near_separatrix;
 pub mod equilibria;
 mod internal_momentum;
-mod logarithm;
 pub mod mode;
 mod motion;
 mod pencil;
 mod products;
 mod propagator;
-mod quartic;
-mod rates;
 mod spinor;
 mod start;
 #[cfg(test)]

@@ -4,11 +4,11 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::constants::{Secular, moving, steady};
 use super::curve::{Curve, apart};
-use super::discriminant_near_separatrix::value_near_separatrix;
 use super::mode::Mode;
 use super::pencil::Pencil;
+use super::pencil::value_near_separatrix;
+use super::products::Given;
 use super::propagator::Propagator;
-use super::rates::Given;
 use super::spinor::Spinor;
 use super::start::{Start, dot};
 use crate::error::{Error, MotionFault, all_finite};
