@@ -5,11 +5,10 @@
 //! | `top` | a motion, from its state to its states |
 //! | [`pivoted_top`] | which bodies are such tops; steady precession and the sleeping limit |
 //! | `reduced` | the state in its own units and axes |
-//! | `source`, `scaled` | the data of a top, sizes in a unit of their own; numbers of any precision and powers of two |
+//! | `top_data` | the data of a top, sizes in a unit of their own; numbers of any precision and powers of two |
 //! | `turning_points` | the cubic of `cos θ` and the distances between what is singular |
 //! | `phases` | the steady rates of the phases and the shifts of the theta functions |
-//! | `course` | all of these as numbers ready for vector lanes |
-//! | `sampling` | the motion at one time or many |
+//! | `propagator` | all of these as numbers ready for vector lanes; the motion at one time or many |
 //! | [`nutation`] | limits, period, mean rates and the kind of path |
 //!
 //! # Examples
@@ -47,10 +46,8 @@
 pub mod nutation;
 mod phases;
 pub mod pivoted_top;
+mod propagator;
 mod reduced;
-mod sampling;
-mod scaled;
-mod setup;
 #[cfg(test)]
 mod tests;
 mod top;

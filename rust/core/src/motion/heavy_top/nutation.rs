@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::phases::Phases;
 use super::reduced::Reduced;
-use super::scaled::times;
+use super::top_data::times;
 use super::turning_points::TurningPoints;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::times_power_of_two;

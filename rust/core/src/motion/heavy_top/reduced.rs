@@ -14,8 +14,8 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
-use super::scaled::{near_one, sum_of_squares, times};
 use super::top_data::TopData;
+use super::top_data::{near_one, sum_of_squares, times};
 use crate::motion::attitude::components;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::Real;

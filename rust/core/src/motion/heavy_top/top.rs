@@ -4,7 +4,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::nutation::Nutation;
 use super::pivoted_top::PivotedTop;
-use super::sampling::TopConstants;
+use super::propagator::TopConstants;
 use crate::error::{Error, all_finite};
 use crate::motion::state::{ClosedForm, State};
 

@@ -1,8 +1,7 @@
-//! The data of a top as its body has them, and its sizes in a unit of their own.
+//! The data of a top as its body has them, and its sizes in a unit of their own; numbers of any precision and powers of two.
 
 use nalgebra::Vector3;
 
-use super::scaled::{near_one, sum_of_squares, times};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::Real;
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
@@ -72,4 +71,25 @@ impl<T: Real> TopData<T> {
 
 fn not_negative<T: Real>(x: T) -> T {
     if x.rounded() > 0.0 { x } else { T::from(0.0) }
+}
+
+/// `x 2^e`.
+pub(super) fn times<T: Real>(x: T, e: i32) -> T {
+    let (mut x, mut rest) = (x, e);
+    while rest != 0 && x.rounded() != 0.0 {
+        let stride = rest.clamp(-1000, 1000);
+        x = x.scaled(2.0_f64.powi(stride));
+        rest -= stride;
+    }
+    x
+}
+
+/// The vector times a power of two that makes its largest component one or somewhat more.
+pub(super) fn near_one<T: Real>(vector: &[T; 3]) -> [T; 3] {
+    let largest = (vector.iter()).fold(0.0_f64, |most, x| most.max(x.rounded().abs()));
+    vector.map(|x| times(x, -exponent(largest)))
+}
+
+pub(super) fn sum_of_squares<T: Real>(numbers: &[T]) -> T {
+    (numbers.iter()).fold(T::from(0.0), |sum, &x| sum + x * x)
 }
