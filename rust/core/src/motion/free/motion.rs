@@ -11,8 +11,8 @@ use super::tumbling::Tumbling;
 use crate::error::{Error, all_finite};
 use crate::mass::RigidBody;
 use crate::mass::refined::{RefinedPrincipal, Vector};
-use crate::motion::closed_form;
-use crate::motion::state::{ClosedForm, State};
+use crate::motion::closed_form::{self, ClosedForm};
+use crate::motion::state::State;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::power_below;
 

@@ -17,7 +17,7 @@ use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
 
 use super::FreeMotion;
 use super::invariants::Invariants;
-use crate::motion::state::ClosedForm;
+use crate::motion::closed_form::ClosedForm;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::jacobi::{carlson_rd, jacobi};
 use crate::numerics::jet::Jet;

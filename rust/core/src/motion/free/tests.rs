@@ -4,8 +4,8 @@ use super::invariants::Invariants;
 use super::{FreeMotion, Mode};
 use crate::mass::RigidBody;
 use crate::motion::attitude::components;
+use crate::motion::closed_form::ClosedForm;
 use crate::motion::euler_equations::EulerEquations;
-use crate::motion::state::ClosedForm;
 
 fn body(moments: [f64; 3], axes: &Matrix3<f64>) -> RigidBody {
     RigidBody::from_principal(1.0, &moments, axes, &Vector3::zeros(), 0.0).expect("a body")

@@ -14,8 +14,9 @@ use super::start::{Start, dot};
 use crate::error::{Error, MotionFault, all_finite};
 use crate::mass::refined::{RefinedPrincipal, Vector};
 use crate::motion::closed_form;
+use crate::motion::closed_form::ClosedForm;
 use crate::motion::free::{self, FreeMotion};
-use crate::motion::state::{ClosedForm, State};
+use crate::motion::state::State;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
 

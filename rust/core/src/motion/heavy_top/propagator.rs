@@ -13,10 +13,9 @@ use super::pivoted_top::PivotedTop;
 use super::reduced::Reduced;
 use super::top_data::times;
 use super::turning_points::TurningPoints;
-use crate::numerics::dispatch::{Kernel, dispatch};
+use crate::motion::closed_form::{ChooseFormula, StateFormula, UseFormula};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lane::{Double, Lane};
-use crate::numerics::planes::{Planes, ROWS};
 use crate::numerics::power_of_two::times_power_of_two;
 use crate::numerics::theta::quotients::{Circular, Hyperbolic, Values};
 use crate::numerics::theta::{circular, hyperbolic};
@@ -69,7 +68,7 @@ struct Endless {
 /// Three functions of time, but for their steady phases.
 trait Functions: Copy {
     /// Their values, and turns that are to be added to the steady ones.
-    fn at<L: Lane>(&self, course: &TopConstants, t: L) -> (Values<L>, [L; 3]);
+    fn at<L: Lane>(&self, constants: &TopConstants, t: L) -> (Values<L>, [L; 3]);
 }
 
 impl Functions for Steady {
@@ -84,8 +83,8 @@ impl Functions for Steady {
 
 impl Functions for Circular {
     #[inline(always)]
-    fn at<L: Lane>(&self, course: &TopConstants, t: L) -> (Values<L>, [L; 3]) {
-        let (s, c) = sin_cos_turns(turns(t, course.clock, course.start));
+    fn at<L: Lane>(&self, constants: &TopConstants, t: L) -> (Values<L>, [L; 3]) {
+        let (s, c) = sin_cos_turns(turns(t, constants.clock, constants.start));
         let values = self.values(&circular::Argument::new(s, c));
         (values, [L::new(0.0); 3])
     }
@@ -93,9 +92,9 @@ impl Functions for Circular {
 
 impl Functions for Periodic {
     #[inline(always)]
-    fn at<L: Lane>(&self, course: &TopConstants, t: L) -> (Values<L>, [L; 3]) {
+    fn at<L: Lane>(&self, constants: &TopConstants, t: L) -> (Values<L>, [L; 3]) {
         // Half a turn of z is a period of u, after which all three change sign.
-        let twice = L::new(2.0) * turns(t, course.clock, course.start);
+        let twice = L::new(2.0) * turns(t, constants.clock, constants.start);
         let periods = twice.round();
         let x = twice - periods;
         let argument = hyperbolic::Argument::new(x * L::new(2.0 * self.end), L::new(self.end));
@@ -113,9 +112,9 @@ impl Functions for Periodic {
 
 impl Functions for Endless {
     #[inline(always)]
-    fn at<L: Lane>(&self, course: &TopConstants, t: L) -> (Values<L>, [L; 3]) {
-        let (p, e) = t.two_product(L::new(course.clock.high));
-        let w = (p + L::new(course.start.high)) + (e + t * L::new(course.clock.low));
+    fn at<L: Lane>(&self, constants: &TopConstants, t: L) -> (Values<L>, [L; 3]) {
+        let (p, e) = t.two_product(L::new(constants.clock.high));
+        let w = (p + L::new(constants.start.high)) + (e + t * L::new(constants.clock.low));
         let argument = hyperbolic::Argument {
             from_middle: exp_minus(w.abs()),
             from_end: L::new(0.0),
@@ -125,44 +124,6 @@ impl Functions for Endless {
     }
 }
 impl TopConstants {
-    /// Attitudes (x, y, z, w) and ω at `times`.
-    pub(super) fn sample(
-        &self,
-        times: &[f64],
-        attitudes: &mut [[f64; 4]],
-        omegas: &mut [[f64; 3]],
-    ) {
-        match &self.series {
-            TopSeries::Steady(functions) => self.sample_by(functions, times, attitudes, omegas),
-            TopSeries::Circular(functions) => self.sample_by(functions, times, attitudes, omegas),
-            TopSeries::Hyperbolic(functions) => self.sample_by(functions, times, attitudes, omegas),
-            TopSeries::Endless(functions) => self.sample_by(functions, times, attitudes, omegas),
-        }
-    }
-
-    fn sample_by<F: Functions>(
-        &self,
-        functions: &F,
-        times: &[f64],
-        attitudes: &mut [[f64; 4]],
-        omegas: &mut [[f64; 3]],
-    ) {
-        if times.len() < FEW {
-            for ((&t, attitude), omega) in times.iter().zip(attitudes).zip(omegas) {
-                let course = (self, functions);
-                let [x, y, z, w, w1, w2, w3] = dispatch(One { course, t });
-                (*attitude, *omega) = ([x, y, z, w], [w1, w2, w3]);
-            }
-            return;
-        }
-        dispatch(Many {
-            course: (self, functions),
-            times,
-            attitudes,
-            omegas,
-        });
-    }
-
     /// (x, y, z, w) of the attitude and ω in B at the time `t`.
     #[inline(always)]
     fn state<L: Lane, F: Functions>(&self, functions: &F, t: L) -> [L; 7] {
@@ -216,66 +177,25 @@ impl TopConstants {
     }
 }
 
-/// Fewer times than this are done one by one.
-const FEW: usize = 8;
-
-struct One<'a, F> {
-    course: (&'a TopConstants, &'a F),
-    t: f64,
-}
-
-impl<F: Functions> Kernel for One<'_, F> {
-    type Output = [f64; 7];
-
+impl ChooseFormula for TopConstants {
     #[inline(always)]
-    fn run<L: Lane>(self) -> [f64; 7] {
-        let (course, functions) = self.course;
-        let [x, y, z, w, w1, w2, w3] = course.state(functions, L::new(self.t));
-        [
-            x.get(),
-            y.get(),
-            z.get(),
-            w.get(),
-            w1.get(),
-            w2.get(),
-            w3.get(),
-        ]
+    fn choose<U: UseFormula>(&self, then: U) -> U::Output {
+        match self.series {
+            TopSeries::Steady(functions) => then.with(&TopFormula(self, functions)),
+            TopSeries::Circular(functions) => then.with(&TopFormula(self, functions)),
+            TopSeries::Hyperbolic(functions) => then.with(&TopFormula(self, functions)),
+            TopSeries::Endless(functions) => then.with(&TopFormula(self, functions)),
+        }
     }
 }
 
-struct Many<'a, F> {
-    course: (&'a TopConstants, &'a F),
-    times: &'a [f64],
-    attitudes: &'a mut [[f64; 4]],
-    omegas: &'a mut [[f64; 3]],
-}
+/// The constants with their functions of time.
+struct TopFormula<'a, F>(&'a TopConstants, F);
 
-impl<F: Functions> Kernel for Many<'_, F> {
-    type Output = ();
-
+impl<F: Functions> StateFormula for TopFormula<'_, F> {
     #[inline(always)]
-    fn run<L: Lane>(self) {
-        // Copies, which no output can overlap.
-        let (course, functions) = (*self.course.0, *self.course.1);
-        let (mut before, mut after) = (Planes::<1>::ZERO, Planes::<7>::ZERO);
-        let blocks = (self.times.chunks(ROWS))
-            .zip(self.attitudes.chunks_mut(ROWS))
-            .zip(self.omegas.chunks_mut(ROWS));
-        for ((times, attitudes), omegas) in blocks {
-            for (row, &t) in times.iter().enumerate().take(ROWS) {
-                before.set(row, [t]);
-            }
-            for row in 0..ROWS {
-                let [t] = before.lanes::<L>(row);
-                after.set_lanes(row, course.state(&functions, t));
-            }
-            for (row, attitude) in attitudes.iter_mut().enumerate().take(ROWS) {
-                *attitude = after.get(row, 0);
-            }
-            for (row, omega) in omegas.iter_mut().enumerate().take(ROWS) {
-                *omega = after.get(row, 4);
-            }
-        }
+    fn state<L: Lane>(&self, t: L) -> [L; 7] {
+        self.0.state(&self.1, t)
     }
 }
 
@@ -311,11 +231,11 @@ impl TopConstants {
         let [alpha, beta, _] = motion.start;
         let sizes = [alpha, beta].map(|[re, im]| re.hypot(im));
         let directions = [alpha, beta].map(|z| direction(z).unwrap_or([1.0, 0.0]));
-        let mut course = Self::with(&motion, &TopSeries::Steady(Steady(sizes)));
-        course.steady = [half_spin, -half_spin, DoubleDouble::default()];
-        course.unit(motion.exponent);
-        course.frame(&motion, [directions[0], directions[1], [1.0, 0.0]]);
-        (course, Nutation::steady(&motion))
+        let mut constants = Self::with(&motion, &TopSeries::Steady(Steady(sizes)));
+        constants.steady = [half_spin, -half_spin, DoubleDouble::default()];
+        constants.unit(motion.exponent);
+        constants.frame(&motion, [directions[0], directions[1], [1.0, 0.0]]);
+        (constants, Nutation::steady(&motion))
     }
 
     fn moving(
@@ -357,22 +277,22 @@ impl TopConstants {
                 TopSeries::Hyperbolic(Periodic { quotients, end })
             }
         };
-        let mut course = Self::with(motion, &series);
-        course.clock = if is_endless {
+        let mut constants = Self::with(motion, &series);
+        constants.clock = if is_endless {
             phases.lambda
         } else {
             phases.clock
         };
-        course.start = phases.start;
-        course.steady = phases.steady;
-        let constants = course.constants(motion, points, phases);
+        constants.start = phases.start;
+        constants.steady = phases.steady;
+        let phase_constants = constants.phase_constants(motion, points, phases);
         // The body turns against the frame of the equal spherical top.
         let drift = half_spin - (motion.spin * TURN).scaled(0.5);
         let [alpha, beta, w] = phases.steady;
-        course.steady = [alpha + drift, beta - drift, w - drift.scaled(2.0)];
-        course.unit(motion.exponent);
-        course.frame(motion, constants);
-        (course, Nutation::of(motion, points, phases, drift))
+        constants.steady = [alpha + drift, beta - drift, w - drift.scaled(2.0)];
+        constants.unit(motion.exponent);
+        constants.frame(motion, phase_constants);
+        (constants, Nutation::of(motion, points, phases, drift))
     }
 
     fn with(motion: &Reduced, series: &TopSeries) -> Self {
@@ -403,7 +323,12 @@ impl TopConstants {
 
     /// The constant phases of α, β and W, of which two are independent: those of the two functions that are larger at the start,
     /// relative to the largest each becomes. At u₁ the three have `W α β* = ½ i (a − b u₁)`.
-    fn constants(&self, motion: &Reduced, points: &TurningPoints, phases: &Phases) -> [Complex; 3] {
+    fn phase_constants(
+        &self,
+        motion: &Reduced,
+        points: &TurningPoints,
+        phases: &Phases,
+    ) -> [Complex; 3] {
         let (values, extra) = match &self.series {
             TopSeries::Steady(functions) => functions.at(self, Single::new(0.0)),
             TopSeries::Circular(functions) => functions.at(self, Single::new(0.0)),
@@ -448,8 +373,8 @@ impl TopConstants {
     }
 
     /// The matrices from the three functions to attitude and ω.
-    fn frame(&mut self, motion: &Reduced, constants: [Complex; 3]) {
-        let [alpha, beta, w] = constants;
+    fn frame(&mut self, motion: &Reduced, phase_constants: [Complex; 3]) {
+        let [alpha, beta, w] = phase_constants;
         // (x, y, z, w) of the unit values of Re α, Im α, Re β, Im β.
         let columns = [
             [0.0, 0.0, alpha[1], alpha[0]],

@@ -7,11 +7,12 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use super::plan::{closed_top, gravity_alone};
 use super::stepper::{Carry, Dense, Span, Stepper};
 use crate::error::{Error, MotionFault};
+use crate::motion::closed_form::ClosedForm;
 use crate::motion::free::FreeMotion;
 use crate::motion::heavy_top::HeavyTop;
 use crate::motion::loads::{LawSwitch, Term};
 use crate::motion::problem::{Effort, End, Run, Task};
-use crate::motion::state::{ClosedForm, Phase, State};
+use crate::motion::state::{Phase, State};
 use crate::numerics::power_of_two::{exponent, length, times_power_of_two};
 
 /// States between two looks at the watch.
