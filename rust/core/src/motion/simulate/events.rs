@@ -49,9 +49,19 @@ impl<E> Events for NoEvents<E> {
 }
 
 /// How far the body turns in a part of a step, in radians.
-const STAGE: f64 = 100.0;
+const PART_OF_STEP: f64 = 100.0;
 /// Parts of the run in each of which every function is looked at, however still the body is.
-const PARTS: f64 = 16.0;
+const PARTS_OF_RUN: f64 = 16.0;
+
+/// A part of a step that was searched for events.
+pub(super) struct PartOfStep {
+    /// Its end: time since the start of the span.
+    pub(super) end: f64,
+    /// Whether the step ends there too.
+    pub(super) is_last: bool,
+    /// The event at which the run is to end, if one is within the part: time since the start of the span, and the state then.
+    pub(super) event: Option<(f64, Phase)>,
+}
 
 /// The functions as a run goes on.
 pub(super) struct EventDetector<'a, E> {
@@ -97,17 +107,51 @@ impl<'a, E: From<Error>> EventDetector<'a, E> {
         })
     }
 
-    /// Into how many parts a step is cut in which the body turns by so many radians, so that the run can be stopped between them.
-    pub(super) fn stages(&self, turn: f64) -> f64 {
+    /// Search the last step for events, in parts so that the run can be stopped between them. `visit` gets each part after it was
+    /// searched; where it breaks, the rest of the step is left.
+    #[inline]
+    pub(super) fn search_step<B>(
+        &mut self,
+        step: &mut dyn Dense<Error = E>,
+        start: f64,
+        [from, to]: [f64; 2],
+        mut visit: impl FnMut(&mut dyn Dense<Error = E>, PartOfStep) -> Result<ControlFlow<B>, E>,
+    ) -> Result<ControlFlow<B>, E> {
+        let parts = self.parts(step.turn(to - from));
+        let (mut part, mut begin) = (0.0, from);
+        while part < parts {
+            part += 1.0;
+            let is_last = part == parts;
+            let end = if is_last {
+                to
+            } else {
+                from + (to - from) * (part / parts)
+            };
+            let event = self.look(step, start, begin, end)?;
+            let visited = PartOfStep {
+                end,
+                is_last,
+                event,
+            };
+            if let ControlFlow::Break(value) = visit(step, visited)? {
+                return Ok(ControlFlow::Break(value));
+            }
+            begin = end;
+        }
+        Ok(ControlFlow::Continue(()))
+    }
+
+    /// Into how many parts a step is cut in which the body turns by so many radians.
+    fn parts(&self, turn: f64) -> f64 {
         if self.rules.is_empty() || turn.is_nan() {
             return 1.0;
         }
-        (turn / STAGE).ceil().max(1.0)
+        (turn / PART_OF_STEP).ceil().max(1.0)
     }
 
     /// Looks through the last step, or a part of it; where the run is to end, if it is, as time since the span's start and the
     /// state there.
-    pub(super) fn look(
+    fn look(
         &mut self,
         stepper: &mut dyn Dense<Error = E>,
         start: f64,
@@ -135,7 +179,7 @@ impl<'a, E: From<Error>> EventDetector<'a, E> {
                 stepper: &mut *stepper,
                 start,
                 end: to,
-                longest: self.span.abs() / PARTS,
+                longest: self.span.abs() / PARTS_OF_RUN,
                 halved: None,
                 left: &mut self.left[event],
             };

@@ -3,8 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::closed_form_run::ClosedFormRun;
-use super::events::EventDetector;
-use super::events::Events;
+use super::events::{EventDetector, Events, PartOfStep};
 use super::law_switches;
 use super::runge_kutta_run::{FEW, MANY, MOVING, RungeKuttaRun, SOME, TURNING};
 use super::splitting_run::SplittingRun;
@@ -36,7 +35,7 @@ impl<E> Run<E> {
         }
         let (start, end) = (task.times[0], bounds[bounds.len() - 1]);
         let over_limit = |state| load.over_limit(state, start, &task.initial);
-        let mut lookout =
+        let mut detector =
             EventDetector::new(events, start, &task.initial, end - start, &over_limit)?;
         let mut carry = Carry::default();
         for pair in bounds.windows(2) {
@@ -62,7 +61,7 @@ impl<E> Run<E> {
                     &span,
                     &mut *stepper,
                     flip.is_none(),
-                    &mut lookout,
+                    &mut detector,
                     &mut watch,
                 );
                 let Effort { steps, evaluations } = stepper.effort();
@@ -79,8 +78,8 @@ impl<E> Run<E> {
                         match flip.take() {
                             Some((change, time)) => {
                                 self.change(&change, task, load);
-                                if lookout.note(&change, time, &self.phase) {
-                                    self.crossings = lookout.crossings;
+                                if detector.note(&change, time, &self.phase) {
+                                    self.crossings = detector.crossings;
                                     return Ok(End::Event);
                                 }
                                 from = time;
@@ -93,8 +92,8 @@ impl<E> Run<E> {
                         if from == time {
                             // Here and now. A law that changes back each time holds the body where it changes.
                             self.change(&change, task, load);
-                            if lookout.note(&change, time, &self.phase) {
-                                self.crossings = lookout.crossings;
+                            if detector.note(&change, time, &self.phase) {
+                                self.crossings = detector.crossings;
                                 return Ok(End::Event);
                             }
                             flips_at_once += 1;
@@ -114,17 +113,17 @@ impl<E> Run<E> {
                         }
                     }
                     Ok(Reached::Over(end)) => {
-                        self.crossings = lookout.crossings;
+                        self.crossings = detector.crossings;
                         return Ok(end);
                     }
                     Err(error) => {
-                        self.crossings = lookout.crossings;
+                        self.crossings = detector.crossings;
                         return Err(error);
                     }
                 }
             }
         }
-        self.crossings = lookout.crossings;
+        self.crossings = detector.crossings;
         Ok(End::Complete)
     }
 
@@ -153,7 +152,7 @@ impl<E> Run<E> {
         span: &Span,
         stepper: &mut dyn Stepper<Error = E>,
         may_flip: bool,
-        lookout: &mut EventDetector<'_, E>,
+        detector: &mut EventDetector<'_, E>,
         watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Reached<E>, E>
     where
@@ -180,21 +179,18 @@ impl<E> Run<E> {
                 return Ok(Reached::Flip { change, time });
             }
             let reached = stepper.elapsed();
-            let stages = lookout.stages(stepper.turn(reached - before));
-            let (mut stage, mut begin) = (0.0, before);
-            while stage < stages {
-                stage += 1.0;
-                let end = if stage == stages {
-                    reached
-                } else {
-                    before + (reached - before) * (stage / stages)
-                };
-                let event = lookout.look(stepper, from, begin, end)?;
+            let steps = self.effort.steps + stepper.effort().steps;
+            let found = detector.search_step(stepper, from, [before, reached], |step, part| {
+                let PartOfStep {
+                    end,
+                    is_last,
+                    event,
+                } = part;
                 let has_ended = event.is_some();
                 let (last, phase) = match event {
                     Some(event) => event,
-                    None if end == reached => (end, stepper.phase()),
-                    None => (end, stepper.within(end)?),
+                    None if end == reached => (end, step.phase()),
+                    None => (end, step.within(end)?),
                 };
                 while let Some(&time) = task.times.get(self.samples.len())
                     && (time - from).abs() <= last.abs()
@@ -202,32 +198,31 @@ impl<E> Run<E> {
                     let sample = if time - from == last {
                         phase.clone()
                     } else {
-                        stepper.within(time - from)?
+                        step.within(time - from)?
                     };
                     self.reach(time, sample.clone())?;
                     self.samples.push(sample);
                 }
                 self.reach(from + last, phase)?;
                 if has_ended {
-                    return Ok(Reached::Over(End::Event));
+                    return Ok(ControlFlow::Break(End::Event));
                 }
                 if watch(end).is_break() {
-                    return Ok(Reached::Over(End::Stopped));
+                    return Ok(ControlFlow::Break(End::Stopped));
                 }
-                let (start, all) = (
-                    task.times[0],
-                    task.times[task.times.len() - 1] - task.times[0],
-                );
-                within_steps += u64::from(stage < stages);
-                let steps = self.effort.steps + stepper.effort().steps + within_steps;
+                within_steps += u64::from(!is_last);
+                let (start, last) = (task.times[0], task.times[task.times.len() - 1]);
                 check_steps(
                     task.tolerance.most_steps,
-                    steps,
+                    steps + within_steps,
                     start,
                     self.time - start,
-                    all,
+                    last - start,
                 )?;
-                begin = end;
+                Ok(ControlFlow::Continue(()))
+            })?;
+            if let ControlFlow::Break(end) = found {
+                return Ok(Reached::Over(end));
             }
         }
     }

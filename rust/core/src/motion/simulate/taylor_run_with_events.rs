@@ -1,10 +1,9 @@
-//! Taylor series with events: each step is looked through as it is made.
+//! Taylor series with events: each step is searched as it is made.
 
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
-use super::events::EventDetector;
-use super::events::Events;
+use super::events::{EventDetector, Events};
 use super::stepper::Dense;
 use crate::error::Error;
 use crate::motion::integrate::taylor::{Step, solve_seen};
@@ -22,49 +21,49 @@ pub(super) fn solve<E: From<Error>>(
 ) -> Run<E> {
     let (start, end) = (task.times[0], task.times[task.times.len() - 1]);
     let mut halt = None;
-    let mut lookout = match EventDetector::new(events, start, &task.initial, end - start, &|_| -1.0)
-    {
-        Ok(lookout) => lookout,
-        Err(error) => return Run::at_start(task, End::Failed(error)),
-    };
+    let mut detector =
+        match EventDetector::new(events, start, &task.initial, end - start, &|_| -1.0) {
+            Ok(detector) => detector,
+            Err(error) => return Run::at_start(task, End::Failed(error)),
+        };
     // Looks for events within a step of many turns count as steps.
     let (most, mut looks) = (task.tolerance.most_steps, 0);
     let mut run = solve_seen(task, terms, &mut |step| {
-        let mut summed = TaylorStep {
+        let mut dense = TaylorStep {
             step,
             error: PhantomData,
         };
         let [from, to] = step.ends;
-        let stages = lookout.stages(step.turn());
-        let (mut stage, mut begin) = (0.0, from);
-        while stage < stages {
-            stage += 1.0;
-            let reached = if stage == stages {
-                to
-            } else {
-                from + (to - from) * (stage / stages)
-            };
-            halt = match lookout.look(&mut summed, start, begin, reached) {
-                Ok(None) if watch(reached / (end - start)).is_continue() => None,
-                Ok(None) if reached == to => return ControlFlow::Break(()),
-                Ok(None) => Some((reached, step.at(reached), End::Stopped)),
-                Ok(Some((elapsed, phase))) => Some((elapsed, phase, End::Event)),
-                Err(error) => Some((from, step.at(from), End::Failed(error))),
-            };
-            if halt.is_some() {
-                return ControlFlow::Break(());
+        let found = detector.search_step(&mut dense, start, step.ends, |_, part| {
+            let reached = part.end;
+            if let Some((elapsed, phase)) = part.event {
+                return Ok(ControlFlow::Break(Some((elapsed, phase, End::Event))));
+            }
+            if watch(reached / (end - start)).is_break() {
+                // At its end the driver stops by itself.
+                let is_within = reached != to;
+                let halt = is_within.then(|| (reached, step.at(reached), End::Stopped));
+                return Ok(ControlFlow::Break(halt));
             }
             looks += 1;
-            if let Err(error) = check_steps(most, looks, start, reached, end - start) {
-                halt = Some((reached, step.at(reached), End::Failed(error.into())));
-                return ControlFlow::Break(());
-            }
-            begin = reached;
-        }
-        ControlFlow::Continue(())
+            let checked = check_steps(most, looks, start, reached, end - start);
+            Ok(match checked {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(error) => {
+                    let failed = End::Failed(error.into());
+                    ControlFlow::Break(Some((reached, step.at(reached), failed)))
+                }
+            })
+        });
+        halt = match found {
+            Ok(ControlFlow::Continue(())) => return ControlFlow::Continue(()),
+            Ok(ControlFlow::Break(halt)) => halt,
+            Err(error) => Some((from, step.at(from), End::Failed(error))),
+        };
+        ControlFlow::Break(())
     })
     .with_error(E::from);
-    run.crossings = lookout.crossings;
+    run.crossings = detector.crossings;
     if let Some((elapsed, phase, end)) = halt {
         // The last step went further.
         let is_beyond = |t: &f64| (t - start).abs() > elapsed.abs();
