@@ -167,13 +167,13 @@ impl Sequence {
         if self.intrinsic {
             (first, third) = (third, first);
         }
-        Ok([wrapped(first), middle, wrapped(third)])
+        Ok([wrap_angle(first), middle, wrap_angle(third)])
     }
 }
 
 /// The same angle in [−π, π].
 #[inline]
-fn wrapped(angle: f64) -> f64 {
+fn wrap_angle(angle: f64) -> f64 {
     if angle > PI {
         angle - TAU
     } else if angle < -PI {
@@ -228,7 +228,7 @@ impl Sequence {
         between[b] = middle;
         between[k] = sign * first * sine;
         between[c] += third;
-        turned(&between, c, -turns.angles[2])
+        rotate_vector(&between, c, -turns.angles[2])
     }
 
     /// Rates of the angles, from angles and angular velocity ω of B relative to N with components in `frame`.
@@ -245,7 +245,7 @@ impl Sequence {
         omega: &Vector3<f64>,
         frame: Frame,
     ) -> Result<[f64; 3], Error> {
-        let (turns, [first, middle, third], divisor) = self.unwound(angles, omega, frame);
+        let (turns, [first, middle, third], divisor) = self.rates_and_divisor(angles, omega, frame);
         if divisor.abs() < SINGULAR {
             return Err(MotionFault::SingularEulerRates {
                 sequence: self.to_string(),
@@ -275,12 +275,12 @@ impl Sequence {
     /// ```
     #[must_use]
     pub fn middle_rate(self, angles: &[f64; 3], omega: &Vector3<f64>, frame: Frame) -> f64 {
-        let (_, [_, middle, _], _) = self.unwound(angles, omega, frame);
+        let (_, [_, middle, _], _) = self.rates_and_divisor(angles, omega, frame);
         middle
     }
 
     /// The turns, their three rates, and what the first and the third have been divided by.
-    fn unwound(
+    fn rates_and_divisor(
         self,
         angles: &[f64; 3],
         omega: &Vector3<f64>,
@@ -289,7 +289,7 @@ impl Sequence {
         let turns = self.turns(angles, frame);
         let ([a, b, c], (sine, cosine)) = (turns.axes, turns.angles[1].sin_cos());
         let (k, sign) = across(a, b);
-        let between = turned(omega, c, turns.angles[2]);
+        let between = rotate_vector(omega, c, turns.angles[2]);
         let (first, third, divisor) = if self.is_proper() {
             let first = sign * between[k] / sine;
             (first, between[a] - first * cosine, sine)
@@ -336,7 +336,7 @@ fn across(a: usize, b: usize) -> (usize, f64) {
 }
 
 /// The vector turned about an axis.
-fn turned(vector: &Vector3<f64>, axis: usize, angle: f64) -> Vector3<f64> {
+fn rotate_vector(vector: &Vector3<f64>, axis: usize, angle: f64) -> Vector3<f64> {
     let (sine, cosine) = angle.sin_cos();
     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
     let mut result = *vector;

@@ -49,7 +49,7 @@ pub struct Phase {
     pub position: Vector3<f64>,
     /// Of the reference point, in N.
     pub velocity: Vector3<f64>,
-    /// The states that the load has of its own, those of its parts one after the other; empty for most loads.
+    /// The internal states of the load, those of its parts one after the other; empty for most loads.
     pub internal_state: Box<[f64]>,
 }
 
@@ -89,7 +89,7 @@ impl Phase {
         }
     }
 
-    /// The numbers of the body, without those that the load has of its own, in the order x, y, z, w of the quaternion, ω, position, velocity.
+    /// The numbers of the body, without the internal states of the load, in the order x, y, z, w of the quaternion, ω, position, velocity.
     #[must_use]
     #[inline]
     pub fn numbers(&self) -> [f64; 13] {

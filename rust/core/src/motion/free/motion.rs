@@ -77,17 +77,17 @@ impl FreeMotion {
         let (mode, (propagator, secular)) = if i1 == i3 {
             (
                 Mode::Spherical,
-                steady_or_symmetric::spin(&scaled_omega, attitude),
+                steady_or_symmetric::steady_spin(&scaled_omega, attitude),
             )
         } else if i1 == i2 || i2 == i3 || i1.high == 0.0 {
-            let motion = steady_or_symmetric::symmetric(&moments, &w, &axes, attitude);
+            let motion = steady_or_symmetric::symmetric_body(&moments, &w, &axes, attitude);
             (Mode::Symmetric, motion)
         } else {
-            (separation, w) = separation.kept(principal, &scaled_omega, &moments, &w);
+            (separation, w) = separation.with_digits(principal, &scaled_omega, &moments, &w);
             if is_steady(&w) {
                 (
                     Mode::Steady,
-                    steady_or_symmetric::spin(&scaled_omega, attitude),
+                    steady_or_symmetric::steady_spin(&scaled_omega, attitude),
                 )
             } else {
                 let tumbling = Tumbling::of(&moments, &w, &separation);

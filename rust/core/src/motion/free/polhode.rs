@@ -133,8 +133,11 @@ impl Invariants {
             let angle = lean(omega, axis);
             angle.min(std::f64::consts::PI - angle)
         }));
-        let space =
-            range((points.iter()).map(|omega| self.askew(omega).norm().atan2(self.twice_energy)));
+        let space = range((points.iter()).map(|omega| {
+            self.omega_cross_momentum(omega)
+                .norm()
+                .atan2(self.twice_energy)
+        }));
         let known = |angles: [f64; 2], known: bool| if known { angles } else { [f64::NAN; 2] };
         Cones {
             axis,
@@ -209,7 +212,7 @@ impl Invariants {
     #[must_use]
     pub fn poinsot(&self) -> Poinsot {
         let radii = (self.extremes().iter())
-            .map(|omega| self.askew(omega).norm() / self.momentum)
+            .map(|omega| self.omega_cross_momentum(omega).norm() / self.momentum)
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], radius| {
                 [low.min(radius), high.max(radius)]
             });
@@ -231,7 +234,7 @@ impl Invariants {
     }
 
     /// ω×L for an ω of the motion, from the differences of the moments.
-    fn askew(&self, omega: &Vector3<f64>) -> Vector3<f64> {
+    fn omega_cross_momentum(&self, omega: &Vector3<f64>) -> Vector3<f64> {
         let ([x, y, z], [i1, i2, i3]) = ((*omega).into(), self.moments);
         Vector3::new((i3 - i2) * y * z, (i1 - i3) * z * x, (i2 - i1) * x * y)
     }

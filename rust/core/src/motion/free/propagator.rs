@@ -116,7 +116,8 @@ pub(super) struct Propagator {
 }
 
 impl Propagator {
-    /// The propagator whose state at t = 0 has this attitude: `q_MP` as computed is turned on its left to agree.
+    /// The propagator whose state at t = 0 has this attitude. The propagator is multiplied from the left by the constant rotation that
+    /// gives this attitude at t = 0.
     ///
     /// `axes`: those of P as columns, components in B, a rotation.
     #[must_use]

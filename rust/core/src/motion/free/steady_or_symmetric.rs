@@ -23,7 +23,10 @@ fn turns_of(radians: DoubleDouble) -> DoubleDouble {
 }
 
 /// ω constant in the body, and so in space: `q(t) = q(0) ∘ (n sin ½|ω|t, cos ½|ω|t)`, n along ω.
-pub(super) fn spin(omega: &Vector3<f64>, attitude: &UnitQuaternion<f64>) -> (Propagator, Secular) {
+pub(super) fn steady_spin(
+    omega: &Vector3<f64>,
+    attitude: &UnitQuaternion<f64>,
+) -> (Propagator, Secular) {
     let rate = hypotenuse(&[omega.x, omega.y, omega.z].map(DoubleDouble::from));
     let n = if rate.high == 0.0 {
         Vector3::zeros()
@@ -65,7 +68,7 @@ pub(super) fn spin(omega: &Vector3<f64>, attitude: &UnitQuaternion<f64>) -> (Pro
 ///
 /// A body without moment along its axis is one whose `I_s` is zero and whose two others are their mean, from which they
 /// differ by no more than rounding: its `ω_s` stays as it is, as for a thin symmetric rod.
-pub(super) fn symmetric(
+pub(super) fn symmetric_body(
     moments: &Vector,
     w: &Vector,
     axes: &Matrix3<f64>,

@@ -177,7 +177,7 @@ pub fn equilibria(moments: &Vector, rotor: &Vector, momentum: DoubleDouble) -> E
     for group in frame.without_rotor() {
         made.pole(&group);
     }
-    made.finished()
+    made.finish()
 }
 
 /// Powers of two that were taken out.
@@ -307,7 +307,7 @@ impl Maker<'_> {
         self.found.push((multiplier, equilibrium));
     }
 
-    fn finished(mut self) -> Equilibria {
+    fn finish(mut self) -> Equilibria {
         let order = |x: DoubleDouble, y: DoubleDouble| (x - y).high.total_cmp(&0.0);
         self.found.sort_by(|(x, _), (y, _)| order(*x, *y));
         self.bifurcations
@@ -453,7 +453,7 @@ impl<'a> Secular<'a> {
         while is_above(far) {
             far *= 16.0;
         }
-        let start = between(near, far, is_above);
+        let start = bisect(near, far, is_above);
         self.refined(k, start.into())
     }
 
@@ -491,11 +491,11 @@ impl<'a> Secular<'a> {
                 middle
             };
             let is_above = |s: f64| near.value_and_slope(s).0 > 0.0;
-            return self.refined(from, between(start, end, is_above).into());
+            return self.refined(from, bisect(start, end, is_above).into());
         }
         let far = self.view::<f64>(to);
         let is_above = |s: f64| far.value_and_slope(s).0 > 0.0;
-        let start = between(self.middle(to, from), minimum.s.high, is_above);
+        let start = bisect(self.middle(to, from), minimum.s.high, is_above);
         self.refined(to, start.into())
     }
 
@@ -519,7 +519,7 @@ impl<'a> Secular<'a> {
         };
         let view = self.view::<f64>(k);
         let start = end * f64::EPSILON.powi(20);
-        let s = between(start, end, |s| falls(&view, s) == from_low);
+        let s = bisect(start, end, |s| falls(&view, s) == from_low);
         let view = self.view::<DoubleDouble>(k);
         let mut s = DoubleDouble::from(s);
         for _ in 0..4 {
@@ -637,7 +637,7 @@ impl Multiplier {
 
 /// The last double from `near` toward `far`, of one sign, at which a condition holds that holds at `near` and not at `far`:
 /// by halving among the doubles, so that sixty steps cross all magnitudes.
-fn between(near: f64, far: f64, holds: impl Fn(f64) -> bool) -> f64 {
+fn bisect(near: f64, far: f64, holds: impl Fn(f64) -> bool) -> f64 {
     let sign = if far < 0.0 { -1.0 } else { 1.0 };
     let (mut low, mut high) = (near.abs().to_bits(), far.abs().to_bits());
     while low.abs_diff(high) > 1 {

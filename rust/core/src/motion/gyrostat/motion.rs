@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::constants::{Secular, moving, steady};
+use super::constants::{Secular, moving_propagator, steady_propagator};
 use super::curve::{Curve, apart};
 use super::mode::Mode;
 use super::pencil::Pencil;
@@ -111,7 +111,7 @@ impl GyrostatMotion {
             &rotor_along,
         );
         let (mode, (propagator, secular)) = match found {
-            None => (Mode::Steady, steady(&scaled_omega, attitude)),
+            None => (Mode::Steady, steady_propagator(&scaled_omega, attitude)),
             Some(solved) => {
                 let given = Given {
                     moments: &moments,
@@ -129,7 +129,10 @@ impl GyrostatMotion {
                 } else {
                     Mode::Circular
                 };
-                (mode, moving(&given, &solved.start, &solved.spinor))
+                (
+                    mode,
+                    moving_propagator(&given, &solved.start, &solved.spinor),
+                )
             }
         };
         let Secular { period, precession } = secular;
@@ -257,7 +260,7 @@ impl CurveOfStart {
             && invariants.discriminant.high.abs() < LOST * invariants.terms
         {
             let unit = moments[2].high / principal.moments[2].high;
-            let y = pencil.meeting(apart.high);
+            let y = pencil.meeting_point(apart.high);
             let left = value_near_separatrix(principal, unit, omega, rotor, &start, y);
             invariants.discriminant = pencil.discriminant_of(y, left);
         }

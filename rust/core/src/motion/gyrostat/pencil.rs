@@ -137,7 +137,7 @@ impl Pencil {
     /// `4E³ − G₂E + G₃ = 0`.
     ///
     /// With `y = z − ¼b₃` the quartic is `z⁴ + pz² + qz + …`, and the double zero is `z = q/(2θ)`, `θ = −½E − ⅔p`.
-    pub(super) fn meeting(&self, root: f64) -> DoubleDouble {
+    pub(super) fn meeting_point(&self, root: f64) -> DoubleDouble {
         let [_, b1, b2, b3] = self.b;
         let [c1, c2, c3] = [b1, b2, b3].map(DoubleDouble::rounded);
         let p = c2 - 0.375 * c3 * c3;
@@ -335,7 +335,7 @@ mod tests {
             let invariants = pencil.invariants();
             // Of a double root E and E of 4E³ − G₂E + G₃ the third one is −2E.
             let apart = (invariants.second.high / 3.0).sqrt() * -invariants.third.high.signum();
-            let y = pencil.meeting(apart);
+            let y = pencil.meeting_point(apart);
             assert!((y - 0.4.into()).rounded().abs() < 1e-30, "{y:?}");
             // Zeros at 0.4 ± ½ gap.
             let others = -(1.1 * 2.65);

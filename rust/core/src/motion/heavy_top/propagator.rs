@@ -130,9 +130,9 @@ impl TopConstants {
         let is_known = t.abs() <= L::new(self.reach);
         let t = if is_known { t } else { L::new(f64::NAN) };
         let (values, extra) = functions.at(self, t);
-        let alpha = self.turned(0, t, &values, &extra);
-        let beta = self.turned(1, t, &values, &extra);
-        let w = self.turned(2, t, &values, &extra);
+        let alpha = self.turn_by_phase(0, t, &values, &extra);
+        let beta = self.turn_by_phase(1, t, &values, &extra);
+        let w = self.turn_by_phase(2, t, &values, &extra);
         let q = [
             self.component(0, alpha, beta),
             self.component(1, alpha, beta),
@@ -157,7 +157,7 @@ impl TopConstants {
 
     /// A function of time with all of its phase.
     #[inline(always)]
-    fn turned<L: Lane>(&self, k: usize, t: L, values: &Values<L>, extra: &[L; 3]) -> [L; 2] {
+    fn turn_by_phase<L: Lane>(&self, k: usize, t: L, values: &Values<L>, extra: &[L; 3]) -> [L; 2] {
         let phase = turns(t, self.steady[k], DoubleDouble::default());
         let (s, c) = sin_cos_turns(whole_off(phase + extra[k]));
         let [re, im] = values[k];
@@ -216,15 +216,16 @@ impl TopConstants {
             let points = TurningPoints::of(&motion);
             if points.height.high > 0.0 && points.are_good(&motion) {
                 let phases = Phases::of(&motion, &points);
-                return Self::moving(&motion, &points, &phases, half_spin);
+                return Self::with_moving_axis(&motion, &points, &phases, half_spin);
             }
             if points.height.high > 0.0 {
-                let finest = Reduced::of(&top.finest(), omega, attitude, gravity).settled();
+                let finest =
+                    Reduced::of(&top.finest(), omega, attitude, gravity).without_rounding();
                 motion = finest.twofold();
                 if !finest.is_steady() {
-                    let points = TurningPoints::of(&finest).settled(&finest);
+                    let points = TurningPoints::of(&finest).without_rounding(&finest);
                     let phases = Phases::of(&finest, &points);
-                    return Self::moving(&motion, &points.twofold(), &phases, half_spin);
+                    return Self::with_moving_axis(&motion, &points.twofold(), &phases, half_spin);
                 }
             }
         }
@@ -238,7 +239,7 @@ impl TopConstants {
         (constants, Nutation::steady(&motion))
     }
 
-    fn moving(
+    fn with_moving_axis(
         motion: &Reduced,
         points: &TurningPoints,
         phases: &Phases,

@@ -68,7 +68,7 @@ const LEAST: f64 = 1e-280;
 impl Reduced<QuadDouble> {
     /// Upright, hanging or without a rate across the axis where no more of it is left than what turning the frames rounds: so a
     /// top that stands upright along any axis stays there.
-    pub(super) fn settled(self) -> Self {
+    pub(super) fn without_rounding(self) -> Self {
         if self.is_aligned {
             return self;
         }
@@ -179,7 +179,7 @@ impl<T: Real> Reduced<T> {
     /// What rounding to twice the precision may have taken from the value of f at the top and from its slope there, the two
     /// numbers that tell how near the motion is to its separatrix: a part of their terms, and of what a small component of a
     /// turned vector is a difference of.
-    pub(super) fn lost(&self) -> f64 {
+    pub(super) fn rounding_loss(&self) -> f64 {
         let [kappa, b, h, lift, top] =
             [self.kappa, self.spin, self.square, self.lift, self.top].map(|x| x.rounded().abs());
         let terms = h + 2.0 * kappa * top + b * (lift + b * top);

@@ -140,7 +140,7 @@ impl Load for Analytic<'_> {
                     mine.side *= -1.0;
                 }
             }
-            LawSwitch::Stop(bearing) => self.turn(bearing.stopped()),
+            LawSwitch::Stop(bearing) => self.turn(bearing.at_rest()),
             LawSwitch::Slip(bearing) => self.turn(*bearing),
         }
     }

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::body_at_point::BodyAtPoint;
 use crate::motion::state::Phase;
 
-/// What a law carries along in the body: an angular momentum beside I ω, and states of its own that go on with the motion.
+/// What a law carries along in the body: an angular momentum beside I ω, and internal states that go on with the motion.
 ///
 /// I is the tensor of the body with its wheels locked, ω that of B relative to N; all components in B. `state`: the states.
 pub trait Carried {

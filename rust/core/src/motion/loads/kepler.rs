@@ -217,7 +217,7 @@ impl Orbit {
             let [position, velocity] = self.given;
             return (position * self.length, velocity * (self.length / self.time));
         }
-        let t = self.reduced(elapsed / self.time - self.home);
+        let t = self.without_revolutions(elapsed / self.time - self.home);
         let (r0, mu) = (self.distance, self.scaled_mu);
         let functions = self.solve(t).1;
         let ([_, g1, g2, _], r) = (functions, self.distance_at(&functions));
@@ -234,7 +234,7 @@ impl Orbit {
     ///
     /// Kepler's equation gives those of s; with `∂G_k/∂s = G_{k−1}` and `∂G_k/∂β = ½ (k G_{k+2} − s G_{k+1})` follow the others.
     /// Source: Goodyear, Astronomical Journal 70 (1965) 189.
-    pub(super) fn varied<const N: usize>(
+    pub(super) fn at_with_derivatives<const N: usize>(
         &self,
         elapsed: f64,
         variable: impl Fn(f64, usize) -> Jet<N>,
@@ -254,7 +254,7 @@ impl Orbit {
         let beta = (mu + mu) / r0.dot(&r0).root() - v0.dot(&v0);
         let beta = with(self.beta, beta);
         let whole = elapsed / self.time - self.home;
-        let t = self.reduced(whole);
+        let t = self.without_revolutions(whole);
         let (mut r0, mut v0, mut time) = (r0, v0, number(t));
         if self.beta < 0.0 {
             let apse = Apse::of(mu, beta, &r0, &v0);
@@ -270,7 +270,7 @@ impl Orbit {
             let period = mu * number(TURN.high) / (beta * beta.root());
             time = with(t, -(period * number(revolutions)));
         }
-        let there = number(self.distance_at(&functions(self.beta, s)));
+        let there = number(self.distance_at(&stumpff_functions(self.beta, s)));
         let at = |s: Jet<N>| Jet::stumpff(beta, s);
         let [_, g1, g2, g3] = at(number(s));
         let excess = distance * g1 + sigma * g2 + mu * g3 - time;
@@ -286,7 +286,7 @@ impl Orbit {
     }
 
     /// The time without whole revolutions.
-    fn reduced(&self, t: f64) -> f64 {
+    fn without_revolutions(&self, t: f64) -> f64 {
         let DoubleDouble { high, low } = self.frequency;
         if high == 0.0 {
             return t;
@@ -321,7 +321,7 @@ impl Orbit {
     /// s at the time `t` and its functions.
     fn solve(&self, t: f64) -> (f64, [f64; 4]) {
         if t == 0.0 || !t.is_finite() {
-            return (t, functions(self.beta, t));
+            return (t, stumpff_functions(self.beta, t));
         }
         self.search(t)
     }
@@ -342,9 +342,9 @@ impl Orbit {
     fn end_at(&self, s: f64, g: &[f64; 4], change: f64) -> (f64, [f64; 4]) {
         let next = s + change;
         if change * change * self.beta.abs() < SMALL * SMALL {
-            (next, moved(g, self.beta, change))
+            (next, shift_functions(g, self.beta, change))
         } else {
-            (next, functions(self.beta, next))
+            (next, stumpff_functions(self.beta, next))
         }
     }
 
@@ -374,7 +374,7 @@ impl Orbit {
         } else {
             s = t / self.distance;
             (low, high) = (0.0_f64.min(s), 0.0_f64.max(s));
-            while (self.time_at(&functions(self.beta, s)) - t) * t.signum() < 0.0 {
+            while (self.time_at(&stumpff_functions(self.beta, s)) - t) * t.signum() < 0.0 {
                 s *= 2.0;
                 (low, high) = if t > 0.0 { (0.5 * s, s) } else { (s, 0.5 * s) };
             }
@@ -383,7 +383,7 @@ impl Orbit {
         // exponential, its steps do not shrink, and halving is faster.
         let mut before = high - low;
         for _ in 0..200 {
-            let g = functions(self.beta, s);
+            let g = stumpff_functions(self.beta, s);
             let excess = self.time_at(&g) - t;
             // Not a number where the exponentials overflow: far too far.
             if excess > 0.0 || excess.is_nan() && t > 0.0 {
@@ -406,12 +406,12 @@ impl Orbit {
             }
             let middle = 0.5 * (low + high);
             if middle == low || middle == high {
-                return (middle, functions(self.beta, middle));
+                return (middle, stumpff_functions(self.beta, middle));
             }
             before = (middle - s).abs();
             s = middle;
         }
-        (s, functions(self.beta, s))
+        (s, stumpff_functions(self.beta, s))
     }
 
     fn time_at(&self, [_, g1, g2, g3]: &[f64; 4]) -> f64 {
@@ -435,7 +435,7 @@ trait Anomaly: Real {
 /// To the precision of doubles: of the time at the periapsis no more is kept.
 impl Anomaly for DoubleDouble {
     fn stumpff(beta: Self, s: Self) -> [Self; 4] {
-        functions(beta.high, s.high).map(Self::from)
+        stumpff_functions(beta.high, s.high).map(Self::from)
     }
 
     fn arc(y: Self, beta: Self) -> Self {
@@ -447,8 +447,8 @@ impl Anomaly for DoubleDouble {
 /// With `∂G_k/∂s = G_{k−1}` and `∂G_k/∂β = ½ (k G_{k+2} − s G_{k+1})`.
 impl<const N: usize> Anomaly for Jet<N> {
     fn stumpff(beta: Self, s: Self) -> [Self; 4] {
-        let g = functions(beta.value, s.value);
-        let [g4, g5] = further(beta.value, s.value);
+        let g = stumpff_functions(beta.value, s.value);
+        let [g4, g5] = higher_functions(beta.value, s.value);
         let after = [g[1], g[2], g[3], g4, g5];
         [0, 1, 2, 3].map(|k| {
             let by_beta = 0.5 * (k as f64 * after[k + 1] - s.value * after[k]);
@@ -459,7 +459,7 @@ impl<const N: usize> Anomaly for Jet<N> {
 
     fn arc(y: Self, beta: Self) -> Self {
         let s = DoubleDouble::arc(y.value.into(), beta.value.into()).high;
-        let [g0, _, g2, g3] = functions(beta.value, s);
+        let [g0, _, g2, g3] = stumpff_functions(beta.value, s);
         Self::chain(s, [(1.0 / g0, &y), (0.5 * (s * g2 - g3) / g0, &beta)])
     }
 }
@@ -530,19 +530,19 @@ fn series<const K: usize>(x: f64) -> f64 {
 }
 
 /// `G_4` and `G_5`, by `c_{k+2}(x) = (1/k! − c_k(x))/x`.
-fn further(beta: f64, s: f64) -> [f64; 2] {
+fn higher_functions(beta: f64, s: f64) -> [f64; 2] {
     let x = beta * s * s;
     let [c4, c5] = if x.abs() < SERIES {
         [series::<4>(x) / 2.0, series::<5>(x) / 6.0]
     } else {
-        let [_, _, g2, g3] = functions(beta, s);
+        let [_, _, g2, g3] = stumpff_functions(beta, s);
         [(0.5 - g2 / (s * s)) / x, (1.0 / 6.0 - g3 / (s * s * s)) / x]
     };
     [c4 * s.powi(4), c5 * s.powi(5)]
 }
 
 /// `G_k(s) = s^k c_k(β s²)` for k = 0..3.
-fn functions(beta: f64, s: f64) -> [f64; 4] {
+fn stumpff_functions(beta: f64, s: f64) -> [f64; 4] {
     let x = beta * s * s;
     let (c2, c3) = if x.abs() < SERIES {
         (series::<2>(x), series::<3>(x))
@@ -567,7 +567,7 @@ fn functions(beta: f64, s: f64) -> [f64; 4] {
 ///
 /// Those of sums: `G_0 = G_0(s) G_0(h) − β G_1(s) G_1(h)`, `G_1 = G_1(s) G_0(h) + G_0(s) G_1(h)`, and as `∂G_k/∂h = G_{k−1}`,
 /// `G_2 = G_2(s) + G_1(s) G_1(h) + G_0(s) G_2(h)`, `G_3 = G_3(s) + G_2(s) h + G_1(s) G_2(h) + G_0(s) G_3(h)`.
-fn moved(g: &[f64; 4], beta: f64, h: f64) -> [f64; 4] {
+fn shift_functions(g: &[f64; 4], beta: f64, h: f64) -> [f64; 4] {
     let square = h * h;
     let (less, h1) = (0.5 * beta * square, h * (1.0 - beta * square / 6.0));
     let (h2, h3) = (0.5 * square, square * h / 6.0);
@@ -675,11 +675,14 @@ mod tests {
     fn functions_after_a_small_step_follow_from_those_before() {
         for beta in [1.7_f64, -1.7, 1e-9, 0.0] {
             for s in [0.3, -2.0, 7.0] {
-                let before = functions(beta, s);
+                let before = stumpff_functions(beta, s);
                 // To the largest step for which they are taken from there, in units of 1/√|β|.
                 for part in [1e-9, -1e-6, 0.99e-4, -0.99e-4] {
                     let h = part / beta.abs().sqrt().max(0.1);
-                    let (found, exact) = (moved(&before, beta, h), functions(beta, s + h));
+                    let (found, exact) = (
+                        shift_functions(&before, beta, h),
+                        stumpff_functions(beta, s + h),
+                    );
                     let size = exact.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
                     for k in 0..4 {
                         assert!(
@@ -712,7 +715,7 @@ mod tests {
                 Orbit::new(mu, &Vector3::new(a, b, c), &Vector3::new(u, v, w)).expect("orbit")
             };
             for t in times {
-                let (r, v) = orbit(numbers(0.0, 0)).varied::<7>(t, Jet::variable);
+                let (r, v) = orbit(numbers(0.0, 0)).at_with_derivatives::<7>(t, Jet::variable);
                 let (r0, v0) = orbit(numbers(0.0, 0)).at(t);
                 assert!((r.map(|x| x.value) - r0).norm() < 1e-13 * r0.norm());
                 assert!((v.map(|x| x.value) - v0).norm() < 1e-13 * v0.norm());

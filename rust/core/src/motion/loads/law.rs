@@ -78,7 +78,7 @@ pub(super) trait Law: Sized {
     /// What it depends on and does, on a pivoted body or on a free one.
     fn traits(&self, pivoted: bool) -> Traits;
 
-    /// Its numbers. Those that were multiplied by a factor are those after it.
+    /// Its numbers. After [`Self::scaled`], they are the scaled values.
     fn parameters(&self) -> Vec<Parameter>;
 
     /// The law that exerts `factor`, which is finite, times as much.
@@ -108,7 +108,7 @@ pub(super) trait Law: Sized {
     fn potential(&self, body: &BodyAtPoint, phase: &Phase) -> Option<f64>;
 
     /// Adds what it does to the equations of a series, in numbers of any precision; `side` is the sign that the law is taken
-    /// for. Which [`SeriesStructure`](super::SeriesStructure) it adds depends neither on the time nor on the side: the driver has room for those.
+    /// for. Which parts ([`SeriesStructure`](super::SeriesStructure)) it adds depends neither on the time nor on the side: the driver has room for those.
     fn add_to<'a, X: LawNumber>(
         &'a self,
         series: &mut SeriesTerms<'a, X>,
@@ -134,7 +134,7 @@ pub(super) trait Law: Sized {
     }
 
     /// The function of the attitude (x, y, z, w), linear in it, whose sign the law has.
-    fn switching<X: LawNumber>(
+    fn switch_function<X: LawNumber>(
         &self,
         axes: &PrincipalFrame<'_, X>,
     ) -> Option<nalgebra::Vector4<X>> {

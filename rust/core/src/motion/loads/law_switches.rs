@@ -49,7 +49,7 @@ impl Switch {
     /// w and ẇ, each times the side: the law changes where the first becomes negative.
     #[must_use]
     pub fn value_and_rate(&self, t: f64, phase: &Phase) -> [f64; 2] {
-        let (error, omega) = off(&self.target, self.start, t, phase);
+        let (error, omega) = attitude_error(&self.target, self.start, t, phase);
         let rate = -0.5 * error.imag().dot(&omega);
         [error.w * self.side, rate * self.side]
     }
@@ -57,7 +57,7 @@ impl Switch {
 
 /// What is left to turn, `e = q_target⁻¹ ∘ q`, and the angular velocity relative to the target, in B.
 #[inline]
-pub(super) fn off(
+pub(super) fn attitude_error(
     target: &AttitudeTarget,
     start: f64,
     t: f64,

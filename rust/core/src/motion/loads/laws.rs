@@ -81,8 +81,8 @@ macro_rules! laws {
                 }
             }
 
-            /// Its numbers, under the names and with the shapes that they have where the term is made. Those that were
-            /// multiplied by a factor are those after it.
+            /// Its numbers, under the names and with the shapes that they have where the term is made. After [`Self::scaled`],
+            /// they are the scaled values.
             #[must_use]
             pub fn parameters(&self) -> Vec<Parameter> {
                 match self {
@@ -207,13 +207,13 @@ macro_rules! laws {
             }
 
             /// The function of the attitude (x, y, z, w), linear in it, whose sign its law has.
-            pub(in crate::motion) fn switching<X: LawNumber>(
+            pub(in crate::motion) fn switch_function<X: LawNumber>(
                 &self,
                 axes: &PrincipalFrame<'_, X>,
             ) -> Option<Vector4<X>> {
                 match self {
-                    $(Self::$law(law) => law.switching(axes),)+
-                    Self::Scheduled { term, .. } => term.switching(axes),
+                    $(Self::$law(law) => law.switch_function(axes),)+
+                    Self::Scheduled { term, .. } => term.switch_function(axes),
                 }
             }
 
@@ -333,7 +333,7 @@ impl Term {
         }
     }
 
-    /// How many states it has of its own.
+    /// How many internal states it has.
     #[must_use]
     pub fn internal_states(&self) -> usize {
         self.carried().map_or(0, Carried::count)

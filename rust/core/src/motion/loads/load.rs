@@ -21,7 +21,7 @@ use crate::motion::state::Phase;
 /// use polhode::nalgebra::{UnitQuaternion, Vector3};
 ///
 /// /// A brake that is on for the first second. A closure would do ([`Callback`](super::Callback)); what a trait adds are
-/// /// states and laws of its own: [`Carried`], [`LawSwitch`], [`Bearing`].
+/// /// internal states and laws that switch: [`Carried`], [`LawSwitch`], [`Bearing`].
 /// struct Brake {
 ///     is_on: bool,
 /// }
@@ -125,7 +125,7 @@ pub trait Load {
         Vec::new()
     }
 
-    /// What counts as large of each of its own states besides the largest it has been: a number times the largest |ω|, and a number.
+    /// What counts as large of each of its internal states besides the largest it has been: a number times the largest |ω|, and a number.
     fn sizes(&self) -> Vec<[f64; 2]> {
         let carried = self.carried().into_iter();
         carried
@@ -133,7 +133,7 @@ pub trait Load {
             .collect()
     }
 
-    /// As [`Self::wrench`], with the rates of the states that it has of its own into `rates`.
+    /// As [`Self::wrench`], with the rates of its internal states into `rates`.
     ///
     /// # Errors
     /// As [`Self::wrench`].
@@ -142,7 +142,7 @@ pub trait Load {
         self.wrench(t, phase)
     }
 
-    /// The states that it has of its own jump to where a span without breaks begins, at time `t`: those of a controller that looks at
+    /// Its internal states jump to where a span without breaks begins, at time `t`: those of a controller that looks at
     /// the body now and then.
     ///
     /// # Errors
@@ -182,7 +182,7 @@ pub fn wrench_at<L: Load>(
         let Some(worst) = worst else {
             return Ok(Wrench { torque, ..wrench });
         };
-        *worst = worst.slipping(held(worst));
+        *worst = worst.in_slip(held(worst));
         wrench.torque -= worst.axis * worst.friction();
     }
     Ok(wrench)

@@ -5,15 +5,15 @@
 //!
 //! | file | what it knows |
 //! |---|---|
-//! | `laws` | the list of the laws, each of which is a file of its own in the folder |
+//! | `laws` | the list of the laws, each of which is a file in the folder; the type of a term, made from the list |
 //! | `law` | what every law is asked |
-//! | `list`, `term` | the type of a term, made from the list, and how it is made |
-//! | `linear`, `formula`, `forcing` | what a law adds to the equations of a series |
-//! | `path`, [`kepler`], `oblate` | orbits |
-//! | `target` | where a feedback turns the body |
-//! | [`held`], `drive`, `bearing`, `resting` | motors and friction of wheels |
+//! | `load`, `analytic`, [`Callback`] | a load, whoever computes it: sums of terms, closures |
+//! | `series_terms`, `principal_frame`, `variables` | what a law adds to the equations of a series, and in which numbers |
+//! | `orbit_model`, [`kepler`], `oblate` | orbits |
+//! | `attitude_target`, `law_switches` | where a feedback turns the body, and by which sign |
+//! | `carried`, `stiction`, [`piecewise_signal`] | wheels and slugs, dry friction, what motors are told |
 //!
-//! A law more is a file more in `laws`, which answers what a `Law` is asked, and its lines in the list, `laws.rs`.
+//! A new law is a new file in `laws`, which answers what a `Law` is asked, and its lines in the list, `laws.rs`.
 //!
 //! # Examples
 //!

@@ -17,10 +17,10 @@ pub(crate) trait LawNumber: Real {
     /// (x, y, z, w) of a rotation, whose direction alone counts.
     fn quaternion(rotation: &UnitQuaternion<f64>) -> [Self; 4];
 
-    /// What a change of a rate comes to, in neighbours that meet it later: by the derivatives of the function `switch` of the
-    /// state that is zero there, whose rate is `rate`. Nothing without derivatives.
+    /// Correction to the derivatives when a motion crosses a switching surface (saltation): neighbouring motions cross it at another
+    /// time. `switch` is the switching function, `rate` its time derivative. Zero for numbers without derivatives.
     #[must_use]
-    fn until_later(self, switch: Self, rate: f64) -> Self;
+    fn saltation(self, switch: Self, rate: f64) -> Self;
 }
 
 impl LawNumber for f64 {
@@ -30,7 +30,7 @@ impl LawNumber for f64 {
         components(rotation)
     }
 
-    fn until_later(self, _: Self, _: f64) -> Self {
+    fn saltation(self, _: Self, _: f64) -> Self {
         0.0
     }
 }
@@ -42,7 +42,7 @@ impl LawNumber for DoubleDouble {
         normalized(components(rotation).map(Self::from))
     }
 
-    fn until_later(self, _: Self, _: f64) -> Self {
+    fn saltation(self, _: Self, _: f64) -> Self {
         Self::default()
     }
 }
@@ -54,7 +54,7 @@ impl LawNumber for Varied {
         components(rotation).map(Self::constant)
     }
 
-    fn until_later(self, switch: Self, rate: f64) -> Self {
+    fn saltation(self, switch: Self, rate: f64) -> Self {
         Self {
             value: 0.0,
             slopes: switch.slopes.map(|slope| -slope / rate * self.value),
@@ -103,7 +103,7 @@ impl<X: LawNumber> PrincipalFrame<'_, X> {
         self.variables.matrix(value, self.first + index)
     }
 
-    /// What a number of the term differs by from its value: zero, but its derivative is not.
+    /// The parameter minus its value: numerically zero, but it carries the derivative.
     pub(super) fn variation(&self, value: f64, index: usize) -> X {
         self.number(value, index) - X::from(value)
     }

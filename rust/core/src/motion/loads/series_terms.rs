@@ -11,7 +11,7 @@ use crate::motion::kinematics::Frame;
 use crate::numerics::number::Real;
 
 /// Torques about the reference point in principal axes, linear in what varies, and what is not linear besides. What no law has
-/// stated is `None`, which is not the same as a zero that a law has stated: see [`Self::parts`].
+/// stated is `None`, which is not the same as a zero that a law has stated: see [`Self::structure`].
 #[derive(Clone, Debug)]
 pub(crate) struct SeriesTerms<'a, X: LawNumber> {
     /// Constant in the body.
@@ -28,7 +28,7 @@ pub(crate) struct SeriesTerms<'a, X: LawNumber> {
     pub timed: Vec<(usize, &'a dyn Timed<X>)>,
     /// Gravity gradients, likewise.
     pub gradients: Vec<(usize, &'a dyn Orbiting<X>)>,
-    /// The states that the load has of its own.
+    /// The internal states of the load.
     pub internal_states: Vec<InternalState<X>>,
     /// Σ J a aᵀ of the wheels that turn freely, which is not part of the tensor of the equations, but is pulled by gravity.
     pub turning: Matrix3<X>,
@@ -138,7 +138,7 @@ pub(crate) struct SeriesStructure {
     pub is_timed: bool,
     /// Whether a force acts on a free body.
     pub is_pushed: bool,
-    /// How many states the laws have of their own.
+    /// How many internal states the laws have.
     pub internal_states: usize,
 }
 
@@ -165,7 +165,7 @@ impl SeriesStructure {
     }
 }
 
-/// A state z of the load's own: what it does to the body, and what becomes of it. Vectors in principal axes.
+/// An internal state z of the load: what it does to the body, and what becomes of it. Vectors in principal axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct InternalState<X: LawNumber> {
     /// The torque `z p` about the reference point.

@@ -91,7 +91,7 @@ impl Bearing {
     }
 
     /// At rest.
-    pub(super) fn stopped(&self) -> Self {
+    pub(super) fn at_rest(&self) -> Self {
         Self {
             turns: 0.0,
             ..*self
@@ -104,7 +104,7 @@ impl Bearing {
     }
 
     /// Of a wheel at rest, which takes the torque f: as it turns when it slips.
-    pub(crate) fn slipping(&self, f: f64) -> Self {
+    pub(crate) fn in_slip(&self, f: f64) -> Self {
         Self {
             turns: -f.signum(),
             ..*self

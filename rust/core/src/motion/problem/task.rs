@@ -88,7 +88,7 @@ impl<'a> Task<'a> {
         Self::about(&reference_point, body, initial, times, method, tolerance)
     }
 
-    /// `body` on a reference point of its own, which starts at the first time.
+    /// `body` about a reference point; the motion starts at the first time.
     #[must_use]
     pub fn about(
         reference_point: &ReferencePoint,
@@ -137,7 +137,7 @@ impl<'a> Task<'a> {
     ///
     /// # Errors
     /// [`MotionFault::WheelsTooHeavy`](crate::error::MotionFault::WheelsTooHeavy).
-    pub fn carrying<'c>(
+    pub fn with_carried<'c>(
         mut self,
         carried: impl Iterator<Item = &'c dyn Carried>,
     ) -> Result<Self, Error> {

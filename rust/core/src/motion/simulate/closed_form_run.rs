@@ -47,7 +47,7 @@ pub(super) fn solve<E: From<Error>>(
                     attitude: UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)),
                     omega: Vector3::from(omega),
                 };
-                closed.placed(t, state)
+                closed.phase_of(t, state)
             }));
         let last = from + times.len() - 1;
         (run.time, run.phase) = (task.times[last], run.samples[last].clone());
@@ -125,7 +125,7 @@ impl Closed {
         self.position + self.velocity * elapsed
     }
 
-    fn placed(&self, elapsed: f64, state: State) -> Phase {
+    fn phase_of(&self, elapsed: f64, state: State) -> Phase {
         Phase {
             attitude: state.attitude,
             omega: state.omega,
@@ -140,7 +140,7 @@ impl Closed {
             ClosedMotion::Free(motion) => motion.at(elapsed),
             ClosedMotion::Top(motion) => motion.at(elapsed),
         };
-        self.placed(elapsed, state)
+        self.phase_of(elapsed, state)
     }
 }
 

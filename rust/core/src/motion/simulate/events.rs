@@ -189,7 +189,7 @@ impl<'a, E: From<Error>> EventDetector<'a, E> {
             };
             let (last_sign, mut count) = (&mut self.signs[event], self.counts[event]);
             let forward = self.span > 0.0;
-            search.looks(before, turn, &mut |search, after| {
+            search.visit_looks(before, turn, &mut |search, after| {
                 let (was, is) = (*last_sign, sign(after.value));
                 let bracket = [before, after];
                 before = after;

@@ -13,35 +13,35 @@ const LONG: f64 = 2.0;
 
 /// The first change within the step that began at `from` in the state `before`, and the time since the start of the span, which is
 /// `start`.
-pub(super) fn first<E: From<Error>>(
-    changes: &[LawSwitch],
+pub(super) fn find_first<E: From<Error>>(
+    law_switches: &[LawSwitch],
     stepper: &mut dyn Dense<Error = E>,
     start: f64,
     from: f64,
     before: &Phase,
 ) -> Result<Option<(LawSwitch, f64)>, E> {
     let mut first: Option<(LawSwitch, f64)> = None;
-    for change in changes {
-        if let Some(place) = of(change, stepper, start, from, before)?
+    for law_switch in law_switches {
+        if let Some(place) = find_switch(law_switch, stepper, start, from, before)?
             && first
                 .as_ref()
                 .is_none_or(|(_, earlier)| place.abs() < earlier.abs())
         {
-            first = Some((change.clone(), place));
+            first = Some((law_switch.clone(), place));
         }
     }
     if let Some((LawSwitch::Slip(bearing), place)) = &first {
         let place = *place;
         // The way that the wheel turns then is against what held it.
-        let phase = at(stepper, from, before, place)?;
-        let slipping = bearing.slipping(stepper.held(bearing, place, &phase)?);
+        let phase = phase_at(stepper, from, before, place)?;
+        let slipping = bearing.in_slip(stepper.bearing_torque(bearing, place, &phase)?);
         return Ok(Some((LawSwitch::Slip(slipping), place)));
     }
     Ok(first)
 }
 
 /// The state at a time within the step that began at `from`.
-fn at<E>(
+fn phase_at<E>(
     stepper: &mut dyn Dense<Error = E>,
     from: f64,
     before: &Phase,
@@ -55,22 +55,22 @@ fn at<E>(
 }
 
 /// A function that is negative beyond the change.
-fn until<E>(
-    change: &LawSwitch,
+fn until_switch<E>(
+    law_switch: &LawSwitch,
     stepper: &mut dyn Dense<Error = E>,
     start: f64,
     at: f64,
     phase: &Phase,
 ) -> Result<f64, E> {
-    Ok(match change {
+    Ok(match law_switch {
         LawSwitch::Sign(switch) => switch.value_and_rate(start + at, phase)[0],
         LawSwitch::Stop(bearing) => bearing.until_stop(phase),
-        LawSwitch::Slip(bearing) => bearing.until_slip(stepper.held(bearing, at, phase)?),
+        LawSwitch::Slip(bearing) => bearing.until_slip(stepper.bearing_torque(bearing, at, phase)?),
     })
 }
 
-fn of<E: From<Error>>(
-    change: &LawSwitch,
+fn find_switch<E: From<Error>>(
+    law_switch: &LawSwitch,
     stepper: &mut dyn Dense<Error = E>,
     start: f64,
     from: f64,
@@ -78,8 +78,8 @@ fn of<E: From<Error>>(
 ) -> Result<Option<f64>, E> {
     let to = stepper.elapsed();
     let turn = stepper.turn(to - from);
-    let value = until(change, stepper, start, from, before)?;
-    if let LawSwitch::Sign(switch) = change {
+    let value = until_switch(law_switch, stepper, start, from, before)?;
+    if let LawSwitch::Sign(switch) = law_switch {
         let forward = (to - from).signum();
         let [[w, rate], [w_end, rate_end]] =
             [(from, before), (to, &stepper.phase())].map(|(at, phase)| {
@@ -96,7 +96,7 @@ fn of<E: From<Error>>(
         return Ok(Some(from));
     }
     let mut search = RootSearch {
-        function: &mut |stepper, at, phase| until(change, stepper, start, at, phase),
+        function: &mut |stepper, at, phase| until_switch(law_switch, stepper, start, at, phase),
         event: None,
         stepper,
         start,
@@ -110,7 +110,7 @@ fn of<E: From<Error>>(
         value: value.max(0.0),
     };
     let mut found = None;
-    search.looks(last, turn, &mut |search, look| {
+    search.visit_looks(last, turn, &mut |search, look| {
         if look.value < 0.0 {
             found = Some(if last.value <= 0.0 {
                 last.at

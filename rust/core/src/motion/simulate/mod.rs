@@ -70,7 +70,7 @@
 //! assert_eq!(run.with_error(|error| error.to_string()).end, End::Event);
 //! let slug = Term::Slug(polhode::motion::loads::Slug::new(0.01, 0.1)?);
 //! let carried: Option<&dyn Carried> = slug.carried();
-//! assert_eq!(task.carrying(carried.into_iter())?.initial.internal_state.len(), 3);
+//! assert_eq!(task.with_carried(carried.into_iter())?.initial.internal_state.len(), 3);
 //! # Ok::<(), polhode::Error>(())
 //! ```
 

@@ -41,19 +41,19 @@ pub type Ask<'a> = dyn Fn(Option<f64>) -> ControlFlow<()> + Sync + 'a;
 ///         CallbackPolicy::Nothing
 ///     }
 ///
-///     fn start(&self, row: usize) -> (usize, Phase) {
-///         let omega = Vector3::new(0.0, 0.0, 1.0 + row as f64);
+///     fn start(&self, member: usize) -> (usize, Phase) {
+///         let omega = Vector3::new(0.0, 0.0, 1.0 + member as f64);
 ///         (0, Phase::in_place(&State { attitude: UnitQuaternion::identity(), omega }))
 ///     }
 ///
-///     fn terms(&self, row: usize) -> &[Term] {
-///         &self.terms[row]
+///     fn terms(&self, member: usize) -> &[Term] {
+///         &self.terms[member]
 ///     }
 ///
-///     fn run(&self, row: Member<'_>) -> Run<Self::Error> {
-///         let body: BodyAtPoint = row.body();
-///         let terms = &self.terms[row.number];
-///         row.integrate(&mut Analytic::new(terms, body), &mut NoEvents::new())
+///     fn run(&self, member: Member<'_>) -> Run<Self::Error> {
+///         let body: BodyAtPoint = member.body();
+///         let terms = &self.terms[member.number];
+///         member.integrate(&mut Analytic::new(terms, body), &mut NoEvents::new())
 ///     }
 ///
 ///     fn ends_all(&self, _: &Self::Error) -> bool {
@@ -130,7 +130,7 @@ impl<'a> Plan<'a> {
         let are_tops =
             || (bodies.iter()).all(|body| watch(None).is_continue() && closed_top(body).is_ok());
         let method = method
-            .serving(pivoted, terms, &tolerance, are_tops)
+            .choose(pivoted, terms, &tolerance, are_tops)
             .map_err(|error| Refusal { body: None, error })?;
         if method != Method::Exact {
             for (number, body) in bodies.iter().enumerate() {
@@ -167,7 +167,7 @@ impl<'a> Plan<'a> {
         self.method
     }
 
-    /// The reference point of the body, where there is one alone: its rows share it.
+    /// The reference point of the body, where there is one alone: all members share it.
     pub(super) fn common(&self) -> Option<ReferencePoint> {
         match self.bodies {
             [body] => Some(self.reference_point(body)),
@@ -226,7 +226,7 @@ impl Method {
     ///
     /// # Errors
     /// [`MotionFault::MethodCannotServe`], which names one that can; [`Error::OutOfDomain`] where none serves the tolerance.
-    pub(super) fn serving(
+    pub(super) fn choose(
         self,
         pivoted: bool,
         terms: Option<&[Term]>,
@@ -417,7 +417,7 @@ mod tests {
         let weight = [Term::uniform_gravity(&Vector3::z()).expect("finite")];
         let tolerance = Tolerance::new(1e-10, 0.0).expect("a tolerance");
         let auto =
-            |pivoted, terms, is_top| Method::Auto.serving(pivoted, terms, &tolerance, || is_top);
+            |pivoted, terms, is_top| Method::Auto.choose(pivoted, terms, &tolerance, || is_top);
         assert_eq!(auto(false, Some(&[]), false), Ok(Method::Exact));
         assert_eq!(auto(true, Some(&[]), false), Ok(Method::Taylor));
         assert_eq!(auto(true, Some(&weight), true), Ok(Method::Exact));
@@ -428,7 +428,7 @@ mod tests {
             (Method::Exact, Some(&weight[..]), "taylor"),
             (Method::Taylor, None, "dop853"),
         ] {
-            let refused = method.serving(false, terms, &tolerance, || true);
+            let refused = method.choose(false, terms, &tolerance, || true);
             assert!(
                 matches!(refused, Err(Error::Motion(MotionFault::MethodCannotServe { instead: named, .. })) if named == instead)
             );
@@ -438,7 +438,7 @@ mod tests {
     #[test]
     fn below_doubles_there_is_taylor() {
         let tolerance = Tolerance::new(0.9 * TIGHTEST, 0.0).expect("a tolerance");
-        let serving = |method: Method, terms| method.serving(false, terms, &tolerance, || true);
+        let serving = |method: Method, terms| method.choose(false, terms, &tolerance, || true);
         assert_eq!(serving(Method::Auto, Some(&[])), Ok(Method::Taylor));
         assert_eq!(serving(Method::Taylor, Some(&[])), Ok(Method::Taylor));
         for method in [

@@ -104,7 +104,7 @@ impl<E: From<Error>> RootSearch<'_, E> {
 
     /// Looks from `begin`, which is not among them, to the end of the step, in which the body turns by `turn`: so many that between
     /// two of them the function rises or falls all the way.
-    pub(super) fn looks(
+    pub(super) fn visit_looks(
         &mut self,
         begin: Look,
         turn: f64,
@@ -155,7 +155,7 @@ impl<E: From<Error>> RootSearch<'_, E> {
         }
         nodes.push(end);
         let mut interpolant = Interpolant::of(&nodes);
-        let mut resolved = self.resolved(&nodes, &interpolant)?;
+        let mut resolved = self.resolve(&nodes, &interpolant)?;
         if resolved.is_none() && degree < DEGREE && interpolant.may_be_followed {
             // Every second point of the higher degree is known.
             let mut all = vec![begin];
@@ -164,7 +164,7 @@ impl<E: From<Error>> RootSearch<'_, E> {
             }
             interpolant = Interpolant::of(&all);
             nodes = all;
-            resolved = self.resolved(&nodes, &interpolant)?;
+            resolved = self.resolve(&nodes, &interpolant)?;
         }
         let is_instant = {
             let [one, other] = [begin.at, end.at].map(|at| (self.start + at).abs());
@@ -198,7 +198,7 @@ impl<E: From<Error>> RootSearch<'_, E> {
     }
 
     /// The looks through a part between which the function rises or falls all the way, if its polynomial resolves it.
-    fn resolved(
+    fn resolve(
         &mut self,
         nodes: &[Look],
         interpolant: &Interpolant,
@@ -232,7 +232,7 @@ impl<E: From<Error>> RootSearch<'_, E> {
                 let before = index.checked_sub(1).map_or(0.0, |before| extremes[before]);
                 let after = extremes.get(index + 1).map_or(1.0, |after| *after);
                 between[nodes.len() + index] =
-                    self.polished([place(before), place(x), place(after)], extreme)?;
+                    self.polish_extreme([place(before), place(x), place(after)], extreme)?;
             }
         }
         between.sort_by(|a, b| (a.at - begin).abs().total_cmp(&(b.at - begin).abs()));
@@ -241,7 +241,7 @@ impl<E: From<Error>> RootSearch<'_, E> {
 
     /// The extreme nearer to zero close by one that the polynomial has, by parabolas; it ends where the function has passed through
     /// zero.
-    fn polished(&mut self, [low, at, high]: [f64; 3], found: Look) -> Result<Look, E> {
+    fn polish_extreme(&mut self, [low, at, high]: [f64; 3], found: Look) -> Result<Look, E> {
         let side = found.value.signum();
         let mut best = found;
         // A tenth of the way to the neighbours, then ever closer.
@@ -463,7 +463,7 @@ mod tests {
     }
 
     /// All zeros of a function within a step of one second, in which a body turns by `turn`, and how often it was asked.
-    fn searched(
+    fn search_zeros(
         turn: f64,
         left: &mut u64,
         value: &dyn Fn(f64) -> f64,
@@ -486,7 +486,7 @@ mod tests {
             halved: None,
             left,
         };
-        search.looks(before, turn, &mut |search, look| {
+        search.visit_looks(before, turn, &mut |search, look| {
             if before.value * look.value < 0.0 {
                 zeros.push(search.locate([before, look], sign(before.value))?);
             }
@@ -505,7 +505,7 @@ mod tests {
                     let rate = std::f64::consts::TAU * cycles;
                     let wave = |t: f64| (rate * t + phase).sin();
                     let (zeros, count) =
-                        searched(turn, &mut MOST_LOOKS.clone(), &wave).expect("found");
+                        search_zeros(turn, &mut MOST_LOOKS.clone(), &wave).expect("found");
                     let half = std::f64::consts::PI;
                     let want = ((rate + phase) / half).floor() - (phase / half).floor();
                     assert_eq!(zeros.len() as f64, want, "{cycles} {phase} {turn}");
@@ -527,10 +527,10 @@ mod tests {
     fn looks_at_halved_parts_are_counted_and_have_an_end() {
         let fast = |t: f64| (6e3 * t).sin();
         let mut left = MOST_LOOKS;
-        searched(0.0, &mut left, &fast).expect("found");
+        search_zeros(0.0, &mut left, &fast).expect("found");
         let needed = MOST_LOOKS - left;
         for (mut left, is_found) in [(needed, true), (needed - 1, false)] {
-            let found = searched(0.0, &mut left, &fast);
+            let found = search_zeros(0.0, &mut left, &fast);
             assert_eq!(found.is_ok(), is_found);
             assert_eq!(left, 0);
             if let Err(error) = found {
@@ -543,15 +543,15 @@ mod tests {
         }
         // Rounding errors about zero; and far from it, where they are not followed.
         let noise = |t: f64| (1e14 * t * t).sin();
-        assert!(searched(0.0, &mut 100_000, &noise).is_err());
-        let (zeros, count) = searched(0.0, &mut 0, &|t| 0.3 + 1e-5 * noise(t)).expect("far");
+        assert!(search_zeros(0.0, &mut 100_000, &noise).is_err());
+        let (zeros, count) = search_zeros(0.0, &mut 0, &|t| 0.3 + 1e-5 * noise(t)).expect("far");
         assert!(zeros.is_empty() && count < 20, "{count}");
     }
 
     #[test]
     fn a_jump_is_seen_at_once_and_a_corner_soon() {
         let (zeros, count) =
-            searched(0.0, &mut 0, &|t| if t < 0.377 { -2.0 } else { 1.0 }).expect("found");
+            search_zeros(0.0, &mut 0, &|t| if t < 0.377 { -2.0 } else { 1.0 }).expect("found");
         assert_eq!(
             (zeros.len(), (zeros[0] - 0.377).abs() < 1e-16, count < 130),
             (1, true, true)
@@ -559,7 +559,7 @@ mod tests {
         for (corner, level) in [(0.377, 0.1), (0.6, 1e-3), (0.21, 1e-9)] {
             let left = &mut MOST_LOOKS.clone();
             let (zeros, count) =
-                searched(0.0, left, &|t| (t - corner).abs() - level).expect("found");
+                search_zeros(0.0, left, &|t| (t - corner).abs() - level).expect("found");
             assert_eq!((zeros.len(), count <= 1500), (2, true), "{corner} {count}");
         }
     }
@@ -570,7 +570,7 @@ mod tests {
         let cost = |level: f64| {
             let mut left = MOST_LOOKS;
             let (zeros, count) =
-                searched(0.0, &mut left, &|t| (t - 0.377).abs() - level).expect("found");
+                search_zeros(0.0, &mut left, &|t| (t - 0.377).abs() - level).expect("found");
             assert_eq!(zeros.len(), 2, "{level}");
             (MOST_LOOKS - left, count as u64)
         };
@@ -595,11 +595,11 @@ mod tests {
                 x
             }
         };
-        assert!(searched(0.0, &mut left, &noise).is_err() && left == 0);
+        assert!(search_zeros(0.0, &mut left, &noise).is_err() && left == 0);
     }
 
     /// Where a function passes through zero in a step that starts at a time, and how often it was asked.
-    fn located(start: f64, value: impl Fn(f64) -> f64) -> (f64, usize) {
+    fn locate_zero(start: f64, value: impl Fn(f64) -> f64) -> (f64, usize) {
         let mut count = 0;
         let mut function = |_: &mut dyn Dense<Error = Error>, at: f64, _: &Phase| {
             count += 1;
@@ -631,12 +631,12 @@ mod tests {
     fn a_bracket_is_halved_at_least() {
         // A jump has no slope that would help: 53 halvings, two looks each, and the two ends.
         for jump in [0.7, 0.3, 0.999, 1e-3] {
-            let (found, count) = located(0.0, |at| if at < jump { -1.0 } else { 1.0 });
+            let (found, count) = locate_zero(0.0, |at| if at < jump { -1.0 } else { 1.0 });
             assert!((found - jump).abs() <= f64::EPSILON * jump, "{found}");
             assert!(count <= 2 * 53 + 12 + 2, "{jump}: {count} looks");
         }
         // A slope helps: Ridders' method doubles the digits with every two looks.
-        let (found, count) = located(0.0, |at| at * at * at - 0.343);
+        let (found, count) = locate_zero(0.0, |at| at * at * at - 0.343);
         assert!((found - 0.7).abs() <= 2.0 * f64::EPSILON, "{found}");
         assert!(count <= 20, "{count} looks");
     }
@@ -644,7 +644,7 @@ mod tests {
     #[test]
     fn no_more_digits_are_looked_for_than_the_time_has() {
         // A million seconds after zero a second has 33 binary digits left; 53 of them take 60 looks.
-        let (found, count) = located(1e6, |at| if at < 0.7 { -1.0 } else { 1.0 });
+        let (found, count) = locate_zero(1e6, |at| if at < 0.7 { -1.0 } else { 1.0 });
         assert!((found - 0.7).abs() <= 2.0_f64.powi(-33), "{found}");
         assert!(count <= 48, "{count} looks");
     }

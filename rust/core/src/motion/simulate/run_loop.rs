@@ -127,8 +127,8 @@ impl<E> Run<E> {
         Ok(End::Complete)
     }
 
-    /// Takes the law of the load beyond a change. A wheel that stops turns by what its time is off: it comes to rest without a change of
-    /// the momentum.
+    /// Takes the law of the load beyond a switch. The stopping time of a wheel is known only to rounding, so a small relative rate is left:
+    /// set it to zero and keep the total angular momentum.
     fn change<L: Load<Error = E>>(&mut self, change: &LawSwitch, task: &Task<'_>, load: &mut L) {
         load.switch_law(change);
         if let Some(resting) = Stiction::of(&task.euler, load.bearings()) {
@@ -172,7 +172,7 @@ impl<E> Run<E> {
                 return Ok(Reached::End);
             }
             stepper.advance()?;
-            let flip = law_switches::first(&changes, stepper, from, before, &self.phase)?;
+            let flip = law_switches::find_first(&changes, stepper, from, before, &self.phase)?;
             if let Some((change, place)) = flip {
                 // The step is made again, to end there.
                 let time = from + place;

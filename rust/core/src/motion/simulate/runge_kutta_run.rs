@@ -64,8 +64,14 @@ impl<L: Load, M: RungeKutta<N>, const N: usize> Dense for RungeKuttaRun<'_, L, M
     }
 
     #[inline]
-    fn held(&mut self, bearing: &Bearing, elapsed: f64, phase: &Phase) -> Result<f64, L::Error> {
-        self.equations.held(bearing, self.start + elapsed, phase)
+    fn bearing_torque(
+        &mut self,
+        bearing: &Bearing,
+        elapsed: f64,
+        phase: &Phase,
+    ) -> Result<f64, L::Error> {
+        self.equations
+            .bearing_torque(bearing, self.start + elapsed, phase)
     }
 }
 
@@ -103,7 +109,7 @@ impl<L: Load, M: RungeKutta<N>, const N: usize> Stepper for RungeKuttaRun<'_, L,
 pub(super) const TURNING: usize = 7;
 /// Those and position and velocity of C in N.
 pub(super) const MOVING: usize = 13;
-/// Those and up to three, eleven or 51 states of the load's own; what is left stays zero.
+/// Those and up to three, eleven or 51 internal states of the load; what is left stays zero.
 pub(super) const FEW: usize = 16;
 pub(super) const SOME: usize = 24;
 pub(super) const MANY: usize = 64;
@@ -126,7 +132,7 @@ struct PhaseView {
     origin: (f64, Vector3<f64>, Vector3<f64>),
 }
 
-/// `q̇ = ½ q∘ω`, `I ω̇ + ω×Iω = N`; and with N = [`MOVING`] or more `ṙ = v`, `m v̇ = F`, and states of the load's own.
+/// `q̇ = ½ q∘ω`, `I ω̇ + ω×Iω = N`; and with N = [`MOVING`] or more `ṙ = v`, `m v̇ = F`, and internal states of the load.
 struct Equations<'a, L, const N: usize> {
     euler: EulerEquations,
     mass: f64,
@@ -138,7 +144,7 @@ struct Equations<'a, L, const N: usize> {
     now: Phase,
     tolerance: Tolerance,
     scales: Scales,
-    /// What counts as large of the load's own states besides.
+    /// What counts as large of the internal states besides.
     sizes: Vec<[f64; 2]>,
     /// The rates of these states where the equations were asked last.
     rates: Vec<f64>,
@@ -213,7 +219,7 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
         phase
     }
 
-    /// How many states the load has of its own.
+    /// How many internal states the load has.
     #[inline]
     fn internal_states(&self) -> usize {
         self.scales.internal_state.len()
@@ -232,7 +238,12 @@ impl<L: Load, const N: usize> Equations<'_, L, N> {
     }
 
     /// The torque that a bearing at rest takes.
-    fn held(&mut self, bearing: &Bearing, t: f64, phase: &Phase) -> Result<f64, L::Error> {
+    fn bearing_torque(
+        &mut self,
+        bearing: &Bearing,
+        t: f64,
+        phase: &Phase,
+    ) -> Result<f64, L::Error> {
         let mut rates = vec![0.0; self.internal_states()];
         let wrench = self.load.act(t, phase, &mut rates)?;
         let motor = rates[bearing.index()];
@@ -244,7 +255,7 @@ impl<L: Load, const N: usize> Equations<'_, L, N> {
 }
 
 impl PhaseView {
-    /// The state `y` at time `t` into `phase`, which has room for the load's own states.
+    /// The state `y` at time `t` into `phase`, which has room for the internal states of the load.
     #[inline]
     fn show<const N: usize>(&self, t: f64, y: &SVector<f64, N>, phase: &mut Phase) {
         let (mut q, mut omega) = (quaternion(y), vector(y, 4));

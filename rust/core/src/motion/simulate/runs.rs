@@ -57,7 +57,7 @@ fn by_method<L: Load>(
     events: &mut dyn Events<Error = L::Error>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Run<L::Error> {
-    let task = &match task.clone().carrying(load.carried().into_iter()) {
+    let task = &match task.clone().with_carried(load.carried().into_iter()) {
         Ok(task) => task,
         Err(error) => return Run::at_start(task, End::Failed(error.into())),
     };
@@ -80,7 +80,7 @@ fn by_method<L: Load>(
     run
 }
 
-/// What is called as rows run, besides the analytic terms of their loads: other loads, and events.
+/// What is called as members run, besides the analytic terms of their loads: other loads, and events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CallbackPolicy {
     /// Nothing.
@@ -91,7 +91,7 @@ pub enum CallbackPolicy {
     OnThisThread,
 }
 
-/// The rows of a stack: where each begins, what acts on it and what is looked for.
+/// The members of a stack of motions: where each begins, what acts on it and what is looked for.
 pub trait Batch: Sync {
     /// As of the loads.
     type Error: From<Error> + Send;
@@ -99,21 +99,21 @@ pub trait Batch: Sync {
     /// What is called as they run.
     fn callbacks(&self) -> CallbackPolicy;
 
-    /// The number of the body of a row, and its state at the first time with the attitude as given: of unit length to rounding
+    /// The number of the body of a member, and its state at the first time with the attitude as given: of unit length to rounding
     /// alone.
-    fn start(&self, row: usize) -> (usize, Phase);
+    fn start(&self, member: usize) -> (usize, Phase);
 
-    /// The analytic terms of the load in a row; their kinds are the same in all rows.
-    fn terms(&self, row: usize) -> &[Term];
+    /// The analytic terms of the load on a member; their kinds are the same for all members.
+    fn terms(&self, member: usize) -> &[Term];
 
-    /// Runs a row: calls [`Member::integrate`] with what acts on it and with what is looked for.
-    fn run(&self, row: Member<'_>) -> Run<Self::Error>;
+    /// Run a member: call [`Member::integrate`] with what acts on it and with what is looked for.
+    fn run(&self, member: Member<'_>) -> Run<Self::Error>;
 
-    /// Whether no further row is begun after one that failed like this.
+    /// Whether no further member is begun after one that failed like this.
     fn ends_all(&self, error: &Self::Error) -> bool;
 }
 
-/// A row that is about to be run.
+/// A member of a batch that is about to be run.
 pub struct Member<'r> {
     /// Its number in the stack.
     pub number: usize,
@@ -138,54 +138,54 @@ impl Member<'_> {
     }
 }
 
-/// The motions of `rows` as `plan` says, into `runs`; every one has the bits of its [`simulate`](super::simulate), in lanes of a
+/// The motions of the members of `batch` as `plan` says, into `runs`; every one has the bits of its [`simulate`](super::simulate), in lanes of a
 /// machine without fused multiply-add to rounding.
 ///
-/// Rows that call on this thread go one after the other, all others to all cores, and Taylor series that call nothing side by side
-/// in the lanes of each core. `watch` gets the fraction done, but from within rows on several cores none, and may stop all.
-/// Then, and where a row [ends all](Batch::ends_all), no further row is begun, and those begun are kept. Lanes do not ask whether
-/// a row ends all.
+/// Members that call on this thread go one after the other, all others to all cores, and Taylor series that call nothing side by side
+/// in the lanes of each core. `watch` gets the fraction done, but from within members on several cores none, and may stop all.
+/// Then, and where a member [ends all](Batch::ends_all), no further member is begun, and those begun are kept. Lanes do not ask whether
+/// a member ends all.
 pub fn simulate_many<R: Batch>(
     plan: &Plan<'_>,
-    rows: &R,
+    batch: &R,
     runs: &mut [Option<Run<R::Error>>],
     watch: &Ask<'_>,
 ) {
-    let (count, calls) = (runs.len(), rows.callbacks());
+    let (count, callbacks) = (runs.len(), batch.callbacks());
     let common = plan.common();
-    let task = |row| {
-        let (body, initial) = rows.start(row);
+    let task = |member| {
+        let (body, initial) = batch.start(member);
         plan.task(common.as_ref(), body, initial)
     };
-    let fill = |row, slot: &mut Option<Run<R::Error>>, fraction: &dyn Fn(f64) -> Option<f64>| {
-        let run = slot.insert(rows.run(Member {
-            number: row,
-            task: &task(row),
+    let fill = |member, slot: &mut Option<Run<R::Error>>, fraction: &dyn Fn(f64) -> Option<f64>| {
+        let run = slot.insert(batch.run(Member {
+            number: member,
+            task: &task(member),
             watch: &mut |part| watch(fraction(part)),
         }));
         let is_over = match &run.end {
             End::Stopped => true,
-            End::Failed(error) => rows.ends_all(error),
+            End::Failed(error) => batch.ends_all(error),
             End::Complete | End::Event => false,
         };
         if is_over { Err(()) } else { Ok(()) }
     };
-    if count == 1 || calls == CallbackPolicy::OnThisThread {
-        for (row, slot) in runs.iter_mut().enumerate() {
-            let fraction = |part| Some((row as f64 + part) / count as f64);
-            if fill(row, slot, &fraction).is_err() {
+    if count == 1 || callbacks == CallbackPolicy::OnThisThread {
+        for (member, slot) in runs.iter_mut().enumerate() {
+            let fraction = |part| Some((member as f64 + part) / count as f64);
+            if fill(member, slot, &fraction).is_err() {
                 break;
             }
         }
-    } else if calls == CallbackPolicy::Nothing && plan.method() == Method::Taylor {
-        taylor::solve_many(&task, &|row| rows.terms(row), runs, &|begun| {
+    } else if callbacks == CallbackPolicy::Nothing && plan.method() == Method::Taylor {
+        taylor::solve_many(&task, &|member| batch.terms(member), runs, &|begun| {
             watch(Some(begun))
         });
     } else {
         let look = &mut |done| watch(Some(done));
-        // Where a row ends all, those begun are kept.
-        let _ended = fill_blocks(runs, 1, look, |row, slot| {
-            fill(row, &mut slot[0], &|_| None)
+        // Where a member ends all, those begun are kept.
+        let _ended = fill_blocks(runs, 1, look, |member, slot| {
+            fill(member, &mut slot[0], &|_| None)
         });
     }
 }

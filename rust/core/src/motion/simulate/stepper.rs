@@ -10,7 +10,7 @@ pub(super) trait Dense {
     /// As of the load.
     type Error;
 
-    /// The end of the step: time since the start of the span; its whole length, to the bit, when it is over.
+    /// Time from the start of the span to the end of the last step; at the end exactly the length of the span.
     fn elapsed(&self) -> f64;
 
     /// The state then.
@@ -21,7 +21,12 @@ pub(super) trait Dense {
 
     /// The torque that a bearing at rest takes at a time since the start of the span and the state then; only what carries wheels
     /// has bearings.
-    fn held(&mut self, bearing: &Bearing, elapsed: f64, phase: &Phase) -> Result<f64, Self::Error> {
+    fn bearing_torque(
+        &mut self,
+        bearing: &Bearing,
+        elapsed: f64,
+        phase: &Phase,
+    ) -> Result<f64, Self::Error> {
         let _ = (bearing, elapsed, phase);
         Ok(0.0)
     }
@@ -54,7 +59,7 @@ pub(super) trait Stepper: Dense {
     fn law_switches(&self) -> Vec<LawSwitch>;
 }
 
-/// The largest |ω|, |r|, |v| and states of the load's own so far: what errors are relative to.
+/// The largest |ω|, |r|, |v| and internal states of the load so far: what errors are relative to.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scales {
     pub(super) omega: f64,

@@ -34,7 +34,7 @@ pub(super) fn job<'a, X: Precision<Variables = Fixed>>(
         return None;
     }
     let course = (task.clone())
-        .carrying(terms.iter().filter_map(Term::carried))
+        .with_carried(terms.iter().filter_map(Term::carried))
         .and_then(|task| {
             (run.samples[0].internal_state).clone_from(&task.initial.internal_state);
             Course::new(&task, terms, Fixed)

@@ -84,7 +84,7 @@ pub fn variations(
     if !terms.iter().all(is_known) {
         return Err(MotionFault::NoSeries.into());
     }
-    let task = &(task.clone()).carrying(terms.iter().filter_map(Term::carried))?;
+    let task = &(task.clone()).with_carried(terms.iter().filter_map(Term::carried))?;
     let states = task.initial.internal_state.len();
     let numbers: usize = terms.iter().map(Term::count).sum();
     let start = Variation {

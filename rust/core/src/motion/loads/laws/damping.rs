@@ -47,7 +47,7 @@ impl Damping {
     /// [`Self::torque`] with ω in registers. Loaded from memory, two of its numbers at a time would have to wait for the two
     /// stores that they have just come from.
     #[inline(never)]
-    fn exerted(&self, x: f64, y: f64, z: f64) -> Wrench {
+    fn wrench_at(&self, x: f64, y: f64, z: f64) -> Wrench {
         Wrench::couple(self.torque(&Vector3::new(x, y, z)))
     }
 }
@@ -97,7 +97,7 @@ impl Law for Damping {
     #[inline(never)]
     fn wrench(&self, _: &BodyAtPoint, _: f64, phase: &Phase) -> Wrench {
         let omega = &phase.omega;
-        self.exerted(omega.x, omega.y, omega.z)
+        self.wrench_at(omega.x, omega.y, omega.z)
     }
 
     fn potential(&self, _: &BodyAtPoint, _: &Phase) -> Option<f64> {

@@ -10,7 +10,7 @@ use crate::motion::loads::body_at_point::BodyAtPoint;
 use crate::motion::loads::carried::Now;
 use crate::motion::loads::law::Parameter;
 use crate::motion::loads::law::{Kept, Law, Traits};
-use crate::motion::loads::law_switches::{Switch, off};
+use crate::motion::loads::law_switches::{Switch, attitude_error};
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
 use crate::motion::loads::series_terms::SeriesTerms;
 use crate::motion::loads::variables::Variables;
@@ -73,7 +73,7 @@ impl Feedback {
     /// The torque that it asks for, with the sign of w that it is taken for.
     #[inline]
     pub(super) fn torque_on(&self, now: &Now<'_>) -> Vector3<f64> {
-        let (error, omega) = off(&self.target, now.body.start, now.t, now.phase);
+        let (error, omega) = attitude_error(&self.target, now.body.start, now.t, now.phase);
         self.torque(now.side, &error, &omega)
     }
 
@@ -151,7 +151,7 @@ impl Law for Feedback {
 
     #[inline]
     fn wrench(&self, body: &BodyAtPoint, t: f64, phase: &Phase) -> Wrench {
-        let (error, omega) = off(&self.target, body.start, t, phase);
+        let (error, omega) = attitude_error(&self.target, body.start, t, phase);
         let side = if error.w < 0.0 { -1.0 } else { 1.0 };
         Wrench::couple(self.torque(side, &error, &omega))
     }
@@ -183,11 +183,11 @@ impl Law for Feedback {
 
     #[inline]
     fn settled_wrench(&self, side: f64, body: &BodyAtPoint, t: f64, phase: &Phase) -> Wrench {
-        let (error, omega) = off(&self.target, body.start, t, phase);
+        let (error, omega) = attitude_error(&self.target, body.start, t, phase);
         Wrench::couple(self.torque(side, &error, &omega))
     }
 
-    fn switching<X: LawNumber>(&self, axes: &PrincipalFrame<'_, X>) -> Option<Vector4<X>> {
+    fn switch_function<X: LawNumber>(&self, axes: &PrincipalFrame<'_, X>) -> Option<Vector4<X>> {
         let columns = self.error_columns(axes);
         Some(Vector4::from(columns.map(|[_, _, _, w]| w)))
     }

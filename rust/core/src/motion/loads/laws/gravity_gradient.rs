@@ -54,7 +54,7 @@ use crate::motion::state::Phase;
 pub struct GravityGradient {
     mu: f64,
     orbit: OrbitModel,
-    /// How many times the torque acts.
+    /// The factor of the load.
     strength: f64,
 }
 
@@ -73,7 +73,7 @@ impl GravityGradient {
         Self::along(mu, orbit)
     }
 
-    /// With C along a path.
+    /// With C on an orbit of any kind.
     ///
     /// # Errors
     /// For μ that is not positive.
@@ -86,7 +86,7 @@ impl GravityGradient {
         })
     }
 
-    /// `3μ` times how often the torque acts: `N = coefficient/r⁵ r×(I_C r)`.
+    /// `3μ` times the factor of the load: `N = coefficient/r⁵ r×(I_C r)`.
     #[must_use]
     pub fn coefficient(&self) -> f64 {
         3.0 * self.mu * self.strength

@@ -125,14 +125,14 @@ impl Wheel {
         let motor = match &self.drive {
             Drive::Speed(speed) => return self.inertia * speed.line(now.middle)[1],
             Drive::Torque(torque) => torque.value(now.middle),
-            Drive::Feedback(law) => self.asked(law, now),
-            Drive::Limited(law, limit) => self.asked(law, now).clamp(-limit, *limit),
+            Drive::Feedback(law) => self.demanded_torque(law, now),
+            Drive::Limited(law, limit) => self.demanded_torque(law, now).clamp(-limit, *limit),
         };
         motor - self.friction * self.speed(state, &now.phase.omega)
     }
 
     /// What a feedback asks of the motor.
-    fn asked(&self, law: &Feedback, now: &Now<'_>) -> f64 {
+    fn demanded_torque(&self, law: &Feedback, now: &Now<'_>) -> f64 {
         -(self.unit).dot(&law.torque_on(now))
     }
 
@@ -285,8 +285,8 @@ impl Law for Wheel {
         self.feedback()?.switch(body, t, phase)
     }
 
-    fn switching<X: LawNumber>(&self, axes: &PrincipalFrame<'_, X>) -> Option<Vector4<X>> {
-        self.feedback()?.switching(&axes.part(DRIVE))
+    fn switch_function<X: LawNumber>(&self, axes: &PrincipalFrame<'_, X>) -> Option<Vector4<X>> {
+        self.feedback()?.switch_function(&axes.part(DRIVE))
     }
 
     fn carried(&self) -> Option<&dyn Carried> {
@@ -371,7 +371,7 @@ impl Carried for Wheel {
             return -1.0;
         };
         // Smooth where nothing is asked for.
-        let share = self.asked(law, now) / limit;
+        let share = self.demanded_torque(law, now) / limit;
         (share - 1.0) * (share + 1.0)
     }
 

@@ -131,7 +131,7 @@ impl<'a, X: Precision> Course<'a, X> {
         let mut switches: Vec<Switch<X>> = Vec::new();
         for (first, term) in self.acting(self.segment_start(), self.breaks[self.segment]) {
             let (axes, mut side) = (self.principal_axes(first), 1.0);
-            if let Some(scalar) = term.switching(&axes) {
+            if let Some(scalar) = term.switch_function(&axes) {
                 let torque = Matrix3x4::zeros();
                 let mut switch = Switch {
                     scalar,
@@ -281,12 +281,12 @@ impl<'a, X: Precision> Course<'a, X> {
             // The torque changes its sign.
             let more = switch.torque * attitude * X::from(2.0);
             for (omega, more) in state.iter_mut().zip(&more.component_mul(&over_moment)) {
-                *omega += more.until_later(switch.scalar.dot(&attitude), rate);
+                *omega += more.saltation(switch.scalar.dot(&attitude), rate);
             }
             for (number, on_attitude) in &switch.own {
                 let more = on_attitude.dot(&attitude) * X::from(2.0) / X::from(self.unit);
                 if let Some(own) = own.get_mut(*number) {
-                    *own += more.until_later(switch.scalar.dot(&attitude), rate);
+                    *own += more.saltation(switch.scalar.dot(&attitude), rate);
                 }
             }
         }
