@@ -54,7 +54,7 @@ impl PyLoad {
         PyTuple::new(py, self.stack_shape()?)
     }
 
-    /// Give the same load for a motion that is continued and that had started at `t`. Orbits without an epoch
+    /// Return the same load for a motion that is continued and that had started at `t`. Orbits without an epoch
     /// get `t` as their epoch.
     fn with_epoch(
         &self,
