@@ -24,19 +24,19 @@ use crate::numerics::turns::{exp_minus, reach, sin_cos_turns, turns, whole_off};
 /// A motion, ready to be evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TopConstants {
-    pub(super) series: TopSeries,
+    series: TopSeries,
     /// Turns of z, and of the steady phases of α, β and W, for each unit of time.
-    pub(super) clock: DoubleDouble,
-    pub(super) start: DoubleDouble,
-    pub(super) steady: [DoubleDouble; 3],
+    clock: DoubleDouble,
+    start: DoubleDouble,
+    steady: [DoubleDouble; 3],
     /// Beyond this |t| nothing is known of the phases.
     pub(super) reach: f64,
     /// (x, y, z, w) of the attitude from the real and imaginary parts of α and β.
-    pub(super) attitude: [[f64; 4]; 4],
+    attitude: [[f64; 4]; 4],
     /// ω in B from the parts of W.
-    pub(super) across: [[f64; 2]; 3],
+    across: [[f64; 2]; 3],
     /// What of ω lies along the axis.
-    pub(super) along: [f64; 3],
+    along: [f64; 3],
 }
 
 /// How the three functions are computed.
@@ -51,18 +51,18 @@ enum TopSeries {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Steady(pub(super) [f64; 2]);
+struct Steady([f64; 2]);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Periodic {
-    pub(super) quotients: Hyperbolic,
+    quotients: Hyperbolic,
     /// πK/2K′.
-    pub(super) end: f64,
+    end: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Endless {
-    pub(super) quotients: Hyperbolic,
+    quotients: Hyperbolic,
 }
 
 /// Three functions of time, but for their steady phases.
