@@ -51,7 +51,7 @@ SIZELESS = {
     "GyrostatMotion.plot",
     "HeavyTop.animate",
     "HeavyTop.plot",
-    "Load.anchored",
+    "Load.with_epoch",
     "Load.keeps_momentum",
     "MassAccumulator.finish",
     "MassAccumulator.merge",

@@ -105,8 +105,8 @@ class TestFormulas:
         two = BODY.simulate([10.0, 15.0], W, load=load)
         assert np.abs(one.omega - two.omega).max() < 1e-12
         assert one.load is not None
-        anchored = load.anchored(0.0).torque(3.0, W, Q, body=BODY)
-        assert np.array_equal(anchored, one.load.torque(3.0, W, Q, body=BODY, start=0.0))
+        with_epoch = load.with_epoch(0.0).torque(3.0, W, Q, body=BODY)
+        assert np.array_equal(with_epoch, one.load.torque(3.0, W, Q, body=BODY, start=0.0))
         rest = one.resume([5.0, 9.0], rtol=1e-12)
         whole = BODY.simulate([0.0, 9.0], W, load=load, rtol=1e-12)
         assert np.abs(rest.omega[-1] - whole.omega[-1]).max() < 1e-8

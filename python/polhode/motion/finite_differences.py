@@ -33,7 +33,7 @@ __all__ = [
 
 HELD: Final = ("times", "t", "epoch", "target")
 """Arguments of loads that are not varied."""
-AROUND: Final = ("_scheduled", "_anchored")
+AROUND: Final = ("_scheduled", "_with_epoch")
 """What is done to a part that was made."""
 
 

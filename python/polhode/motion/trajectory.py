@@ -634,7 +634,7 @@ class Trajectory(metaclass=Hinting):
         is_another = "load" in options or "states" in options
         load = options.pop("load") if "load" in options else self._acting("resume", -1)
         if isinstance(load, _core.Load):
-            load = load.anchored(began)
+            load = load.with_epoch(began)
         known = load.states if isinstance(load, _core.Load) else {}
         states = {
             name: values
@@ -826,6 +826,12 @@ class Trajectory(metaclass=Hinting):
         from polhode.uncertainty.motion import state_sigma
 
         return state_sigma(self)
+
+    def _spin_covariance(self, frame: Literal["space", "body"]) -> Floats | None:
+        """Compute the covariance of the angular momentum at every time."""
+        from polhode.uncertainty.motion import spin_covariance
+
+        return spin_covariance(self, frame)
 
     def show(self, *, height: int = 460, **options: Any) -> Shown:
         """Show the motion of one body as an interactive page: below a notebook's cell, or in the browser.

@@ -28,7 +28,7 @@ fn main() {
         for _ in 0..5 {
             let initial = initial.clone();
             let task = Task::free(&body, initial, &times, Method::Dop853, tolerance);
-            let mut load = Analytic::new(&terms, task.subject);
+            let mut load = Analytic::new(&terms, task.body_at_point);
             let start = Instant::now();
             let run = simulate(&task, &mut load, &mut NoEvents::new(), &mut |_| {
                 ControlFlow::Continue(())

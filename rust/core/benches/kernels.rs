@@ -22,8 +22,8 @@ use polhode::motion::free::FreeMotion;
 use polhode::motion::heavy_top::{HeavyTop, PivotedTop};
 use polhode::motion::integrate::taylor::solve_many;
 use polhode::motion::loads::{
-    Analytic, Callback, Damping, Drive, Frame, GravityGradient, Held, Magnetic, MagneticField,
-    Sampled, Term, Wheel,
+    Analytic, Callback, Damping, Drive, Frame, GravityGradient, Magnetic, MagneticField,
+    PiecewiseSignal, Sampled, Term, Wheel,
 };
 use polhode::motion::simulate::{Method, NoEvents, Phase, Run, State, Task, Tolerance, simulate};
 use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
@@ -284,7 +284,7 @@ fn loads(start: &Phase) -> [(&'static str, Vec<Term>); 7] {
                         0.1,
                         2.0,
                         0.01,
-                        Drive::Torque(Held::constant("torque", 0.0).expect("finite")),
+                        Drive::Torque(PiecewiseSignal::constant("torque", 0.0).expect("finite")),
                     )
                     .expect("a wheel")
                 })
@@ -327,7 +327,7 @@ fn runs() {
             time(&format!("{name}_{load}"), || {
                 simulate(
                     &task,
-                    &mut Analytic::new(terms, task.subject),
+                    &mut Analytic::new(terms, task.body_at_point),
                     &mut NoEvents::new(),
                     &mut go_on,
                 )

@@ -38,7 +38,7 @@ fn main() -> Result<(), Error> {
     });
     let tolerance = Tolerance::new(1e-12, 0.0)?;
     let task = Task::free(&body, start, &[0.0, 1000.0], Method::Taylor, tolerance);
-    let mut load = Analytic::new(&[], task.subject);
+    let mut load = Analytic::new(&[], task.body_at_point);
     let go_on = &mut |_| ControlFlow::Continue(());
     let run = simulate(&task, &mut load, &mut Passages, go_on).into_result()?;
     for crossing in &run.crossings {

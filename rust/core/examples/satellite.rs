@@ -28,7 +28,7 @@ fn main() -> Result<(), Error> {
         Method::Auto,
         Tolerance::new(1e-12, 0.0)?,
     );
-    let mut load = Analytic::new(&terms, task.subject);
+    let mut load = Analytic::new(&terms, task.body_at_point);
     let go_on = &mut |_| ControlFlow::Continue(());
     let run = simulate(&task, &mut load, &mut NoEvents::new(), go_on).into_result()?;
     for (t, phase) in times.iter().zip(&run.samples) {

@@ -4,7 +4,9 @@ use crate::watch::go_on;
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use polhode::RigidBody;
-use polhode::motion::loads::{Analytic, Drive, Feedback, Held, Rotor, Slug, Term, Wheel};
+use polhode::motion::loads::{
+    Analytic, Drive, Feedback, PiecewiseSignal, Rotor, Slug, Term, Wheel,
+};
 use polhode::motion::simulate::{End, Method, NoEvents, Run, Task, Tolerance, simulate};
 use polhode::motion::state::{Phase, State};
 
@@ -24,7 +26,7 @@ fn run(terms: &[Term], times: &[f64], method: Method, rtol: f64) -> Run<polhode:
     let body = body();
     let tolerance = Tolerance::new(rtol, 0.0).expect("a tolerance");
     let task = Task::free(&body, start(), times, method, tolerance);
-    let mut load = Analytic::new(terms, task.subject);
+    let mut load = Analytic::new(terms, task.body_at_point);
     let run = simulate(&task, &mut load, &mut NoEvents::new(), &mut go_on);
     assert_eq!(run.end, End::Complete, "{method:?}");
     run
@@ -34,7 +36,7 @@ fn run(terms: &[Term], times: &[f64], method: Method, rtol: f64) -> Run<polhode:
 fn kept(terms: &[Term], phase: &Phase) -> (Vector3<f64>, f64) {
     let momentum = body().inertia() * phase.omega;
     let (mut sum, mut energy) = (momentum, 0.5 * momentum.dot(&phase.omega));
-    let mut own = &phase.own[..];
+    let mut own = &phase.internal_state[..];
     for carried in terms.iter().filter_map(Term::carried) {
         let (mine, others) = own.split_at(carried.count());
         own = others;
@@ -51,15 +53,17 @@ fn wheel(axis: [f64; 3], friction: f64, drive: Drive) -> Term {
 }
 
 fn torque(times: &[f64], values: &[f64]) -> Drive {
-    Drive::Torque(Held::table("torque", times, values).expect("a table"))
+    Drive::Torque(PiecewiseSignal::table("torque", times, values).expect("a table"))
 }
 
 fn free() -> Drive {
-    Drive::Torque(Held::constant("torque", 0.0).expect("finite"))
+    Drive::Torque(PiecewiseSignal::constant("torque", 0.0).expect("finite"))
 }
 
 fn speeds() -> Drive {
-    Drive::Speed(Held::table("speed", &[0.0, 4.0, 20.0], &[3.0, -2.0, 0.0]).expect("a table"))
+    Drive::Speed(
+        PiecewiseSignal::table("speed", &[0.0, 4.0, 20.0], &[3.0, -2.0, 0.0]).expect("a table"),
+    )
 }
 
 fn feedback() -> Drive {
@@ -108,12 +112,19 @@ fn methods_agree_and_momentum_is_kept() {
         let (momentum, _) = kept(&terms, &series.samples[0]);
         for k in 0..TIMES.len() {
             let truth = &exact.samples[k];
-            assert_eq!(truth.own.len(), terms.iter().map(Term::own).sum::<usize>());
+            assert_eq!(
+                truth.internal_state.len(),
+                terms.iter().map(Term::internal_states).sum::<usize>()
+            );
             for (run, allowed) in [(&series, 3e-14), (&stepped, 1e-10), (&implicit, 1e-7)] {
                 let phase = &run.samples[k];
                 let turned = (phase.attitude.coords - truth.attitude.coords).norm();
                 let spin = (phase.omega - truth.omega).norm();
-                let own = phase.own.iter().zip(&truth.own).map(|(a, b)| (a - b).abs());
+                let own = phase
+                    .internal_state
+                    .iter()
+                    .zip(&truth.internal_state)
+                    .map(|(a, b)| (a - b).abs());
                 let own = own.fold(0.0, f64::max);
                 let worst = turned.max(spin).max(own);
                 assert!(worst < allowed, "{terms:?} {k}: {worst:e}");

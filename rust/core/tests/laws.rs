@@ -202,7 +202,7 @@ proptest! {
         let times: Vec<f64> = (0..20).map(|k| 0.9 * f64::from(k)).collect();
         let tolerance = Tolerance::new(1e-12, 0.0).expect("tolerance");
         let task = Task::free(&body, initial, &times, Method::Dop853, tolerance);
-        let mut load = Analytic::new(&[], task.subject);
+        let mut load = Analytic::new(&[], task.body_at_point);
         let samples =
             simulate(&task, &mut load, &mut NoEvents::new(), &mut go_on).samples;
         let zero = Vector3::zeros();

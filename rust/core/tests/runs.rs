@@ -34,7 +34,7 @@ fn task<'a>(body: &'a RigidBody, from: Phase, times: &'a [f64], method: Method) 
 }
 
 fn free(task: &Task<'_>) -> Run<Error> {
-    let mut none = Analytic::new(&[], task.subject);
+    let mut none = Analytic::new(&[], task.body_at_point);
     simulate(task, &mut none, &mut NoEvents::new(), &mut go_on)
 }
 
@@ -108,7 +108,7 @@ fn a_run_becomes_a_result() {
     let body = body();
     let task = task(&body, start(), &[0.0, 5.0], Method::Dop853);
     assert!(free(&task).into_result().is_ok());
-    let mut none = Analytic::new(&[], task.subject);
+    let mut none = Analytic::new(&[], task.body_at_point);
     let stopped = simulate(&task, &mut none, &mut NoEvents::new(), &mut |_| {
         ControlFlow::Break(())
     });
@@ -135,7 +135,7 @@ fn a_closure_is_the_term_that_it_writes_down() {
     ];
     for method in [Method::Dop853, Method::Radau, Method::Splitting] {
         let task = task(&body, start(), &[0.0, 2.0], method);
-        let mut analytic = Analytic::new(&terms, task.subject);
+        let mut analytic = Analytic::new(&terms, task.body_at_point);
         let known = simulate(&task, &mut analytic, &mut NoEvents::new(), &mut go_on);
         let load = Callback::wrench(|_, _: &Phase| {
             Ok::<_, Error>(Wrench {

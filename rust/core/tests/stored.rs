@@ -161,7 +161,7 @@ fn states_and_what_is_asked_of_runs() {
     };
     let mut phase = Phase::in_place(&state);
     phase.position = Vector3::new(1.0, 2.0, 0.1 + 0.2);
-    phase.own = vec![0.5, -1.0 / 3.0].into();
+    phase.internal_state = vec![0.5, -1.0 / 3.0].into();
     kept(&state);
     kept(&phase);
     kept(&Crossing {

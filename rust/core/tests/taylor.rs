@@ -48,7 +48,7 @@ fn every_term_agrees_with_runge_and_kutta() {
             }
             let of = if pivoted { Task::pivoted } else { Task::free };
             let task = of(&body, initial, &times, Method::Dop853, tolerance);
-            let mut load = Analytic::new(terms, task.subject);
+            let mut load = Analytic::new(terms, task.body_at_point);
             let other = simulate(&task, &mut load, &mut NoEvents::new(), &mut go_on);
             for (a, b) in run(&task, terms).samples.iter().zip(&other.samples) {
                 let error = apart(a, b);

@@ -5,8 +5,8 @@ use nalgebra::{Matrix3, Vector3};
 use polhode::Error;
 use polhode::motion::loads::kepler::Orbit;
 use polhode::motion::loads::{
-    Aim, Damping, Drive, Feedback, Frame, GravityGradient, Held, Magnetic, MagneticField, Oblate,
-    Path, Rotor, Sampled, Slug, Term, Wheel, Windows,
+    AttitudeTarget, Damping, Drive, Feedback, Frame, GravityGradient, Magnetic, MagneticField,
+    Oblate, OrbitModel, PiecewiseSignal, Rotor, Sampled, Slug, Term, Wheel, Windows,
 };
 
 use crate::draw::Draw;
@@ -115,7 +115,7 @@ fn samples(draw: &mut Draw<'_>) -> Result<(Vec<f64>, Vec<Vector3<f64>>)> {
 
 fn drive(draw: &mut Draw<'_>) -> Result<core::result::Result<Drive, Error>> {
     Ok(match draw.up_to(3)? {
-        0 => Held::constant("torque", draw.number()?).map(Drive::Torque),
+        0 => PiecewiseSignal::constant("torque", draw.number()?).map(Drive::Torque),
         1 => feedback(draw)?.map(Drive::Feedback),
         2 => {
             let limit = draw.number()?;
@@ -124,7 +124,7 @@ fn drive(draw: &mut Draw<'_>) -> Result<core::result::Result<Drive, Error>> {
         _ => {
             let (times, values) = samples(draw)?;
             let values: Vec<f64> = values.iter().map(|v| v.x).collect();
-            let held = Held::table("speed", &times, &values);
+            let held = PiecewiseSignal::table("speed", &times, &values);
             if draw.coin()? {
                 held.map(Drive::Speed)
             } else {
@@ -149,34 +149,34 @@ fn field(draw: &mut Draw<'_>) -> Result<core::result::Result<MagneticField, Erro
 }
 
 /// An orbit and its μ.
-fn path(draw: &mut Draw<'_>) -> Result<core::result::Result<(f64, Path), Error>> {
+fn path(draw: &mut Draw<'_>) -> Result<core::result::Result<(f64, OrbitModel), Error>> {
     let mu = draw.positive()?;
     if draw.coin()? {
         let (times, values) = samples(draw)?;
-        return Ok(Path::sampled(&times, &values).map(|path| (mu, path)));
+        return Ok(OrbitModel::sampled(&times, &values).map(|path| (mu, path)));
     }
     let orbit = Orbit::new(mu, &draw.vector()?, &draw.vector()?);
     let path = if draw.coin()? {
         let (j2, radius, pole) = (draw.number()?, draw.positive()?, draw.vector()?);
         orbit
             .and_then(|orbit| Oblate::new(&orbit, j2, radius, &pole))
-            .and_then(|orbit| Path::oblate(orbit, None))
+            .and_then(|orbit| OrbitModel::oblate(orbit, None))
     } else {
-        orbit.and_then(|orbit| Path::kepler(&orbit, None))
+        orbit.and_then(|orbit| OrbitModel::kepler(&orbit, None))
     };
     Ok(path.map(|path| (mu, path)))
 }
 
 /// What a feedback turns the body toward.
-fn aim(draw: &mut Draw<'_>) -> Result<core::result::Result<Aim, Error>> {
+fn aim(draw: &mut Draw<'_>) -> Result<core::result::Result<AttitudeTarget, Error>> {
     Ok(match draw.up_to(3)? {
-        0 => Ok(Aim::Fixed(draw.attitude()?)),
-        1 => Aim::turning(&draw.attitude()?, &draw.vector()?, None),
-        2 => path(draw)?.map(|(_, path)| Aim::Down(path)),
+        0 => Ok(AttitudeTarget::Fixed(draw.attitude()?)),
+        1 => AttitudeTarget::turning(&draw.attitude()?, &draw.vector()?, None),
+        2 => path(draw)?.map(|(_, path)| AttitudeTarget::Down(path)),
         _ => {
             let (times, _) = samples(draw)?;
             let attitudes = (times.iter().map(|_| draw.attitude())).collect::<Result<Vec<_>>>()?;
-            Aim::sampled(&times, &attitudes)
+            AttitudeTarget::sampled(&times, &attitudes)
         }
     })
 }

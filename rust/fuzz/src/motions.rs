@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use polhode::RigidBody;
 use polhode::motion::angular_momentum::angular_momentum;
 use polhode::motion::euler_equations::EulerEquations;
-use polhode::motion::free::{Circled, FreeMotion, FromPeriods, Invariants, attitude_about};
+use polhode::motion::free::{CircledAxis, FreeMotion, FromPeriods, Invariants, attitude_about};
 use polhode::motion::heavy_top::{HeavyTop, PivotedTop};
 use polhode::motion::kinetic_energy::kinetic_energy;
 use polhode::motion::pivot_reaction::pivot_reaction;
@@ -195,7 +195,7 @@ fn from_periods(body: &RigidBody, mut draw: Draw<'_>) -> Result<()> {
     let asked = FromPeriods {
         rotation: draw.positive()?,
         precession: draw.positive()?,
-        circled: draw.one_of(&[Circled::Long, Circled::Short])?,
+        circled: draw.one_of(&[CircledAxis::Long, CircledAxis::Short])?,
         sense: draw.one_of(&[1.0, -1.0, 0.0])?,
         phase: draw.number()?,
     };

@@ -117,13 +117,13 @@ pub fn simulated(body: &RigidBody, mut draw: Draw<'_>) -> Result<()> {
     } else {
         Task::free(body, initial, &times, method, tolerance)
     };
-    let anchored: Vec<Term> = terms
+    let with_epoch: Vec<Term> = terms
         .into_iter()
-        .map(|term| term.anchored(times[0]))
+        .map(|term| term.with_epoch(times[0]))
         .collect();
     let watch = &mut patience(STEPS);
     let events = draw.up_to(5)?;
-    let mut load = Analytic::new(&anchored, task.subject);
+    let mut load = Analytic::new(&with_epoch, task.body_at_point);
     let run = match events {
         0..3 => {
             let directions = [Direction::Any, Direction::Rising, Direction::Falling];
@@ -149,9 +149,9 @@ pub fn simulated(body: &RigidBody, mut draw: Draw<'_>) -> Result<()> {
         3 => simulate(&task, &mut Called(load), &mut NoEvents::new(), watch),
         _ => simulate(&task, &mut load, &mut NoEvents::new(), watch),
     };
-    obeys(&run, &task, &anchored, &tolerance);
+    obeys(&run, &task, &with_epoch, &tolerance);
     if draw.up_to(7)? == 0 && matches!(run.end, End::Complete) {
-        derivatives(&task, &anchored);
+        derivatives(&task, &with_epoch);
     }
     Ok(())
 }

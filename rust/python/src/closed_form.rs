@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use numpy::{PyArrayMethods, PyUntypedArrayMethods, dtype};
-use polhode::motion::state::{ClosedForm, sample_many};
+use polhode::motion::closed_form::{ClosedForm, sample_many};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyType};

@@ -42,6 +42,9 @@ pub(crate) fn handed_over<'py>(
     arguments: impl PyCallArgs<'py>,
     options: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Option<Bound<'py, PyAny>>> {
-    let found = (py.import("polhode.ensembles.lazy_arrays")?.getattr(function)?).call(arguments, options)?;
+    let found = (py
+        .import("polhode.ensembles.lazy_arrays")?
+        .getattr(function)?)
+    .call(arguments, options)?;
     Ok((!found.is_none()).then_some(found))
 }

@@ -5,7 +5,7 @@ mod steady;
 
 use nalgebra::{Matrix3, Vector3};
 use polhode::DoubleDouble;
-use polhode::motion::gyrostat::{Gyrostat, Inside};
+use polhode::motion::gyrostat::{Gyrostat, InternalMomentum};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -57,7 +57,7 @@ impl PyGyrostat {
         wheels: &Bound<'_, PyTuple>,
     ) -> PyResult<Self> {
         let mut inside = Broadcast::of(["momentum"], [&given.shape])?
-            .try_map(py, |[m]| Inside::of(&given[m]))?;
+            .try_map(py, |[m]| InternalMomentum::of(&given[m]))?;
         for (k, wheel) in wheels.iter().enumerate() {
             inside = with_wheel(py, &inside, &wheel, k)?;
         }
@@ -76,10 +76,10 @@ impl PyGyrostat {
 /// With what a wheel of Python adds.
 fn with_wheel(
     py: Python<'_>,
-    inside: &Stack<Inside>,
+    inside: &Stack<InternalMomentum>,
     wheel: &Bound<'_, PyAny>,
     k: usize,
-) -> PyResult<Stack<Inside>> {
+) -> PyResult<Stack<InternalMomentum>> {
     let part = |name: &str| {
         wheel.getattr(name).map_err(|_| {
             PyTypeError::new_err(format!(

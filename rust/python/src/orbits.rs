@@ -5,7 +5,7 @@ use numpy::PyArrayDyn;
 use polhode::motion::attitude::components;
 use polhode::motion::loads::kepler::Orbit;
 use polhode::motion::loads::magnetic::field_and_rate;
-use polhode::motion::loads::{Oblate, Path};
+use polhode::motion::loads::{Oblate, OrbitModel};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
@@ -21,7 +21,7 @@ type Floats<'py> = Bound<'py, PyArrayDyn<f64>>;
 /// Where a body is, from an attractor, of an orbit of `polhode.orbits`, with its μ.
 pub(crate) struct Orbits {
     pub(crate) mu: Stack<f64>,
-    pub(crate) paths: Stack<Path>,
+    pub(crate) paths: Stack<OrbitModel>,
 }
 
 impl Orbits {
@@ -45,7 +45,7 @@ impl Orbits {
             let (times, values) =
                 samples([&part("times")?, &part("position")?], ["t", "position"])?;
             let paths = try_series(py, &values, |row, watch| {
-                Path::sampled_watched(&times, row, watch)
+                OrbitModel::sampled_watched(&times, row, watch)
             })?;
             return Ok(Self { mu, paths });
         }
@@ -53,7 +53,7 @@ impl Orbits {
         let orbits = through(py, &part("mu")?, &part("position")?, &part("velocity")?)?;
         let j2 = part("j2")?;
         let paths = if j2.is_none() {
-            try_rows(py, &orbits, |orbit| Path::kepler(orbit, epoch))?
+            try_rows(py, &orbits, |orbit| OrbitModel::kepler(orbit, epoch))?
         } else {
             let bulges = Bulges::read([&j2, &part("radius")?, &part("pole")?])?;
             bulges.around(py, &orbits, epoch)?
@@ -84,7 +84,7 @@ impl Bulges {
         py: Python<'_>,
         orbits: &Stack<Orbit>,
         epoch: Option<f64>,
-    ) -> PyResult<Stack<Path>> {
+    ) -> PyResult<Stack<OrbitModel>> {
         let names = ["orbit", "j2", "radius", "pole"];
         let shapes = [
             &orbits.shape[..],
@@ -94,7 +94,7 @@ impl Bulges {
         ];
         Broadcast::of(names, shapes)?.try_map(py, |[o, j, r, p]| {
             let oblate = Oblate::new(&orbits[o], self.j2[j], self.radius[r], &self.pole[p])?;
-            Path::oblate(oblate, epoch)
+            OrbitModel::oblate(oblate, epoch)
         })
     }
 }
@@ -202,7 +202,7 @@ pub(crate) fn sampled_states<'py>(
 ) -> PyResult<(Floats<'py>, Floats<'py>)> {
     let (times, values) = samples([times, position], ["t", "position"])?;
     let paths = try_series(py, &values, |row, watch| {
-        Path::sampled_watched(&times, row, watch)
+        OrbitModel::sampled_watched(&times, row, watch)
     })?;
     let asked = list_floats(t, "t", "n", &[])?;
     let asked = asked.as_slice()?;
@@ -247,7 +247,7 @@ pub(crate) fn local_frames<'py>(
 /// Position and velocity on each path at each of some times; an epoch that there is none of is zero.
 fn states<'py>(
     py: Python<'py>,
-    paths: &Stack<Path>,
+    paths: &Stack<OrbitModel>,
     times: &[f64],
 ) -> PyResult<(Floats<'py>, Floats<'py>)> {
     let found = at_times(py, paths, times, |path, t| path.at(0.0, t))?;
@@ -260,9 +260,9 @@ fn states<'py>(
 /// What is known of each path at each of some times.
 fn at_times<T>(
     py: Python<'_>,
-    paths: &Stack<Path>,
+    paths: &Stack<OrbitModel>,
     times: &[f64],
-    known: impl Fn(&Path, f64) -> T,
+    known: impl Fn(&OrbitModel, f64) -> T,
 ) -> PyResult<Stack<T>> {
     let shape = [&paths.shape[..], &[times.len()]].concat();
     let mut rows = memory::vector("result", &shape, 1)?;

@@ -152,7 +152,8 @@ impl Motions<'_> {
             omega: self.omega[w],
         });
         let terms = &self.terms[l];
-        initial.own = (self.load).begun(terms, self.times[0], &self.omega[w], &self.states[s]);
+        initial.internal_state =
+            (self.load).begun(terms, self.times[0], &self.omega[w], &self.states[s]);
         let of = if self.pivoted {
             Task::pivoted
         } else {

@@ -155,7 +155,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "Load.__add__": {"other": loads.uniform_gravity((0.0, 0.0, -8.0))},
     "Load.__sub__": {"other": loads.uniform_gravity((0.0, 0.0, -8.0))},
     "Load.potential": {"self": [loads.uniform_gravity((0.0, 0.0, -8.0))]},
-    "Load.anchored": {"t": 0.5},
+    "Load.with_epoch": {"t": 0.5},
     "Load.torque": {"t": 0.5},
     "Load.force": {"t": 0.5},
     "MassAccumulator.merge": {"other": polhode.MassAccumulator()},

@@ -16,6 +16,7 @@
 //! | what internal dissipation does to its nutation | [`mod@nutation_damping`] |
 //! | symmetric top in a uniform field: steady precession, sleeping | [`heavy_top`] |
 //! | attitude, ω, position and velocity together | [`state`] |
+//! | motions in closed form: states at one time and at many | [`closed_form`] |
 //! | what acts on the body | [`loads`] |
 //! | what is asked of a method, and what it gives | `problem` |
 //! | motion under a load at the times asked for | [`mod@simulate`] |
@@ -23,6 +24,7 @@
 
 pub mod angular_momentum;
 pub mod attitude;
+pub mod closed_form;
 pub mod euler_angles;
 pub mod euler_equations;
 pub mod free;

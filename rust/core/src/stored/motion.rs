@@ -100,7 +100,7 @@ impl From<&Phase> for Moving {
             omega: phase.omega.into(),
             position: phase.position.into(),
             velocity: phase.velocity.into(),
-            own: phase.own.to_vec(),
+            own: phase.internal_state.to_vec(),
         }
     }
 }
@@ -115,7 +115,7 @@ impl TryFrom<Moving> for Phase {
             omega: vector("omega", stored.omega)?,
             position: vector("position", stored.position)?,
             velocity: vector("velocity", stored.velocity)?,
-            own: stored.own.into(),
+            internal_state: stored.own.into(),
         })
     }
 }

@@ -4,8 +4,8 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::RigidBody;
 use polhode::motion::loads::schedule::Windows;
 use polhode::motion::loads::{
-    Damping, Drive, Feedback, Frame, GravityGradient, Held, Magnetic, MagneticField, Rotor,
-    Sampled, Slug, Term, Wheel,
+    Damping, Drive, Feedback, Frame, GravityGradient, Magnetic, MagneticField, PiecewiseSignal,
+    Rotor, Sampled, Slug, Term, Wheel,
 };
 use polhode::motion::simulate::{Phase, State};
 
@@ -64,9 +64,11 @@ pub(crate) fn loads() -> Vec<(&'static str, Vec<Term>)> {
     let slug = Term::Slug(Slug::new(0.2, 0.3).expect("positive"));
     let wheel =
         |drive, friction| Term::Wheel(Wheel::new(&at, 0.2, 3.0, friction, drive).expect("a wheel"));
-    let held = Held::table("torque", &[-1.0, 2.0, 5.5], &[0.3, -0.2, 0.4]).expect("ascending");
+    let held =
+        PiecewiseSignal::table("torque", &[-1.0, 2.0, 5.5], &[0.3, -0.2, 0.4]).expect("ascending");
     let asked = Drive::Feedback(Feedback::new(&(m * 5.0), &m, &target).expect("finite"));
-    let speeds = Held::table("speed", &[-1.0, 4.0, 20.0], &[3.0, -1.0, 2.0]).expect("ascending");
+    let speeds =
+        PiecewiseSignal::table("speed", &[-1.0, 4.0, 20.0], &[3.0, -1.0, 2.0]).expect("ascending");
     let speed = Drive::Speed(speeds);
     vec![
         ("none", vec![]),
@@ -112,7 +114,11 @@ pub(crate) fn gradient() -> Term {
 pub(crate) fn apart(a: &Phase, b: &Phase) -> f64 {
     let q = (a.attitude.coords - b.attitude.coords).norm();
     let q = q.min((a.attitude.coords + b.attitude.coords).norm());
-    let own = a.own.iter().zip(&b.own).map(|(a, b)| (a - b).abs());
+    let own = a
+        .internal_state
+        .iter()
+        .zip(&b.internal_state)
+        .map(|(a, b)| (a - b).abs());
     [
         2.0 * q,
         (a.omega - b.omega).norm(),

@@ -92,7 +92,7 @@ proptest! {
         let tolerance = Tolerance::new(1e-12, 0.0).expect("tolerance");
         let times = [0.0, t];
         let task = Task::free(&whole, initial, &times, Method::Dop853, tolerance);
-        let mut load = Analytic::new(&[], task.subject);
+        let mut load = Analytic::new(&[], task.body_at_point);
         let run = simulate(&task, &mut load, &mut NoEvents::new(), &mut go_on);
         let samples = run.samples;
         let end = at(t);

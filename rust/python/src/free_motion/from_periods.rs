@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use polhode::Error;
-use polhode::motion::free::{Circled, FromPeriods, attitude_about};
+use polhode::motion::free::{CircledAxis, FromPeriods, attitude_about};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -86,8 +86,8 @@ impl PyRigidBody {
         angular_momentum_direction: Argument<'_>,
     ) -> PyResult<PyFreeMotion> {
         let (circled, mode) = match mode {
-            Some("long-axis") => (Circled::Long, "long-axis"),
-            Some("short-axis") => (Circled::Short, "short-axis"),
+            Some("long-axis") => (CircledAxis::Long, "long-axis"),
+            Some("short-axis") => (CircledAxis::Short, "short-axis"),
             Some(other) => {
                 return Err(PyValueError::new_err(format!(
                     "mode: expected \"long-axis\" or \"short-axis\", got \"{other}\""

@@ -3,8 +3,8 @@
 use nalgebra::Matrix6;
 use numpy::PyArrayDyn;
 use polhode::Error;
+use polhode::motion::closed_form::ClosedForm;
 use polhode::motion::free::{FreeMotion, Invariants};
-use polhode::motion::state::ClosedForm;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

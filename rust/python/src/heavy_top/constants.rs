@@ -28,7 +28,7 @@ impl PyHeavyTop {
         write_words_of(
             py,
             &self.motions,
-            |motion| motion.nutation().path.name(),
+            |motion| motion.nutation().mode.name(),
             "<U10",
         )
     }

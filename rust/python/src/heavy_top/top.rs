@@ -349,7 +349,7 @@ impl PyHeavyTop {
             );
         }
         let [p, q, r]: [f64; 3] = self.starts[0].omega.into();
-        let path = self.motions[0].nutation().path.name();
+        let path = self.motions[0].nutation().mode.name();
         format!("<HeavyTop: {path}, omega=[{p:?}, {q:?}, {r:?}]>")
     }
 }

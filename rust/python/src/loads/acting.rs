@@ -3,7 +3,7 @@
 use polhode::Error;
 use polhode::error::Kind;
 use polhode::motion::loads::{
-    Analytic, Bearing, Carried, Change, Load, Subject, Term, Windows, Wrench,
+    Analytic, Bearing, BodyAtPoint, Carried, LawSwitch, Load, Term, Windows, Wrench,
 };
 use polhode::motion::state::Phase;
 use pyo3::prelude::*;
@@ -70,7 +70,7 @@ impl<'a, 'py> Acting<'a, 'py> {
     pub(crate) fn new(
         load: &'a PyLoad,
         terms: &'a [Term],
-        subject: Subject,
+        subject: BodyAtPoint,
         py: Option<Python<'py>>,
     ) -> Self {
         Self {
@@ -91,7 +91,11 @@ impl<'a, 'py> Acting<'a, 'py> {
 
     /// The states of the analytic terms come first, then those of functions of Python, then those of compiled ones.
     fn first_of_functions(&self) -> usize {
-        self.analytic.terms().iter().map(Term::own).sum()
+        self.analytic
+            .terms()
+            .iter()
+            .map(Term::internal_states)
+            .sum()
     }
 }
 
@@ -139,12 +143,12 @@ impl Load for Acting<'_, '_> {
         self.analytic.settle(t, phase);
     }
 
-    fn changes(&self) -> Vec<Change> {
-        self.analytic.changes()
+    fn law_switches(&self) -> Vec<LawSwitch> {
+        self.analytic.law_switches()
     }
 
-    fn change(&mut self, change: &Change) {
-        self.analytic.change(change);
+    fn switch_law(&mut self, change: &LawSwitch) {
+        self.analytic.switch_law(change);
     }
 
     fn bearings(&self) -> &[Bearing] {
@@ -188,7 +192,7 @@ impl Load for Acting<'_, '_> {
             } else {
                 &mut []
             };
-            sum += compiled.call(t, phase, &phase.own[own], into);
+            sum += compiled.call(t, phase, &phase.internal_state[own], into);
         }
         if let Some(py) = self.py {
             for callback in &self.callbacks {
@@ -217,7 +221,7 @@ impl Load for Acting<'_, '_> {
         let now = (t, self.start);
         let states = Named::of(&self.slots, self.analytic.terms(), phase);
         let mut first = self.first_of_functions();
-        let mut after = phase.own.clone();
+        let mut after = phase.internal_state.clone();
         for one in &self.with_states {
             let own = first..first + one.initial.len();
             first = own.end;
@@ -226,7 +230,7 @@ impl Load for Acting<'_, '_> {
                 after[own].copy_from_slice(&new);
             }
         }
-        phase.own = after;
+        phase.internal_state = after;
         Ok(())
     }
 }

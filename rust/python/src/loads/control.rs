@@ -1,7 +1,7 @@
 //! The function that makes the load of a controller.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use polhode::motion::loads::{Aim, Feedback, Term};
+use polhode::motion::loads::{AttitudeTarget, Feedback, Term};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -95,7 +95,7 @@ fn aims(
     times: Option<&Bound<'_, PyAny>>,
     epoch: Option<f64>,
     kept: &Bound<'_, PyDict>,
-) -> PyResult<Stack<Aim>> {
+) -> PyResult<Stack<AttitudeTarget>> {
     let py = kept.py();
     let beside = |what: &str, with: &str| {
         Err(PyTypeError::new_err(format!(
@@ -115,7 +115,7 @@ fn aims(
         kept.set_item("target", orbit)?;
         return Orbits::read(orbit)?
             .paths
-            .map(py, |path| Aim::Down(path.clone()));
+            .map(py, |path| AttitudeTarget::Down(path.clone()));
     }
     if let Some(times) = times {
         if rate.is_some() || epoch.is_some() {
@@ -133,7 +133,7 @@ fn aims(
             )));
         }
         let aim = watched(py, |watch| {
-            Aim::sampled_watched(times, &samples.rows, watch)
+            AttitudeTarget::sampled_watched(times, &samples.rows, watch)
         })?;
         kept.set_item("times", times.to_vec())?;
         kept.set_item("target", as_given(target)?)?;
@@ -147,13 +147,16 @@ fn aims(
                 "epoch: it is that of a target with rate=",
             ));
         }
-        return attitude.map(py, |attitude: &UnitQuaternion<f64>| Aim::Fixed(*attitude));
+        return attitude.map(py, |attitude: &UnitQuaternion<f64>| {
+            AttitudeTarget::Fixed(*attitude)
+        });
     };
     let rate: Stack<Vector3<f64>> = read(rate, "rate")?;
     kept.set_item("rate", write(py, &rate)?)?;
     kept.set_item("epoch", epoch)?;
-    Broadcast::of(["target", "rate"], [&attitude.shape, &rate.shape])?
-        .try_map(py, |[q, w]| Aim::turning(&attitude[q], &rate[w], epoch))
+    Broadcast::of(["target", "rate"], [&attitude.shape, &rate.shape])?.try_map(py, |[q, w]| {
+        AttitudeTarget::turning(&attitude[q], &rate[w], epoch)
+    })
 }
 
 /// A copy of quaternions, not yet at unit length: a load that is made again from them has the same bits.

@@ -6,7 +6,7 @@ use polhode::RigidBody;
 use polhode::mass::refined::RefinedPrincipal;
 use polhode::motion::attitude::from_components;
 use polhode::motion::euler_equations::EulerEquations;
-use polhode::motion::loads::{Kept, Load, Subject, Term, Wrench, wrench_at};
+use polhode::motion::loads::{BodyAtPoint, Kept, Load, Term, Wrench, wrench_at};
 use polhode::motion::state::Phase;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -94,9 +94,9 @@ impl PyLoad {
                 }
                 let start = start.unwrap_or(t[k]);
                 let subject = if pivoted {
-                    Subject::pivoted(&bodies[b], start)
+                    BodyAtPoint::pivoted(&bodies[b], start)
                 } else {
-                    Subject::free(&bodies[b], start)
+                    BodyAtPoint::free(&bodies[b], start)
                 };
                 let mut acting = Acting::new(self, &terms[l], subject, Some(py));
                 let attitude = from_components("quaternion", &quaternion[q]);
@@ -109,7 +109,7 @@ impl PyLoad {
                             omega: omega[w],
                             position: position[r],
                             velocity: velocity[v],
-                            own: self.begun(&terms[l], t[k], &omega[w], &states[s]),
+                            internal_state: self.begun(&terms[l], t[k], &omega[w], &states[s]),
                         };
                         acting.enter(t[k], t[k])?;
                         on_locked(&bodies[b], &subject, &mut acting, t[k], &phase)
@@ -269,9 +269,9 @@ impl PyLoad {
                 ..Phase::nan()
             };
             let subject = if pivoted {
-                Subject::pivoted(&bodies[b], 0.0)
+                BodyAtPoint::pivoted(&bodies[b], 0.0)
             } else {
-                Subject::free(&bodies[b], 0.0)
+                BodyAtPoint::free(&bodies[b], 0.0)
             };
             (terms[l].iter())
                 .map(|term| term.potential(&subject, &phase))
@@ -332,7 +332,7 @@ impl PyLoad {
 /// Force and torque N of `I ω̇ + ω × I ω = N`, where I has the wheels locked.
 fn on_locked(
     body: &RigidBody,
-    subject: &Subject,
+    subject: &BodyAtPoint,
     acting: &mut Acting<'_, '_>,
     t: f64,
     phase: &Phase,
@@ -343,10 +343,10 @@ fn on_locked(
     if turning.is_empty() {
         return acting.wrench(t, phase);
     }
-    let casing = RefinedPrincipal::about(body, &subject.point).without(&turning)?;
-    let casing = EulerEquations::of_refined(&casing);
-    let wrench = wrench_at(acting, &casing, t, phase)?;
-    let rate = casing.angular_acceleration(&phase.omega, &wrench.torque)?;
+    let body_without_wheels = RefinedPrincipal::about(body, &subject.point).without(&turning)?;
+    let body_without_wheels = EulerEquations::of_refined(&body_without_wheels);
+    let wrench = wrench_at(acting, &body_without_wheels, t, phase)?;
+    let rate = body_without_wheels.angular_acceleration(&phase.omega, &wrench.torque)?;
     Ok(Wrench {
         torque: EulerEquations::about(body, &subject.point).torque(&phase.omega, &rate),
         ..wrench

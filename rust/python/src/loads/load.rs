@@ -129,20 +129,20 @@ impl PyLoad {
 
     /// The load with `t` as the epoch of those orbits that have none. It serves to continue a motion that
     /// started at `t`.
-    pub(super) fn with_epoch(&self, py: Python<'_>, t: f64) -> PyResult<Self> {
+    pub(super) fn copy_with_epoch(&self, py: Python<'_>, t: f64) -> PyResult<Self> {
         self.map(|part| {
             let mut part = part.copied(py)?;
             if let Acts::Term(terms) = &part.acts
                 && terms.rows.iter().any(Term::needs_epoch)
             {
-                part.recipe = recipe(py, "_anchored", (&part.recipe, t))?;
-                part.acts = Acts::Term(terms.map(py, |term| term.clone().anchored(t))?);
+                part.recipe = recipe(py, "_with_epoch", (&part.recipe, t))?;
+                part.acts = Acts::Term(terms.map(py, |term| term.clone().with_epoch(t))?);
             }
             if let Acts::WithStates(one) = &mut part.acts
                 && one.needs_epoch()
             {
-                one.anchored(t);
-                part.recipe = recipe(py, "_anchored", (&part.recipe, t))?;
+                one.set_epoch(t);
+                part.recipe = recipe(py, "_with_epoch", (&part.recipe, t))?;
             }
             Ok(part)
         })
@@ -176,7 +176,7 @@ pub(super) fn made(py: Python<'_>, recipe: &Bound<'_, PyTuple>) -> PyResult<PyLo
                 let key = arguments.get_item(2)?;
                 load.map(|part| part.picked(py, &shape, &key))?
             }
-            _ => load.with_epoch(py, arguments.get_item(1)?.extract()?)?,
+            _ => load.copy_with_epoch(py, arguments.get_item(1)?.extract()?)?,
         };
     }
     Ok(load)

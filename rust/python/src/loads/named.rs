@@ -46,7 +46,7 @@ impl<'a> Named<'a> {
 
 /// The states of a phase as they are reported.
 pub(crate) fn reported(terms: &[Term], phase: &Phase) -> Vec<f64> {
-    let mut states = phase.own.to_vec();
+    let mut states = phase.internal_state.to_vec();
     let mut first = 0;
     for carried in terms.iter().filter_map(Term::carried) {
         let mine = first..first + carried.count();

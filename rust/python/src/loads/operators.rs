@@ -54,14 +54,14 @@ impl PyLoad {
         PyTuple::new(py, self.stack_shape()?)
     }
 
-    /// Give the same load for a motion that is continued and that had started at `t`. Orbits without an epoch
+    /// Return the same load for a motion that is continued and that had started at `t`. Orbits without an epoch
     /// get `t` as their epoch.
-    fn anchored(
+    fn with_epoch(
         &self,
         py: Python<'_>,
         #[pyo3(from_py_with = read_scalar)] t: f64,
     ) -> PyResult<Self> {
-        self.with_epoch(py, t)
+        self.copy_with_epoch(py, t)
     }
 
     fn __add__<'py>(

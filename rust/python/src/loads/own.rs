@@ -29,7 +29,7 @@ impl PyLoad {
         for kind in 0..3 {
             for part in &self.parts {
                 let (of_kind, count) = match &part.acts {
-                    Acts::Term(terms) => (0, terms.rows.first().map_or(0, Term::own)),
+                    Acts::Term(terms) => (0, terms.rows.first().map_or(0, Term::internal_states)),
                     Acts::Callback(_) => (1, 0),
                     Acts::WithStates(one) => (1, one.initial.len()),
                     Acts::Compiled(one) => (2, one.initial.len()),
@@ -85,7 +85,7 @@ impl PyLoad {
         let kept = self.begun(terms, t, omega, given);
         let phase = Phase {
             omega: *omega,
-            own: kept,
+            internal_state: kept,
             ..Phase::nan()
         };
         let kept = reported(terms, &phase);

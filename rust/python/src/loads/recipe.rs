@@ -22,7 +22,7 @@ pub(super) fn unfolded<'py>(
     let mut steps: Vec<(String, Bound<'py, PyTuple>)> = vec![recipe.extract()?];
     let mut beat = Beat::new(recipe.py());
     while let Some((name, arguments)) = steps.last()
-        && ["_scaled", "_scheduled", "_picked", "_anchored"].contains(&name.as_str())
+        && ["_scaled", "_scheduled", "_picked", "_with_epoch"].contains(&name.as_str())
     {
         beat.mark()?;
         steps.push(arguments.get_item(0)?.extract()?);

@@ -93,7 +93,7 @@ impl WithStates {
         self.update.is_some() && self.epoch.is_none()
     }
 
-    pub(super) fn anchored(&mut self, t: f64) {
+    pub(super) fn set_epoch(&mut self, t: f64) {
         self.epoch.get_or_insert(t);
     }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use numpy::PyUntypedArrayMethods;
-use polhode::motion::loads::{Drive, Held, Rotor, Slug, Term, Wheel};
+use polhode::motion::loads::{Drive, PiecewiseSignal, Rotor, Slug, Term, Wheel};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -221,11 +221,11 @@ pub(crate) fn wheel(
 made!(Wheel by wheel);
 
 /// No torque.
-fn nothing(py: Python<'_>, times: Option<&Bound<'_, PyAny>>) -> PyResult<Held> {
+fn nothing(py: Python<'_>, times: Option<&Bound<'_, PyAny>>) -> PyResult<PiecewiseSignal> {
     if times.is_some() {
         return Err(PyTypeError::new_err("times: give torque= or speed= too"));
     }
-    Held::constant("torque", 0.0).map_err(|error| to_py(py, &error))
+    PiecewiseSignal::constant("torque", 0.0).map_err(|error| to_py(py, &error))
 }
 
 /// A number, or one for each of the times.
@@ -233,11 +233,11 @@ fn held(
     what: &'static str,
     given: &Bound<'_, PyAny>,
     times: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Held> {
+) -> PyResult<PiecewiseSignal> {
     let py = given.py();
     let values = floats(given, what)?;
     let made = match times {
-        None if values.ndim() == 0 => Held::constant(what, values.as_slice()?[0]),
+        None if values.ndim() == 0 => PiecewiseSignal::constant(what, values.as_slice()?[0]),
         None => {
             return Err(PyTypeError::new_err(format!(
                 "{what}: expected one number, got {} of them; give the times= from which each holds",
@@ -254,7 +254,7 @@ fn held(
                     values.len()
                 )));
             }
-            Held::table(what, times.as_slice()?, values.as_slice()?)
+            PiecewiseSignal::table(what, times.as_slice()?, values.as_slice()?)
         }
     };
     made.map_err(|error| to_py(py, &error))

@@ -3,7 +3,9 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::RigidBody;
 use polhode::motion::loads::Term;
-use polhode::motion::simulate::{Calls, End, NoEvents, Plan, Row, Rows, Run, simulate_many};
+use polhode::motion::simulate::{
+    Batch, CallbackPolicy, End, Member, NoEvents, Plan, Run, simulate_many,
+};
 use polhode::motion::state::Phase;
 use pyo3::prelude::*;
 
@@ -106,9 +108,9 @@ impl Ensemble<'_> {
     ) -> Results<'py> {
         let mut runs = self.none_yet(py)?;
         let mut go = || simulate_many(&self.plan, self, &mut runs, &|done| interrupt.poll(done));
-        match self.calls() {
-            Calls::OnThisThread => go(),
-            Calls::Nothing | Calls::OnAnyThread => py.detach(go),
+        match self.callbacks() {
+            CallbackPolicy::OnThisThread => go(),
+            CallbackPolicy::Nothing | CallbackPolicy::OnAnyThread => py.detach(go),
         }
         for (row, run) in runs.iter().enumerate() {
             if let Some(Run {
@@ -138,11 +140,11 @@ impl Ensemble<'_> {
             let Some(run) = run else {
                 continue;
             };
-            let terms = Rows::terms(self, row);
+            let terms = Batch::terms(self, row);
             let found = run.crossings.iter_mut().map(|crossing| &mut crossing.phase);
             for phase in run.samples.iter_mut().chain(found).chain([&mut run.phase]) {
-                if !phase.own.is_empty() {
-                    phase.own = reported(terms, phase).into();
+                if !phase.internal_state.is_empty() {
+                    phase.internal_state = reported(terms, phase).into();
                 }
             }
         }
@@ -168,16 +170,16 @@ impl Ensemble<'_> {
     }
 }
 
-impl Rows for Ensemble<'_> {
+impl Batch for Ensemble<'_> {
     type Error = Fault;
 
-    fn calls(&self) -> Calls {
+    fn callbacks(&self) -> CallbackPolicy {
         if self.load.calls_python() || !self.events.is_empty() {
-            Calls::OnThisThread
+            CallbackPolicy::OnThisThread
         } else if self.load.is_analytic() {
-            Calls::Nothing
+            CallbackPolicy::Nothing
         } else {
-            Calls::OnAnyThread
+            CallbackPolicy::OnAnyThread
         }
     }
 
@@ -195,7 +197,7 @@ impl Rows for Ensemble<'_> {
             omega,
             position: self.start.position[r],
             velocity: self.start.velocity[v],
-            own,
+            internal_state: own,
         };
         (b, initial)
     }
@@ -205,20 +207,20 @@ impl Rows for Ensemble<'_> {
         &self.start.terms[l]
     }
 
-    fn run(&self, row: Row<'_>) -> Run<Fault> {
-        let (load, terms, subject) = (self.load, self.terms(row.number), row.subject());
-        match self.calls() {
-            Calls::Nothing | Calls::OnAnyThread => {
-                let mut load = Acting::new(load, terms, subject, None);
-                row.under(&mut load, &mut NoEvents::new())
+    fn run(&self, row: Member<'_>) -> Run<Fault> {
+        let (load, terms, body) = (self.load, self.terms(row.number), row.body());
+        match self.callbacks() {
+            CallbackPolicy::Nothing | CallbackPolicy::OnAnyThread => {
+                let mut load = Acting::new(load, terms, body, None);
+                row.integrate(&mut load, &mut NoEvents::new())
             }
-            Calls::OnThisThread => Python::attach(|py| {
-                let mut load = Acting::new(load, terms, subject, Some(py));
+            CallbackPolicy::OnThisThread => Python::attach(|py| {
+                let mut load = Acting::new(load, terms, body, Some(py));
                 let states = States {
                     slots: self.load.slots(),
                     terms,
                 };
-                row.under(&mut load, &mut self.events.calling(py, states))
+                row.integrate(&mut load, &mut self.events.calling(py, states))
             }),
         }
     }

@@ -52,7 +52,7 @@ impl Outcome {
         let named = PyDict::new(py);
         for slot in &self.slots {
             let found = self.crossings.iter();
-            let values = found.flat_map(|(_, crossing)| slot.of(&crossing.phase.own));
+            let values = found.flat_map(|(_, crossing)| slot.of(&crossing.phase.internal_state));
             let values = PyArray1::from_vec(py, values.copied().collect());
             named.set_item(
                 &slot.name,
@@ -290,7 +290,7 @@ fn states<'py>(
         let mut numbers = Numbers::of::<f64>(py, "result", &shape)?;
         for states in rows.iter().copied().map(Option::unwrap_or_default) {
             numbers.put(states, |phase, out| {
-                out.extend_from_slice(slot.of(&phase.own));
+                out.extend_from_slice(slot.of(&phase.internal_state));
             })?;
             numbers.put(states.len()..times, |_, out| {
                 out.extend(std::iter::repeat_n(f64::NAN, slot.count));
@@ -322,7 +322,9 @@ fn array<'a, 'py, T: Item>(
 fn of_run(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
     static FUNCTION: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     let function = FUNCTION.get_or_try_init(py, || {
-        let class = py.import("polhode.motion.trajectory")?.getattr("Trajectory")?;
+        let class = py
+            .import("polhode.motion.trajectory")?
+            .getattr("Trajectory")?;
         class.getattr("_of_run").map(Bound::unbind)
     })?;
     Ok(function.bind(py))

@@ -54,8 +54,11 @@ impl PyRigidBody {
         }
         all.set_item("density", density)?;
         all.set_item("mass", mass)?;
-        py.import("polhode.interop.foreign_objects")?
-            .call_method("body_from_mesh", (mesh,), Some(&all))
+        py.import("polhode.interop.foreign_objects")?.call_method(
+            "body_from_mesh",
+            (mesh,),
+            Some(&all),
+        )
     }
 
     /// Body from a molecule of another library: an ``Atoms`` of ASE, or a ``Mol`` of RDKit with a conformer.

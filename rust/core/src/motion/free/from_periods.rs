@@ -11,14 +11,14 @@ use crate::numerics::jacobi::jacobi;
 
 /// The axis that ω circles in the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Circled {
+pub enum CircledAxis {
     /// Axis 1, of the least moment: long-axis mode.
     Long,
     /// Axis 3, of the greatest moment: short-axis mode.
     Short,
 }
 
-impl Circled {
+impl CircledAxis {
     fn mode(self) -> &'static str {
         match self {
             Self::Long => Mode::LongAxis,
@@ -34,12 +34,12 @@ impl Circled {
 ///
 /// ```
 /// use polhode::RigidBody;
-/// use polhode::motion::free::{Circled, FreeMotion, FromPeriods, attitude_about};
+/// use polhode::motion::free::{CircledAxis, FreeMotion, FromPeriods, attitude_about};
 /// use polhode::nalgebra::{Matrix3, Vector3};
 ///
 /// // The asteroid Toutatis (Hudson and Ostro 1995; moments of Ostro et al. 1999): it rotates about its long axis in 5.41 days, which precesses in 7.35.
 /// let moments = [1.0, 3.09, 3.22];
-/// let given = FromPeriods { rotation: 5.41, precession: 7.35, circled: Circled::Long, sense: 1.0, phase: 0.0 };
+/// let given = FromPeriods { rotation: 5.41, precession: 7.35, circled: CircledAxis::Long, sense: 1.0, phase: 0.0 };
 /// let omega = given.omega(&moments)?;
 /// let axes = Matrix3::identity();
 /// let attitude = attitude_about(&moments, &axes, &omega, &Vector3::new(0.1, 0.0, -1.0))?; // L in space
@@ -57,7 +57,7 @@ pub struct FromPeriods {
     /// `P_φ`: mean period of axis 1 about L.
     pub precession: f64,
     /// Which axis is circled.
-    pub circled: Circled,
+    pub circled: CircledAxis,
     /// The side of that axis on which ω is: +1 or −1.
     pub sense: f64,
     /// Time zero as a fraction of `P_ψ` after ω crossed the plane of axes 1 and 3, on the positive side of the
@@ -162,18 +162,18 @@ pub fn attitude_about(
 /// All motions of a body in one mode, up to their rate.
 struct Family {
     moments: [f64; 3],
-    circled: Circled,
+    circled: CircledAxis,
     /// `(I₂ − I₁)/(I₃ − I₂)`, or its inverse where axis 1 is circled: zero for a body that is symmetric about the axis.
     flatness: f64,
 }
 
 impl Family {
-    fn of(moments: &[f64; 3], circled: Circled) -> Result<Self, Error> {
+    fn of(moments: &[f64; 3], circled: CircledAxis) -> Result<Self, Error> {
         let &[i1, i2, i3] = moments;
         let (lower, upper) = (i2 - i1, i3 - i2);
         let (own, other) = match circled {
-            Circled::Long => (lower, upper),
-            Circled::Short => (upper, lower),
+            CircledAxis::Long => (lower, upper),
+            CircledAxis::Short => (upper, lower),
         };
         if own <= 0.0 || i1 == 0.0 {
             return Err(MotionFault::NoSuchMode {
@@ -195,14 +195,14 @@ impl Family {
     fn motion(&self, s: f64) -> Invariants {
         let [i1, _, i3] = self.moments.map(|moment| moment / self.moments[2]);
         let (own, other) = match self.circled {
-            Circled::Long => (i1, i3),
-            Circled::Short => (i3, i1),
+            CircledAxis::Long => (i1, i3),
+            CircledAxis::Short => (i3, i1),
         };
         let share = s / (1.0 + self.flatness * s);
         let (circled, crossed) = ((1.0 / own).sqrt(), (share / other).sqrt());
         let omega = match self.circled {
-            Circled::Long => Vector3::new(circled, 0.0, crossed),
-            Circled::Short => Vector3::new(crossed, 0.0, circled),
+            CircledAxis::Long => Vector3::new(circled, 0.0, crossed),
+            CircledAxis::Short => Vector3::new(crossed, 0.0, circled),
         };
         Invariants::of(&self.moments, &omega)
     }

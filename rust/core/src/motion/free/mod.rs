@@ -10,16 +10,15 @@
 //! | file | idea |
 //! |---|---|
 //! | `mode.rs` | the six ways to move |
-//! | `motion.rs`, `secular.rs` | a motion from its start, its states, and what grows with time |
+//! | `motion.rs` | a motion from its start, and its states |
 //! | `separation.rs` | the difference `L² − 2T I₂`, on which all depends near the separatrix |
 //! | `tumbling.rs` | long- and short-axis mode and the separatrix: from a start to the constants of the theta functions |
-//! | `circling.rs` | steady spin and the symmetric body: the limits in which they are sines |
-//! | `propagator.rs` | from the constants to the states, in lanes |
-//! | `evaluate.rs` | states of any motion in closed form, at one time and at many |
+//! | `steady_or_symmetric.rs` | steady spin and the symmetric body: the limits in which they are sines |
+//! | `propagator.rs` | from the constants to the states, in lanes; what grows with time |
 //! | `invariants.rs` | what a motion keeps: energy, momentum, modulus, amplitudes |
 //! | `periods.rs`, `from_periods.rs` | periods and mean precession; the motion that has two given periods |
-//! | `polhode.rs`, `nutation.rs`, `poinsot.rs` | the curve of ω in the body, cones, the rolling ellipsoid |
-//! | `sensitivity` on `clock.rs`, `conditioning.rs` | derivatives by initial state and moments; error bars |
+//! | `polhode.rs` | the curve of ω in the body, cones, the rolling ellipsoid |
+//! | `sensitivity.rs` | derivatives by initial state and moments; error bars |
 //!
 //! # Examples
 //!
@@ -78,33 +77,25 @@
 //! # Ok::<(), polhode::Error>(())
 //! ```
 
-mod circling;
-mod clock;
-mod conditioning;
-pub(super) mod evaluate;
 mod from_periods;
 mod invariants;
 pub mod mode;
 mod motion;
-mod nutation;
 mod periods;
-mod poinsot;
 mod polhode;
 mod propagator;
-mod secular;
 mod sensitivity;
 mod separation;
+mod steady_or_symmetric;
 #[cfg(test)]
 mod tests;
 mod tumbling;
 
-pub use conditioning::ErrorBar;
-pub use from_periods::{Circled, FromPeriods, attitude_about};
+pub use from_periods::{CircledAxis, FromPeriods, attitude_about};
 pub use invariants::Invariants;
 pub use mode::Mode;
 pub use motion::FreeMotion;
-pub use nutation::Cones;
 pub use periods::Periods;
-pub use poinsot::Poinsot;
-pub use secular::Secular;
-pub use sensitivity::Sensitivity;
+pub use polhode::{Cones, Poinsot};
+pub use propagator::Secular;
+pub use sensitivity::{ErrorBar, Sensitivity};

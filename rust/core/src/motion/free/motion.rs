@@ -2,17 +2,17 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use super::circling;
 use super::mode::Mode;
 use super::propagator::Propagator;
-use super::secular::Secular;
+use super::propagator::Secular;
 use super::separation::Separation;
+use super::steady_or_symmetric;
 use super::tumbling::Tumbling;
 use crate::error::{Error, all_finite};
 use crate::mass::RigidBody;
 use crate::mass::refined::{RefinedPrincipal, Vector};
-use crate::motion::free::evaluate;
-use crate::motion::state::{ClosedForm, State};
+use crate::motion::closed_form::{self, ClosedForm};
+use crate::motion::state::State;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::power_below;
 
@@ -75,14 +75,20 @@ impl FreeMotion {
         let [i1, i2, i3] = moments;
         let is_steady = |w: &Vector| w.iter().filter(|rate| rate.high == 0.0).count() >= 2;
         let (mode, (propagator, secular)) = if i1 == i3 {
-            (Mode::Spherical, circling::spin(&scaled_omega, attitude))
+            (
+                Mode::Spherical,
+                steady_or_symmetric::steady_spin(&scaled_omega, attitude),
+            )
         } else if i1 == i2 || i2 == i3 || i1.high == 0.0 {
-            let motion = circling::symmetric(&moments, &w, &axes, attitude);
+            let motion = steady_or_symmetric::symmetric_body(&moments, &w, &axes, attitude);
             (Mode::Symmetric, motion)
         } else {
-            (separation, w) = separation.kept(principal, &scaled_omega, &moments, &w);
+            (separation, w) = separation.with_digits(principal, &scaled_omega, &moments, &w);
             if is_steady(&w) {
-                (Mode::Steady, circling::spin(&scaled_omega, attitude))
+                (
+                    Mode::Steady,
+                    steady_or_symmetric::steady_spin(&scaled_omega, attitude),
+                )
             } else {
                 let tumbling = Tumbling::of(&moments, &w, &separation);
                 (tumbling.mode, tumbling.motion(&axes, attitude))
@@ -105,7 +111,7 @@ impl FreeMotion {
     /// The attitude is continuous in t as a quaternion, not only as a rotation.
     #[must_use]
     pub fn at(&self, t: f64) -> State {
-        evaluate::at(&self.propagator, t)
+        closed_form::at(&self.propagator, t)
     }
 
     /// The states at many times on the calling thread, quaternions as (x, y, z, w): the bits of [`Self::at`].
@@ -113,7 +119,7 @@ impl FreeMotion {
     /// # Panics
     /// If the lengths differ.
     pub fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
-        evaluate::sample(&self.propagator, times, attitudes, omegas);
+        closed_form::sample(&self.propagator, times, attitudes, omegas);
     }
 }
 

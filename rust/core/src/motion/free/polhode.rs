@@ -1,9 +1,13 @@
-//! The polhode: the closed curve on which the tip of ω runs in the body.
+//! The curve of ω in the body (the polhode), the cones of ω, and the ellipsoid of energy that rolls on a plane.
+//!
+//! Poinsot's picture: the ellipsoid of energy rolls without slipping on a plane that is fixed in space.
 
 use nalgebra::Vector3;
 
-use super::FreeMotion;
 use super::invariants::Invariants;
+use super::motion::FreeMotion;
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::power_of_two::power_below;
 
 impl FreeMotion {
     /// `count` points of the polhode, components in B: see [`Invariants::polhode`].
@@ -77,7 +81,7 @@ impl Invariants {
 
     /// The points at which each component of ω has its extremes: where ω crosses the planes through the circled axis. A
     /// single one where ω is constant.
-    pub(super) fn extremes(&self) -> Vec<Vector3<f64>> {
+    fn extremes(&self) -> Vec<Vector3<f64>> {
         if self.is_steady() {
             return vec![self.omega];
         }
@@ -86,5 +90,152 @@ impl Invariants {
         [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0)]
             .map(|turn| self.on_polhode(turn, side))
             .to_vec()
+    }
+}
+
+/// The cones of Poinsot's motion, half their opening: least and greatest, equal for a symmetric body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cones {
+    /// The principal axis that ω circles in the body, 0 or 2, toward the side of ω.
+    pub axis: usize,
+    /// Between ω and that axis: ω describes this cone in the body.
+    pub body: [f64; 2],
+    /// Between ω and L: ω describes this cone in space, between two circular ones.
+    pub space: [f64; 2],
+}
+
+impl Invariants {
+    /// Least and greatest angle between each principal axis and L, in [0, π]: the Euler angle θ of that axis with L along
+    /// z. NaN without angular momentum; on the separatrix the bounds that are approached.
+    ///
+    /// `cos θ_k = I_k ω_k/L`, from the two components so that small angles keep their digits.
+    #[must_use]
+    pub fn nutation(&self) -> [[f64; 2]; 3] {
+        let momenta: Vec<_> = (self.extremes().iter())
+            .map(|omega| omega.component_mul(&Vector3::from(self.moments)))
+            .collect();
+        std::array::from_fn(|k| {
+            if self.momentum == 0.0 {
+                return [f64::NAN; 2];
+            }
+            range(momenta.iter().map(|momentum| lean(momentum, k)))
+        })
+    }
+
+    /// Body cone and space cone. NaN at rest, and the space cone without angular momentum.
+    ///
+    /// `tan ∠(ω, L) = |ω×L|/2T`; ω is longest and shortest where it crosses the planes of the principal axes.
+    #[must_use]
+    pub fn cones(&self) -> Cones {
+        let axis = self.circled_axis();
+        let points = self.extremes();
+        let body = range(points.iter().map(|omega| {
+            let angle = lean(omega, axis);
+            angle.min(std::f64::consts::PI - angle)
+        }));
+        let space = range((points.iter()).map(|omega| {
+            self.omega_cross_momentum(omega)
+                .norm()
+                .atan2(self.twice_energy)
+        }));
+        let known = |angles: [f64; 2], known: bool| if known { angles } else { [f64::NAN; 2] };
+        Cones {
+            axis,
+            body: known(body, self.omega != Vector3::zeros()),
+            space: known(space, self.momentum != 0.0),
+        }
+    }
+}
+
+/// Angle between a vector and axis k.
+fn lean(v: &Vector3<f64>, k: usize) -> f64 {
+    v[(k + 1) % 3].hypot(v[(k + 2) % 3]).atan2(v[k])
+}
+
+/// The least and the greatest.
+fn range(angles: impl Iterator<Item = f64>) -> [f64; 2] {
+    angles.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], angle| {
+        [low.min(angle), high.max(angle)]
+    })
+}
+
+/// The ellipsoid `ω·I ω = 2T`, fixed in the body with its centre in C, and the plane on which it rolls.
+///
+/// They touch at the tip of ω, where the ellipsoid has the normal I ω = L, constant in space: so the plane is invariable.
+/// The tip draws the polhode on the ellipsoid and the herpolhode on the plane. Source: Goldstein, Classical Mechanics,
+/// §5.6, where the ellipsoid is smaller by √2T.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Poinsot {
+    /// `√(2T/I_k)`, half the lengths of the ellipsoid's axes, along the principal axes; infinite for a zero moment.
+    pub semi_axes: [f64; 3],
+    /// `2T/L = ω·L/L`, of the plane from C. NaN without angular momentum, as the radii.
+    pub distance: f64,
+    /// `|ω×L|/L`, least and greatest distance of the herpolhode from the foot of the perpendicular from C.
+    pub radii: [f64; 2],
+}
+
+impl FreeMotion {
+    /// L about the centre of mass, components in N: constant.
+    #[must_use]
+    pub fn angular_momentum(&self) -> Vector3<f64> {
+        let (momentum, [inertia_unit, rate_unit]) = self.scaled_momentum();
+        momentum * inertia_unit * rate_unit
+    }
+
+    /// The normal of the invariable plane: the unit vector along L, components in N. NaN without angular momentum.
+    #[must_use]
+    pub fn normal(&self) -> Vector3<f64> {
+        let (momentum, _) = self.scaled_momentum();
+        (momentum / momentum.amax()).normalize()
+    }
+
+    /// L in units of two powers of two, of inertia and of rate, so that it is within the range of float64.
+    fn scaled_momentum(&self) -> (Vector3<f64>, [f64; 2]) {
+        let moments = Vector3::from(self.moments.map(DoubleDouble::rounded));
+        let omega = Vector3::from(self.principal_omega.map(DoubleDouble::rounded));
+        let units = [moments.z, omega.amax()].map(power_below);
+        let [moments, omega] = [moments / units[0], omega / units[1]];
+        let momentum = self.initial.attitude * (self.axes * moments.component_mul(&omega));
+        (momentum, units)
+    }
+
+    /// ω at the time t, components in N: the herpolhode, where the ellipsoid of energy touches the invariable plane.
+    #[must_use]
+    pub fn herpolhode(&self, t: f64) -> Vector3<f64> {
+        let state = self.at(t);
+        state.attitude * state.omega
+    }
+}
+
+impl Invariants {
+    /// Ellipsoid, plane, and the ring that holds the herpolhode.
+    #[must_use]
+    pub fn poinsot(&self) -> Poinsot {
+        let radii = (self.extremes().iter())
+            .map(|omega| self.omega_cross_momentum(omega).norm() / self.momentum)
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], radius| {
+                [low.min(radius), high.max(radius)]
+            });
+        let unit = self.rate_unit;
+        let known = |x: f64| {
+            if self.momentum > 0.0 {
+                x * unit
+            } else {
+                f64::NAN
+            }
+        };
+        Poinsot {
+            semi_axes: self
+                .moments
+                .map(|moment| (self.twice_energy / moment).sqrt() * unit),
+            distance: known(self.twice_energy / self.momentum),
+            radii: radii.map(known),
+        }
+    }
+
+    /// ω×L for an ω of the motion, from the differences of the moments.
+    fn omega_cross_momentum(&self, omega: &Vector3<f64>) -> Vector3<f64> {
+        let ([x, y, z], [i1, i2, i3]) = ((*omega).into(), self.moments);
+        Vector3::new((i3 - i2) * y * z, (i1 - i3) * z * x, (i2 - i1) * x * y)
     }
 }

@@ -1,8 +1,9 @@
-//! The state at any time from a few constants: two theta functions for the attitude, Jacobi's functions for ω.
+//! The state at any time from a few constants: two theta functions for the attitude, Jacobi's functions for ω; and the constants that
+//! multiply the time.
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion};
 
-use crate::motion::free::evaluate::{Formula, Motion, Use, at, combine};
+use crate::motion::closed_form::{ChooseFormula, StateFormula, UseFormula, at, combine};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lane::Lane;
 use crate::numerics::theta::{circular, hyperbolic};
@@ -115,7 +116,8 @@ pub(super) struct Propagator {
 }
 
 impl Propagator {
-    /// The propagator whose state at t = 0 has this attitude: `q_MP` as computed is turned on its left to agree.
+    /// The propagator whose state at t = 0 has this attitude. The propagator is multiplied from the left by the constant rotation that
+    /// gives this attitude at t = 0.
     ///
     /// `axes`: those of P as columns, components in B, a rotation.
     #[must_use]
@@ -214,9 +216,9 @@ impl Propagator {
     }
 }
 
-impl Motion for Propagator {
+impl ChooseFormula for Propagator {
     #[inline(always)]
-    fn choose<U: Use>(&self, then: U) -> U::Output {
+    fn choose<U: UseFormula>(&self, then: U) -> U::Output {
         let is_endless = matches!(self.clock, EllipticArgument::Endless { .. });
         match self.series {
             AnySeries::Circular(series) => then.with(&Chosen::<_, false>(self, series)),
@@ -231,9 +233,33 @@ impl Motion for Propagator {
 /// A propagator with its series, and whether its clock is endless.
 struct Chosen<'a, S, const ENDLESS: bool>(&'a Propagator, S);
 
-impl<S: FreeSeries, const ENDLESS: bool> Formula for Chosen<'_, S, ENDLESS> {
+impl<S: FreeSeries, const ENDLESS: bool> StateFormula for Chosen<'_, S, ENDLESS> {
     #[inline(always)]
     fn state<L: Lane>(&self, t: L) -> [L; 7] {
         self.0.state::<L, ENDLESS>(&self.1, t)
+    }
+}
+
+/// What grows with time, and the modulus; in units of the input.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Secular {
+    /// The time after which ω has the opposite signs across the axis circled: half of the period 4K/λ of ω in the body.
+    /// Infinite where ω circles nothing.
+    pub half_period: DoubleDouble,
+    /// Mean rate in radians at which the body precesses about L, `μ̇` over a period; of a spin |ω|.
+    pub mean_precession: DoubleDouble,
+    /// The modulus k of Jacobi's functions.
+    pub modulus: f64,
+    /// `k′ = √(1 − k²)`, with all its digits near the separatrix.
+    pub complementary_modulus: f64,
+}
+
+impl Secular {
+    pub(super) fn in_units_of(self, rate_unit: f64) -> Self {
+        Self {
+            half_period: self.half_period.scaled(1.0 / rate_unit),
+            mean_precession: self.mean_precession.scaled(rate_unit),
+            ..self
+        }
     }
 }

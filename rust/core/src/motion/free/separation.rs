@@ -49,7 +49,7 @@ impl Separation {
     /// four times the precision. `omega`: in B; `moments`, `w`: what `principal` makes of it, in units of `inertia_unit`.
     ///
     /// Where nothing of D is left, or nothing of `ω₁` and `ω₃`, it is zero, or they are.
-    pub(super) fn kept(
+    pub(super) fn with_digits(
         self,
         principal: &RefinedPrincipal,
         omega: &Vector3<f64>,
@@ -59,7 +59,7 @@ impl Separation {
         let [i1, i2, i3] = moments.map(DoubleDouble::rounded);
         // The period in turns is as the inverse of how unequal the moments are.
         let pace = ((i3 - i1) / i2).min(1.0);
-        if self.size.high.abs() * HARMLESS >= pace * self.lost(principal, moments, w) {
+        if self.size.high.abs() * HARMLESS >= pace * self.rounding_loss(principal, moments, w) {
             return (self, *w);
         }
         let finest = principal.finest();
@@ -82,7 +82,7 @@ impl Separation {
             unit: unit.size,
             ..self
         };
-        let least = FINER_ROUNDING * there.lost(principal, moments, &w);
+        let least = FINER_ROUNDING * there.rounding_loss(principal, moments, &w);
         if there.size.high.abs() <= least {
             let size = DoubleDouble::default();
             return (Self { size, ..there }, w);
@@ -96,7 +96,7 @@ impl Separation {
     }
 
     /// What rounding to twice the precision may have taken from D: of its terms, and of moments and axes where these are rounded.
-    fn lost(&self, principal: &RefinedPrincipal, moments: &Vector, w: &Vector) -> f64 {
+    fn rounding_loss(&self, principal: &RefinedPrincipal, moments: &Vector, w: &Vector) -> f64 {
         let [i1, i2, i3] = moments.map(DoubleDouble::rounded);
         let [x, z] = [w[0], w[2]].map(|rate| (rate.high / self.unit).abs());
         let [first, third] = [i1 * (i2 - i1) * x, i3 * (i3 - i2) * z];

@@ -4,14 +4,14 @@ use super::invariants::Invariants;
 use super::{FreeMotion, Mode};
 use crate::mass::RigidBody;
 use crate::motion::attitude::components;
+use crate::motion::closed_form::ClosedForm;
 use crate::motion::euler_equations::EulerEquations;
-use crate::motion::state::ClosedForm;
 
 fn body(moments: [f64; 3], axes: &Matrix3<f64>) -> RigidBody {
     RigidBody::from_principal(1.0, &moments, axes, &Vector3::zeros(), 0.0).expect("a body")
 }
 
-fn turned() -> (Matrix3<f64>, UnitQuaternion<f64>) {
+fn turned_axes() -> (Matrix3<f64>, UnitQuaternion<f64>) {
     let axes = *nalgebra::Rotation3::from_euler_angles(0.3, -1.0, 2.0).matrix();
     (axes, UnitQuaternion::from_euler_angles(-0.4, 0.8, 1.9))
 }
@@ -44,7 +44,7 @@ fn cases() -> Vec<(Mode, [f64; 3], [f64; 3])> {
 
 #[test]
 fn the_state_at_zero_is_the_start() {
-    let (axes, attitude) = turned();
+    let (axes, attitude) = turned_axes();
     for (mode, moments, omega) in cases() {
         let omega = axes * Vector3::from(omega);
         let motion = FreeMotion::of(&body(moments, &axes), &omega, &attitude).expect("finite");
@@ -75,7 +75,7 @@ fn modes() {
 
 #[test]
 fn the_equations_of_motion_hold_at_all_times() {
-    let (_, attitude) = turned();
+    let (_, attitude) = turned_axes();
     let axes = Matrix3::identity();
     for (mode, moments, omega) in cases() {
         let body = body(moments, &axes);
@@ -111,7 +111,7 @@ fn the_equations_of_motion_hold_at_all_times() {
 
 #[test]
 fn many_times_have_the_bits_of_one() {
-    let (axes, attitude) = turned();
+    let (axes, attitude) = turned_axes();
     for (_, moments, omega) in cases() {
         let motion =
             FreeMotion::of(&body(moments, &axes), &omega.into(), &attitude).expect("finite");

@@ -14,8 +14,8 @@
 use nalgebra::{Matrix3, UnitQuaternion};
 
 use super::mode::Mode;
+use super::propagator::Secular;
 use super::propagator::{AnySeries, Circular, EllipticArgument, Hyperbolic, Propagator};
-use super::secular::Secular;
 use super::separation::{Separation, Unit};
 use crate::mass::refined::Vector;
 use crate::numerics::double_double::DoubleDouble;

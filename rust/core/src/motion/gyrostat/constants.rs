@@ -5,8 +5,8 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use super::products::Ratios;
-use super::propagator::{Clocked, Endless, Propagator, Round};
-use super::rates::{Given, omega, squares};
+use super::products::{Given, omega, squares};
+use super::propagator::{EndlessArgument, PeriodicArgument, Propagator, TimeArgument};
 use super::spinor::{Regime, Spinor};
 use super::start::Start;
 use super::theta_series::{
@@ -32,7 +32,7 @@ fn turns_of(radians: DoubleDouble) -> DoubleDouble {
 }
 
 /// ω constant in the body, and so in space: `q(t) = q(0) ∘ (n sin ½|ω|t, cos ½|ω|t)`, n along ω.
-pub(super) fn steady(
+pub(super) fn steady_propagator(
     omega: &Vector3<f64>,
     attitude: &UnitQuaternion<f64>,
 ) -> (Propagator, Secular) {
@@ -48,12 +48,12 @@ pub(super) fn steady(
     let propagator = Propagator {
         rate: turns_of(rate).scaled(0.5),
         slope: 0.0,
-        clocked: Clocked::Circular(
+        clocked: TimeArgument::Circular(
             Circular {
                 even: [[0.0; 4]; 3],
                 odd: [[0.0; 4]; 4],
             },
-            Round {
+            PeriodicArgument {
                 rate: DoubleDouble::default(),
                 start: DoubleDouble::default(),
             },
@@ -78,7 +78,7 @@ const INFINITE: f64 = 1e13;
 
 /// How x goes with time, what the series of it are, and what turns the spinor beside them.
 struct Pace {
-    clocked: Clocked,
+    clocked: TimeArgument,
     /// ν in the mean, but for what all bodies have, in the units of the start.
     phase: DoubleDouble,
     /// Turns of the spinor for x = 1.
@@ -90,7 +90,11 @@ struct Pace {
 }
 
 /// The motion of a start that is not steady.
-pub(super) fn moving(given: &Given<'_>, start: &Start, spinor: &Spinor) -> (Propagator, Secular) {
+pub(super) fn moving_propagator(
+    given: &Given<'_>,
+    start: &Start,
+    spinor: &Spinor,
+) -> (Propagator, Secular) {
     let unit = start.unit;
     let mut columns = spinor.columns;
     let (pace, omega) = match spinor.regime {
@@ -102,8 +106,8 @@ pub(super) fn moving(given: &Given<'_>, start: &Start, spinor: &Spinor) -> (Prop
                 (ratios, omega(given, start, &squares, Some(&ratios)))
             });
             match better.filter(|(ratios, apart)| ratios.are_better(apart, &plain)) {
-                Some((ratios, apart)) => (circling(spinor, Some(ratios.sines())), apart),
-                None => (circling(spinor, None), plain),
+                Some((ratios, apart)) => (pace_in_circle(spinor, Some(ratios.sines())), apart),
+                None => (pace_in_circle(spinor, None), plain),
             }
         }
         Regime::Hyperbolic => {
@@ -125,16 +129,16 @@ pub(super) fn moving(given: &Given<'_>, start: &Start, spinor: &Spinor) -> (Prop
                 match better.filter(|(ratios, apart)| ratios.are_better(apart, &plain)) {
                     Some((ratios, apart)) => {
                         let products = ratios.exponentials(spinor.is_alternating);
-                        (returning(spinor, in_time, Some(products)), apart)
+                        (pace_of_returning(spinor, in_time, Some(products)), apart)
                     }
-                    None => (returning(spinor, in_time, None), plain),
+                    None => (pace_of_returning(spinor, in_time, None), plain),
                 }
             } else {
-                (passing(spinor), plain)
+                (pace_of_passing(spinor), plain)
             }
         }
         Regime::Rational => (
-            on_cusp(spinor),
+            pace_on_cusp(spinor),
             omega(given, start, &squares(&columns), None),
         ),
     };
@@ -158,22 +162,22 @@ pub(super) fn moving(given: &Given<'_>, start: &Start, spinor: &Spinor) -> (Prop
     (propagator, secular)
 }
 
-fn circling(spinor: &Spinor, products: Option<CircularProducts>) -> Pace {
+fn pace_in_circle(spinor: &Spinor, products: Option<CircularProducts>) -> Pace {
     let rate = turns_of(spinor.rate);
     let functions = circular(spinor);
-    let clock = Round {
+    let clock = PeriodicArgument {
         rate: rate.scaled(spinor.sense),
         start: DoubleDouble::default(),
     };
     Pace {
         clocked: match products {
-            None => Clocked::Circular(functions, clock),
+            None => TimeArgument::Circular(functions, clock),
             Some(products) => {
                 let series = WithProducts {
                     functions,
                     products,
                 };
-                Clocked::CircularApart(series, clock)
+                TimeArgument::CircularApart(series, clock)
             }
         },
         phase: spinor.phase,
@@ -184,14 +188,14 @@ fn circling(spinor: &Spinor, products: Option<CircularProducts>) -> Pace {
 }
 
 /// On the curve with three equal roots.
-fn on_cusp(spinor: &Spinor) -> Pace {
+fn pace_on_cusp(spinor: &Spinor) -> Pace {
     let curvature = [spinor.argument.re.high, spinor.argument.im.high];
-    let clock = Endless {
+    let clock = EndlessArgument {
         rate: 1.0.into(),
         start: DoubleDouble::default(),
     };
     Pace {
-        clocked: Clocked::Rational(Rational { curvature }, clock),
+        clocked: TimeArgument::Rational(Rational { curvature }, clock),
         phase: spinor.phase,
         slope: 0.0,
         turned: 0.0,
@@ -206,7 +210,7 @@ fn place(spinor: &Spinor) -> (f64, f64) {
 }
 
 /// From an equilibrium to the same or to another one.
-fn passing(spinor: &Spinor) -> Pace {
+fn pace_of_passing(spinor: &Spinor) -> Pace {
     let (angle, before) = place(spinor);
     let size = spinor.argument.size();
     let series = Passing {
@@ -217,12 +221,12 @@ fn passing(spinor: &Spinor) -> Pace {
             f64::NEG_INFINITY
         },
     };
-    let clock = Endless {
+    let clock = EndlessArgument {
         rate: spinor.rate.scaled(spinor.sense),
         start: DoubleDouble::sum(before, (-before).exp() * size - 1.0),
     };
     Pace {
-        clocked: Clocked::Endless(series, clock),
+        clocked: TimeArgument::Endless(series, clock),
         phase: spinor.phase,
         slope: 0.0,
         turned: 0.0,
@@ -231,7 +235,7 @@ fn passing(spinor: &Spinor) -> Pace {
 }
 
 /// By exponentials and back, with the period and the phase of a motion that returns.
-fn returning(
+fn pace_of_returning(
     spinor: &Spinor,
     (turn, in_time): (DoubleDouble, DoubleDouble),
     products: Option<HyperbolicProducts>,
@@ -264,10 +268,14 @@ fn returning(
     };
     Pace {
         clocked: match (products.map(with), is_alternating) {
-            (None, false) => Clocked::Hyperbolic(functions, Round { rate, start }),
-            (None, true) => Clocked::Alternating(functions, Round { rate, start }),
-            (Some(series), false) => Clocked::HyperbolicApart(series, Round { rate, start }),
-            (Some(series), true) => Clocked::AlternatingApart(series, Round { rate, start }),
+            (None, false) => TimeArgument::Hyperbolic(functions, PeriodicArgument { rate, start }),
+            (None, true) => TimeArgument::Alternating(functions, PeriodicArgument { rate, start }),
+            (Some(series), false) => {
+                TimeArgument::HyperbolicApart(series, PeriodicArgument { rate, start })
+            }
+            (Some(series), true) => {
+                TimeArgument::AlternatingApart(series, PeriodicArgument { rate, start })
+            }
         },
         phase,
         slope,

@@ -7,19 +7,15 @@
 //!
 //! | file | idea |
 //! |---|---|
-//! | `inside.rs` | momentum and wheels, and the tensor that is left |
+//! | `internal_momentum.rs` | momentum and wheels, and the tensor that is left |
 //! | `mode.rs` | the ways to move |
 //! | `motion.rs` | a motion from its start, its states |
-//! | `start.rs` | the frame of L and ω at the start, and the matrix of the motion there |
-//! | `quartic.rs` | the quartic that the spinor of L obeys |
-//! | `pencil.rs` | the real quartic of energy and momentum, the invariants of both |
-//! | `remnant.rs` | what is left of it next to a separatrix, to four times the precision |
-//! | `curve.rs` | roots, periods and nome |
-//! | `logarithm.rs` | where the start is on the curve: an elliptic logarithm by means |
+//! | `start.rs` | the frame of L and ω at the start, the matrix of the motion there, and the quartic that the spinor of L obeys |
+//! | `pencil.rs` | the real quartic of energy and momentum, the invariants of both; the discriminant next to a separatrix |
+//! | `curve.rs` | roots, periods and nome; where the start is on the curve: an elliptic logarithm by means |
 //! | `spinor.rs` | M and ν from the start |
 //! | `constants.rs` | from these to what a state takes |
-//! | `products.rs` | products of the theta functions, as series of their own |
-//! | `rates.rs` | ω from the products |
+//! | `products.rs` | products of the theta functions, as series of their own, and ω from them |
 //! | `theta_series.rs` | the theta functions at any argument |
 //! | `propagator.rs` | the states, in lanes |
 //! | [`equilibria`] | steady rotations with one angular momentum |
@@ -29,12 +25,12 @@
 //! ```
 //! use polhode::RigidBody;
 //! use polhode::motion::gyrostat::equilibria::{Bifurcation, Equilibria, Equilibrium, Extent, Kind, Meeting, equilibria};
-//! use polhode::motion::gyrostat::{Gyrostat, GyrostatMotion, Inside};
+//! use polhode::motion::gyrostat::{Gyrostat, GyrostatMotion, InternalMomentum};
 //! use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
 //!
 //! // A satellite with a wheel of 0.1 kg m² that is held at 300 rad/s about its first axis.
 //! let body = RigidBody::from_principal(90.0, &[8.0, 10.0, 12.0], &Matrix3::identity(), &Vector3::zeros(), 0.0)?;
-//! let inside = Inside::of(&Vector3::zeros())?.with(&Vector3::x(), 0.1, 30.0, false)?;
+//! let inside = InternalMomentum::of(&Vector3::zeros())?.with(&Vector3::x(), 0.1, 30.0, false)?;
 //! let omega = Vector3::new(0.05, -0.02, 0.1);
 //! assert_eq!(inside.rotor(&omega).map(|h| h.rounded()), [30.0, 0.0, 0.0]);
 //! let satellite = Gyrostat::of(&body, &inside)?;
@@ -62,22 +58,18 @@
 mod constants;
 mod curve;
 pub mod equilibria;
-mod inside;
-mod logarithm;
+mod internal_momentum;
 pub mod mode;
 mod motion;
 mod pencil;
 mod products;
 mod propagator;
-mod quartic;
-mod rates;
-mod remnant;
 mod spinor;
 mod start;
 #[cfg(test)]
 mod tests;
 mod theta_series;
 
-pub use inside::{Gyrostat, Inside};
+pub use internal_momentum::{Gyrostat, InternalMomentum};
 pub use mode::Mode;
 pub use motion::GyrostatMotion;

@@ -2,20 +2,21 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::constants::{Secular, moving, steady};
+use super::constants::{Secular, moving_propagator, steady_propagator};
 use super::curve::{Curve, apart};
 use super::mode::Mode;
 use super::pencil::Pencil;
+use super::pencil::value_near_separatrix;
+use super::products::Given;
 use super::propagator::Propagator;
-use super::rates::Given;
-use super::remnant::remnant;
 use super::spinor::Spinor;
 use super::start::{Start, dot};
 use crate::error::{Error, MotionFault, all_finite};
 use crate::mass::refined::{RefinedPrincipal, Vector};
-use crate::motion::free::evaluate;
+use crate::motion::closed_form;
+use crate::motion::closed_form::ClosedForm;
 use crate::motion::free::{self, FreeMotion};
-use crate::motion::state::{ClosedForm, State};
+use crate::motion::state::State;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
 
@@ -42,12 +43,12 @@ pub struct GyrostatMotion {
     /// The rate in radians at which the body turns about L in the mean, seen each time when ω has come back. Known but for
     /// whole turns in a period: which of them are made is a matter of what axis of the body is looked at.
     pub mean_precession: DoubleDouble,
-    way: Way,
+    way: MotionKind,
 }
 
 /// By which formulas.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Way {
+enum MotionKind {
     /// Without momentum inside.
     Free(FreeMotion),
     Within(Propagator),
@@ -78,7 +79,7 @@ impl GyrostatMotion {
             attitude: *attitude,
             omega: *omega,
         };
-        let (angular_momentum, kinetic_energy) = kept(principal, rotor, &initial);
+        let (angular_momentum, kinetic_energy) = conserved(principal, rotor, &initial);
         if rounded == Vector3::zeros() {
             let motion = FreeMotion::refined(principal, omega, attitude)?;
             return Ok(Self::free(&motion, angular_momentum, kinetic_energy));
@@ -102,7 +103,7 @@ impl GyrostatMotion {
         let scaled_rotor = rotor.map(|x| x.times_power_of_two(-inertia - rate));
         let rotor_along = principal.along(&scaled_rotor);
         let rate_unit = times_power_of_two(1.0, rate);
-        let found = Solved::of(
+        let found = CurveOfStart::of(
             principal,
             &moments,
             &scaled_omega,
@@ -110,7 +111,7 @@ impl GyrostatMotion {
             &rotor_along,
         );
         let (mode, (propagator, secular)) = match found {
-            None => (Mode::Steady, steady(&scaled_omega, attitude)),
+            None => (Mode::Steady, steady_propagator(&scaled_omega, attitude)),
             Some(solved) => {
                 let given = Given {
                     moments: &moments,
@@ -128,7 +129,10 @@ impl GyrostatMotion {
                 } else {
                     Mode::Circular
                 };
-                (mode, moving(&given, &solved.start, &solved.spinor))
+                (
+                    mode,
+                    moving_propagator(&given, &solved.start, &solved.spinor),
+                )
             }
         };
         let Secular { period, precession } = secular;
@@ -140,7 +144,7 @@ impl GyrostatMotion {
             kinetic_energy,
             period: period.times_power_of_two(-rate),
             mean_precession: precession.times_power_of_two(rate),
-            way: Way::Within(propagator.in_units_of(rate_unit)),
+            way: MotionKind::Within(propagator.in_units_of(rate_unit)),
         };
         let off = (motion.at(0.0).omega - omega).amax() / omega.amax();
         if *omega != Vector3::zeros() && (off > TOO_FAR_OFF || off.is_nan()) {
@@ -169,7 +173,7 @@ impl GyrostatMotion {
                 motion.secular.half_period.scaled(2.0)
             },
             mean_precession: motion.secular.mean_precession,
-            way: Way::Free(*motion),
+            way: MotionKind::Free(*motion),
         }
     }
 
@@ -177,8 +181,8 @@ impl GyrostatMotion {
     #[must_use]
     pub fn as_free(&self) -> Option<&FreeMotion> {
         match &self.way {
-            Way::Free(motion) => Some(motion),
-            Way::Within(_) => None,
+            MotionKind::Free(motion) => Some(motion),
+            MotionKind::Within(_) => None,
         }
     }
 
@@ -188,10 +192,10 @@ impl GyrostatMotion {
     #[must_use]
     pub fn at(&self, t: f64) -> State {
         let propagator = match &self.way {
-            Way::Free(motion) => return motion.at(t),
-            Way::Within(propagator) => propagator,
+            MotionKind::Free(motion) => return motion.at(t),
+            MotionKind::Within(propagator) => propagator,
         };
-        evaluate::at(propagator, t)
+        closed_form::at(propagator, t)
     }
 
     /// The states at many times on the calling thread, quaternions as (x, y, z, w): the bits of [`Self::at`].
@@ -200,18 +204,18 @@ impl GyrostatMotion {
     /// If the lengths differ.
     pub fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
         let propagator = match &self.way {
-            Way::Free(motion) => return motion.sample(times, attitudes, omegas),
-            Way::Within(propagator) => propagator,
+            MotionKind::Free(motion) => return motion.sample(times, attitudes, omegas),
+            MotionKind::Within(propagator) => propagator,
         };
-        evaluate::sample(propagator, times, attitudes, omegas);
+        closed_form::sample(propagator, times, attitudes, omegas);
     }
 }
 
 impl ClosedForm for GyrostatMotion {
     fn reach(&self) -> f64 {
         match &self.way {
-            Way::Free(motion) => motion.reach(),
-            Way::Within(propagator) => propagator.reach,
+            MotionKind::Free(motion) => motion.reach(),
+            MotionKind::Within(propagator) => propagator.reach,
         }
     }
 
@@ -221,7 +225,7 @@ impl ClosedForm for GyrostatMotion {
 }
 
 /// `I ω + h` in space, and `½ ω·I ω`.
-fn kept(principal: &RefinedPrincipal, rotor: &Vector, start: &State) -> (Vector3<f64>, f64) {
+fn conserved(principal: &RefinedPrincipal, rotor: &Vector, start: &State) -> (Vector3<f64>, f64) {
     let along = principal.components(&start.omega);
     let parts: Vector = std::array::from_fn(|k| principal.moments[k] * along[k]);
     let of_body = principal.in_body(&parts);
@@ -230,13 +234,13 @@ fn kept(principal: &RefinedPrincipal, rotor: &Vector, start: &State) -> (Vector3
 }
 
 /// A start with its curve and its spinor.
-struct Solved {
+struct CurveOfStart {
     start: Start,
     curve: Curve,
     spinor: Spinor,
 }
 
-impl Solved {
+impl CurveOfStart {
     /// Of moments, ω (in B) and h (in B and along the principal axes) near one; `None` for a steady spin.
     fn of(
         principal: &RefinedPrincipal,
@@ -256,8 +260,8 @@ impl Solved {
             && invariants.discriminant.high.abs() < LOST * invariants.terms
         {
             let unit = moments[2].high / principal.moments[2].high;
-            let y = pencil.meeting(apart.high);
-            let left = remnant(principal, unit, omega, rotor, &start, y);
+            let y = pencil.meeting_point(apart.high);
+            let left = value_near_separatrix(principal, unit, omega, rotor, &start, y);
             invariants.discriminant = pencil.discriminant_of(y, left);
         }
         let (curve, spinor) = if invariants.is_cusp && !is_degenerate {

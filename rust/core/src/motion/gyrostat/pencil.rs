@@ -4,9 +4,17 @@
 //! quartic of one real number x, and has the invariants of the curve. For every point L where they meet it is
 //! `−rᵀ I adj(1 − x I) r` with `r = x L − ω`: a sum of small terms where L is nearly parallel to ω. Here x is counted from
 //! where r is across L: `x = (ω_n + y)/|L|`.
+//!
+//! Next to a separatrix one number decides: the discriminant, in four times the precision. There two zeros of the pencil nearly meet, and all but their difference is known well enough. Between them the pencil is
+//! extreme, so that its value there depends little on the place. It is computed from what defines the body: moments, or a
+//! tensor whose axes then need not be known.
+
+use nalgebra::Vector3;
 
 use super::start::Start;
+use crate::mass::refined::{RefinedPrincipal, Vector};
 use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::quad_double::QuadDouble;
 
 /// `y⁴ + b₃y³ + b₂y² + b₁y + b₀`.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +42,7 @@ pub(super) struct Invariants {
 
 /// The value of the pencil where it is extreme between two zeros that are about to meet.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Remnant {
+pub(super) struct PencilValue {
     pub(super) value: DoubleDouble,
     /// The sizes of the terms that it is the sum of.
     pub(super) terms: f64,
@@ -129,7 +137,7 @@ impl Pencil {
     /// `4E³ − G₂E + G₃ = 0`.
     ///
     /// With `y = z − ¼b₃` the quartic is `z⁴ + pz² + qz + …`, and the double zero is `z = q/(2θ)`, `θ = −½E − ⅔p`.
-    pub(super) fn meeting(&self, root: f64) -> DoubleDouble {
+    pub(super) fn meeting_point(&self, root: f64) -> DoubleDouble {
         let [_, b1, b2, b3] = self.b;
         let [c1, c2, c3] = [b1, b2, b3].map(DoubleDouble::rounded);
         let p = c2 - 0.375 * c3 * c3;
@@ -144,7 +152,7 @@ impl Pencil {
     }
 
     /// The discriminant from what is left of the quartic at the place y where two zeros meet.
-    pub(super) fn discriminant_of(&self, y: DoubleDouble, left: Remnant) -> DoubleDouble {
+    pub(super) fn discriminant_of(&self, y: DoubleDouble, left: PencilValue) -> DoubleDouble {
         let [_, b1, b2, b3] = self.b;
         let six = number(6.0) * y;
         let steep = y * (b2.scaled(2.0) + y * (number(3.0) * b3 + y.scaled(4.0)));
@@ -164,6 +172,112 @@ impl Pencil {
         }
         there.discriminant().0
     }
+}
+
+type QuadVector = [QuadDouble; 3];
+
+/// Moments, or the rows of a tensor.
+enum Inertia {
+    Moments(QuadVector),
+    Tensor([QuadVector; 3]),
+}
+
+/// The pencil of a body, ω and h (in B) at y, in the units of the start; `unit` is that of the moments.
+pub(super) fn value_near_separatrix(
+    principal: &RefinedPrincipal,
+    unit: f64,
+    omega: &Vector3<f64>,
+    rotor: &Vector,
+    start: &Start,
+    y: DoubleDouble,
+) -> PencilValue {
+    let omega = [omega.x, omega.y, omega.z].map(QuadDouble::from);
+    let rotor = rotor.map(QuadDouble::from);
+    let (inertia, omega, rotor) = if let Some(rows) = principal.tensor() {
+        let rows = rows.map(|row| row.map(|x| x.scaled(unit)));
+        (Inertia::Tensor(rows), omega, rotor)
+    } else {
+        let finest = principal.finest();
+        (
+            Inertia::Moments(finest.moments.map(|moment| moment.scaled(unit))),
+            finest.components(&omega),
+            finest.components(&rotor),
+        )
+    };
+    let turned = inertia.times(&omega);
+    let momentum: QuadVector = std::array::from_fn(|k| turned[k] + rotor[k]);
+    let length = start.momentum;
+    // x from that place whose r is across L, which is known to twice the precision alone.
+    let mut x = QuadDouble::from(start.along / length);
+    let across: QuadVector = std::array::from_fn(|k| x * momentum[k] - omega[k]);
+    let beside = dot(&momentum, &across).twofold() / length;
+    let step = QuadDouble::from((y.scaled(start.unit) - beside) / length);
+    x = x + step;
+    let r: QuadVector = std::array::from_fn(|k| across[k] + step * momentum[k]);
+    let (value, terms) = inertia.form(x, &r);
+    let [i1, i2, i3] = principal.moments.map(|moment| moment.scaled(unit));
+    // The pencil of the start has the determinant of 1/I in it, and a unit for each zero.
+    let scale = length * length / (i1 * i2 * i3);
+    let power = start.unit.powi(-4);
+    PencilValue {
+        value: (value.twofold() * scale).scaled(power),
+        terms: terms * scale.high * power,
+    }
+}
+
+impl Inertia {
+    /// `I v`.
+    fn times(&self, v: &QuadVector) -> QuadVector {
+        match self {
+            Self::Moments(moments) => std::array::from_fn(|k| moments[k] * v[k]),
+            Self::Tensor(rows) => rows.map(|row| dot(&row, v)),
+        }
+    }
+
+    /// `rᵀ I adj(1 − x I) r`, and the sizes of its terms.
+    fn form(&self, x: QuadDouble, r: &QuadVector) -> (QuadDouble, f64) {
+        let one = QuadDouble::from(1.0);
+        let image = self.times(r);
+        match self {
+            Self::Moments(moments) => {
+                let u = moments.map(|moment| one - x * moment);
+                let parts: QuadVector =
+                    std::array::from_fn(|k| image[k] * r[k] * (u[(k + 1) % 3] * u[(k + 2) % 3]));
+                (parts[0] + parts[1] + parts[2], sizes(&parts))
+            }
+            Self::Tensor(rows) => {
+                let element = |i: usize, j: usize| {
+                    let part = x * rows[i][j];
+                    if i == j { one - part } else { -part }
+                };
+                let [u11, u22, u33] = [0, 1, 2].map(|k| element(k, k));
+                let [u12, u23, u13] = [(0, 1), (1, 2), (0, 2)].map(|(i, j)| element(i, j));
+                let [c12, c13, c23] = [
+                    u13 * u23 - u12 * u33,
+                    u12 * u23 - u13 * u22,
+                    u12 * u13 - u11 * u23,
+                ];
+                let adjugate = [
+                    [u22 * u33 - u23 * u23, c12, c13],
+                    [c12, u11 * u33 - u13 * u13, c23],
+                    [c13, c23, u11 * u22 - u12 * u12],
+                ];
+                let largest = sizes(&[u11, u22, u33]).max(sizes(&[u12, u23, u13]));
+                (
+                    dot(&image, &adjugate.map(|row| dot(&row, r))),
+                    sizes(&image) * sizes(r) * largest * largest,
+                )
+            }
+        }
+    }
+}
+
+fn dot(a: &QuadVector, b: &QuadVector) -> QuadDouble {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn sizes(v: &QuadVector) -> f64 {
+    v.iter().map(|x| x.rounded().abs()).sum()
 }
 
 #[cfg(test)]
@@ -221,11 +335,11 @@ mod tests {
             let invariants = pencil.invariants();
             // Of a double root E and E of 4E³ − G₂E + G₃ the third one is −2E.
             let apart = (invariants.second.high / 3.0).sqrt() * -invariants.third.high.signum();
-            let y = pencil.meeting(apart);
+            let y = pencil.meeting_point(apart);
             assert!((y - 0.4.into()).rounded().abs() < 1e-30, "{y:?}");
             // Zeros at 0.4 ± ½ gap.
             let others = -(1.1 * 2.65);
-            let left = Remnant {
+            let left = PencilValue {
                 value: number(-0.25 * gap * gap * others),
                 terms: 1.0,
             };
@@ -237,7 +351,7 @@ mod tests {
             );
         }
         let pencil = with_zeros([0.4, 0.4, 1.5, -2.25]);
-        let left = Remnant {
+        let left = PencilValue {
             value: number(1e-59),
             terms: 1.0,
         };

@@ -4,7 +4,7 @@ use super::theta_series::{
     Circular, CircularProducts, Hyperbolic, HyperbolicProducts, Passing, Rational, ThetaSeries,
     Values, WithProducts,
 };
-use crate::motion::free::evaluate::{Formula, Motion, Use, combine};
+use crate::motion::closed_form::{ChooseFormula, StateFormula, UseFormula, combine};
 use crate::numerics::double_double::{DoubleDouble, two_sum};
 use crate::numerics::lane::Lane;
 use crate::numerics::turns::{reach, sin_cos_turns, turns, whole_off};
@@ -21,15 +21,15 @@ pub(super) trait ThetaArgument: Copy {
     fn in_units_of(self, unit: f64) -> Self;
 }
 
-/// x goes round: whole turns of it mean nothing, but that Θₒ changes its sign with each where it `ALTERNATES`.
+/// x is periodic with period one turn. If `ALTERNATES`, Θₒ changes sign after each turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Round<const ALTERNATES: bool> {
+pub(super) struct PeriodicArgument<const ALTERNATES: bool> {
     /// x in turns for a unit of time, and at t = 0.
     pub(super) rate: DoubleDouble,
     pub(super) start: DoubleDouble,
 }
 
-impl<const ALTERNATES: bool> ThetaArgument for Round<ALTERNATES> {
+impl<const ALTERNATES: bool> ThetaArgument for PeriodicArgument<ALTERNATES> {
     const ENDLESS: bool = false;
 
     #[inline(always)]
@@ -52,12 +52,12 @@ impl<const ALTERNATES: bool> ThetaArgument for Round<ALTERNATES> {
 /// x never comes back. Where a motion leads from one equilibrium to another `start` is as large as the logarithm of rounding, and the
 /// last digits of x are those that count.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Endless {
+pub(super) struct EndlessArgument {
     pub(super) rate: DoubleDouble,
     pub(super) start: DoubleDouble,
 }
 
-impl ThetaArgument for Endless {
+impl ThetaArgument for EndlessArgument {
     const ENDLESS: bool = true;
 
     #[inline(always)]
@@ -76,18 +76,27 @@ impl ThetaArgument for Endless {
 
 /// One of the series with its clock: a loop over times has no branch on either. `Apart`: with products that are series of their own.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Clocked {
-    Circular(Circular, Round<false>),
-    Hyperbolic(Hyperbolic, Round<false>),
-    Alternating(Hyperbolic, Round<true>),
-    CircularApart(WithProducts<Circular, CircularProducts>, Round<false>),
-    HyperbolicApart(WithProducts<Hyperbolic, HyperbolicProducts>, Round<false>),
-    AlternatingApart(WithProducts<Hyperbolic, HyperbolicProducts>, Round<true>),
-    Endless(Passing, Endless),
-    Rational(Rational, Endless),
+pub(super) enum TimeArgument {
+    Circular(Circular, PeriodicArgument<false>),
+    Hyperbolic(Hyperbolic, PeriodicArgument<false>),
+    Alternating(Hyperbolic, PeriodicArgument<true>),
+    CircularApart(
+        WithProducts<Circular, CircularProducts>,
+        PeriodicArgument<false>,
+    ),
+    HyperbolicApart(
+        WithProducts<Hyperbolic, HyperbolicProducts>,
+        PeriodicArgument<false>,
+    ),
+    AlternatingApart(
+        WithProducts<Hyperbolic, HyperbolicProducts>,
+        PeriodicArgument<true>,
+    ),
+    Endless(Passing, EndlessArgument),
+    Rational(Rational, EndlessArgument),
 }
 
-impl Clocked {
+impl TimeArgument {
     /// The same where a unit of the rates is `unit`.
     fn in_units_of(self, unit: f64) -> Self {
         match self {
@@ -128,7 +137,7 @@ pub(super) struct Propagator {
     pub(super) rate: DoubleDouble,
     /// Turns of the spinor for x = 1.
     pub(super) slope: f64,
-    pub(super) clocked: Clocked,
+    pub(super) clocked: TimeArgument,
     /// From (Re Θₑ, Im Θₑ, Re Θₒ, Im Θₒ), turned, to the components (x, y, z, w) of the attitude times √D.
     pub(super) attitude: [[f64; 4]; 4],
     /// From the products of both to D ω in B.
@@ -191,18 +200,20 @@ impl Propagator {
     }
 }
 
-impl Motion for Propagator {
+impl ChooseFormula for Propagator {
     #[inline(always)]
-    fn choose<U: Use>(&self, then: U) -> U::Output {
+    fn choose<U: UseFormula>(&self, then: U) -> U::Output {
         match self.clocked {
-            Clocked::Circular(series, clock) => then.with(&Chosen(self, series, clock)),
-            Clocked::Hyperbolic(series, clock) => then.with(&Chosen(self, series, clock)),
-            Clocked::Alternating(series, clock) => then.with(&Chosen(self, series, clock)),
-            Clocked::CircularApart(series, clock) => then.with(&Chosen(self, series, clock)),
-            Clocked::HyperbolicApart(series, clock) => then.with(&Chosen(self, series, clock)),
-            Clocked::AlternatingApart(series, clock) => then.with(&Chosen(self, series, clock)),
-            Clocked::Endless(series, clock) => then.with(&Chosen(self, series, clock)),
-            Clocked::Rational(series, clock) => then.with(&Chosen(self, series, clock)),
+            TimeArgument::Circular(series, clock) => then.with(&Chosen(self, series, clock)),
+            TimeArgument::Hyperbolic(series, clock) => then.with(&Chosen(self, series, clock)),
+            TimeArgument::Alternating(series, clock) => then.with(&Chosen(self, series, clock)),
+            TimeArgument::CircularApart(series, clock) => then.with(&Chosen(self, series, clock)),
+            TimeArgument::HyperbolicApart(series, clock) => then.with(&Chosen(self, series, clock)),
+            TimeArgument::AlternatingApart(series, clock) => {
+                then.with(&Chosen(self, series, clock))
+            }
+            TimeArgument::Endless(series, clock) => then.with(&Chosen(self, series, clock)),
+            TimeArgument::Rational(series, clock) => then.with(&Chosen(self, series, clock)),
         }
     }
 }
@@ -210,7 +221,7 @@ impl Motion for Propagator {
 /// A propagator with its series and its clock.
 struct Chosen<'a, S, C>(&'a Propagator, S, C);
 
-impl<S: ThetaSeries, C: ThetaArgument> Formula for Chosen<'_, S, C> {
+impl<S: ThetaSeries, C: ThetaArgument> StateFormula for Chosen<'_, S, C> {
     #[inline(always)]
     fn state<L: Lane>(&self, t: L) -> [L; 7] {
         self.0.state(self.2, &self.1, t)

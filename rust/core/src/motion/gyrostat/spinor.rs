@@ -5,8 +5,8 @@
 //! and `Q^{j²+j} y^{−j}`, the latter over Z₀; none is large for `√|Q| ≤ |y| ≤ 1`.
 
 use super::curve::Curve;
-use super::logarithm::{Logarithm, logarithm};
-use super::quartic::Quartic;
+use super::curve::{Logarithm, logarithm};
+use super::start::Quartic;
 use crate::numerics::complex::Complex;
 use crate::numerics::double_double::DoubleDouble;
 

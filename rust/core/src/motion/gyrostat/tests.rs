@@ -1,6 +1,6 @@
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use super::{GyrostatMotion, Inside, Mode};
+use super::{GyrostatMotion, InternalMomentum, Mode};
 use crate::mass::refined::RefinedPrincipal;
 use crate::motion::free::FreeMotion;
 use crate::numerics::double_double::DoubleDouble;
@@ -153,7 +153,7 @@ fn many_states_have_the_bits_of_one() {
 fn without_momentum_it_is_free_motion() {
     let principal = RefinedPrincipal::given(&[1.0, 2.0, 2.5], &Matrix3::identity());
     let (omega, attitude) = (Vector3::new(0.3, 0.2, 1.1), UnitQuaternion::identity());
-    let rotor = Inside::default().rotor(&omega);
+    let rotor = InternalMomentum::default().rotor(&omega);
     let motion = GyrostatMotion::of(&principal, &rotor, &omega, &attitude).expect("a motion");
     let free = FreeMotion::refined(&principal, &omega, &attitude).expect("a motion");
     assert_eq!(motion.at(1e6), free.at(1e6));

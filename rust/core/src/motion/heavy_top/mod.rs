@@ -5,18 +5,17 @@
 //! | `top` | a motion, from its state to its states |
 //! | [`pivoted_top`] | which bodies are such tops; steady precession and the sleeping limit |
 //! | `reduced` | the state in its own units and axes |
-//! | `source`, `scaled` | the data of a top, sizes in a unit of their own; numbers of any precision and powers of two |
+//! | `top_data` | the data of a top, sizes in a unit of their own; numbers of any precision and powers of two |
 //! | `turning_points` | the cubic of `cos θ` and the distances between what is singular |
 //! | `phases` | the steady rates of the phases and the shifts of the theta functions |
-//! | `course` | all of these as numbers ready for vector lanes |
-//! | `sampling` | the motion at one time or many |
+//! | `propagator` | all of these as numbers ready for vector lanes; the motion at one time or many |
 //! | [`nutation`] | limits, period, mean rates and the kind of path |
 //!
 //! # Examples
 //!
 //! ```
 //! use polhode::RigidBody;
-//! use polhode::motion::heavy_top::nutation::{Nutation, Path};
+//! use polhode::motion::heavy_top::nutation::{Nutation, Mode};
 //! use polhode::motion::heavy_top::{HeavyTop, PivotedTop};
 //! use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
 //!
@@ -28,8 +27,8 @@
 //! let attitude = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), lean);
 //! let (spin, gravity) = (Vector3::new(0.0, 0.0, 150.0), Vector3::new(0.0, 0.0, -9.81));
 //! let motion = HeavyTop::of(&top, &spin, &attitude, &gravity)?;
-//! let Nutation { path, inclination, period, .. } = motion.nutation();
-//! assert_eq!(*path, Path::Cusp);
+//! let Nutation { mode, inclination, period, .. } = motion.nutation();
+//! assert_eq!(*mode, Mode::Cusp);
 //! assert!((inclination[0] - lean).abs() < 1e-12);
 //! let (mut attitudes, mut omegas) = ([[0.0; 4]; 1], [[0.0; 3]; 1]);
 //! motion.sample(&[*period], &mut attitudes, &mut omegas);
@@ -44,19 +43,17 @@
 //! # Ok::<(), polhode::Error>(())
 //! ```
 
-mod course;
 pub mod nutation;
 mod phases;
 pub mod pivoted_top;
+mod propagator;
 mod reduced;
-mod sampling;
-mod scaled;
-mod source;
 #[cfg(test)]
 mod tests;
 mod top;
+mod top_data;
 mod turning_points;
 
-pub use nutation::{Nutation, Path};
+pub use nutation::{Mode, Nutation};
 pub use pivoted_top::PivotedTop;
 pub use top::HeavyTop;

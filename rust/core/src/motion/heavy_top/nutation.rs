@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::phases::Phases;
 use super::reduced::Reduced;
-use super::scaled::times;
+use super::top_data::times;
 use super::turning_points::TurningPoints;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::times_power_of_two;
@@ -15,7 +15,7 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// The path that the symmetry axis draws on a sphere about O.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Path {
+pub enum Mode {
     /// The axis rests: it is vertical, or no weight acts and the body spins about it.
     Steady,
     /// Steady precession: the inclination is constant.
@@ -34,7 +34,7 @@ pub enum Path {
     Asymptotic,
 }
 
-impl Path {
+impl Mode {
     /// The name in one lower-case word.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -55,7 +55,7 @@ impl Path {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nutation {
     /// On what path.
-    pub path: Path,
+    pub mode: Mode,
     /// The least and the largest inclination θ of the axis (from O to C) from the upward vertical.
     pub inclination: [f64; 2],
     /// Time from one least inclination to the next; infinite on an asymptotic path. NaN where the inclination is constant: in
@@ -72,7 +72,7 @@ impl Nutation {
     pub(super) fn steady(motion: &Reduced) -> Self {
         let inclination = angle(motion.bottom, motion.top);
         Self {
-            path: Path::Steady,
+            mode: Mode::Steady,
             inclination: [inclination; 2],
             period: f64::NAN,
             precession: 0.0,
@@ -88,15 +88,15 @@ impl Nutation {
     ) -> Self {
         let [alpha, beta] = phases.mean();
         let rate = |turns: DoubleDouble| TAU * times(turns, motion.exponent).rounded();
-        let path = path(motion, points, phases);
+        let mode = mode(motion, points, phases);
         Self {
-            path,
+            mode,
             inclination: [
                 angle(motion.bottom + points.rise, points.below_top),
                 angle(points.above_bottom, points.depth),
             ],
-            period: match path {
-                Path::Regular => f64::NAN,
+            period: match mode {
+                Mode::Regular => f64::NAN,
                 _ => times_power_of_two(0.5 / phases.clock.rounded(), -motion.exponent),
             },
             precession: rate(alpha + beta),
@@ -105,14 +105,14 @@ impl Nutation {
     }
 }
 
-fn path(motion: &Reduced, points: &TurningPoints, phases: &Phases) -> Path {
+fn mode(motion: &Reduced, points: &TurningPoints, phases: &Phases) -> Mode {
     if phases.clock.high == 0.0 {
-        return Path::Asymptotic;
+        return Mode::Asymptotic;
     }
     let [depth, below_top, height] =
         [points.depth, points.below_top, motion.bottom + points.rise].map(DoubleDouble::rounded);
     if points.range.high <= ROUNDING * depth.min(height) {
-        return Path::Regular;
+        return Mode::Regular;
     }
     let b = motion.spin.rounded();
     let (sum, difference) = (motion.sum().rounded(), motion.difference().rounded());
@@ -126,20 +126,20 @@ fn path(motion: &Reduced, points: &TurningPoints, phases: &Phases) -> Path {
     );
     if at_top || at_bottom {
         return if sum == 0.0 && difference == 0.0 {
-            Path::Planar
+            Mode::Planar
         } else {
-            Path::Crossing
+            Mode::Crossing
         };
     }
     // φ̇ has the sign of a − b u = (a − b) + b (1 − u).
     let terms = [depth, below_top].map(|distance| b * distance);
     let [low, high] = terms.map(|term| difference + term);
     if high.abs() <= ROUNDING * (difference.abs() + terms[1].abs()) {
-        Path::Cusp
+        Mode::Cusp
     } else if low * high < 0.0 {
-        Path::Loop
+        Mode::Loop
     } else {
-        Path::Wave
+        Mode::Wave
     }
 }
 

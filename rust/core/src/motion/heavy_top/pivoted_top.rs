@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::source::Source;
+use super::top_data::TopData;
 use crate::error::{Error, MotionFault};
 use crate::mass::RigidBody;
 use crate::mass::provenance::MomentsFrom;
@@ -25,7 +25,7 @@ pub struct PivotedTop {
     /// `m l`, with l the distance from O to C.
     pub mass_moment: f64,
     /// What the numbers above are rounded from.
-    source: Source,
+    source: TopData,
     /// What that is rounded from, where the body is its tensor: which axis is that of symmetry, and in which sense.
     refined: Option<(RefinedPrincipal, usize, bool)>,
 }
@@ -95,7 +95,7 @@ impl PivotedTop {
             axial: top.axial,
             transverse,
             mass_moment: m * arm,
-            source: Source {
+            source: TopData {
                 mass: m,
                 direction,
                 center_of_mass: c,
@@ -138,13 +138,13 @@ impl PivotedTop {
     }
 
     /// The top to twice the precision.
-    pub(super) fn source(&self) -> &Source {
+    pub(super) fn source(&self) -> &TopData {
         &self.source
     }
 
     /// The top to four times the precision.
-    pub(super) fn finest(&self) -> Source<QuadDouble> {
-        let Source {
+    pub(super) fn finest(&self) -> TopData<QuadDouble> {
+        let TopData {
             mass,
             direction,
             center_of_mass,
@@ -164,7 +164,7 @@ impl PivotedTop {
                 (direction, finest.moments[*axial], lateral)
             }
         };
-        Source {
+        TopData {
             mass,
             direction,
             center_of_mass,

@@ -14,8 +14,8 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
-use super::scaled::{near_one, sum_of_squares, times};
-use super::source::Source;
+use super::top_data::TopData;
+use super::top_data::{near_one, sum_of_squares, times};
 use crate::motion::attitude::components;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::Real;
@@ -68,7 +68,7 @@ const LEAST: f64 = 1e-280;
 impl Reduced<QuadDouble> {
     /// Upright, hanging or without a rate across the axis where no more of it is left than what turning the frames rounds: so a
     /// top that stands upright along any axis stays there.
-    pub(super) fn settled(self) -> Self {
+    pub(super) fn without_rounding(self) -> Self {
         if self.is_aligned {
             return self;
         }
@@ -79,7 +79,7 @@ impl Reduced<QuadDouble> {
 impl<T: Real> Reduced<T> {
     /// Of a top with the angular velocity `omega` in B, the attitude `R_NB` and `gravity` in N, all finite.
     pub(super) fn of(
-        top: &Source<T>,
+        top: &TopData<T>,
         omega: &Vector3<f64>,
         attitude: &UnitQuaternion<f64>,
         gravity: &Vector3<f64>,
@@ -179,7 +179,7 @@ impl<T: Real> Reduced<T> {
     /// What rounding to twice the precision may have taken from the value of f at the top and from its slope there, the two
     /// numbers that tell how near the motion is to its separatrix: a part of their terms, and of what a small component of a
     /// turned vector is a difference of.
-    pub(super) fn lost(&self) -> f64 {
+    pub(super) fn rounding_loss(&self) -> f64 {
         let [kappa, b, h, lift, top] =
             [self.kappa, self.spin, self.square, self.lift, self.top].map(|x| x.rounded().abs());
         let terms = h + 2.0 * kappa * top + b * (lift + b * top);

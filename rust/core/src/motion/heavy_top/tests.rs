@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use super::{HeavyTop, Path, PivotedTop};
+use super::{HeavyTop, Mode, PivotedTop};
 use crate::mass::RigidBody;
 
 fn top(across: f64, along: f64, length: f64) -> PivotedTop {
@@ -13,7 +13,7 @@ fn top(across: f64, along: f64, length: f64) -> PivotedTop {
         .expect("top")
 }
 
-fn leaning(theta: f64) -> UnitQuaternion<f64> {
+fn lean(theta: f64) -> UnitQuaternion<f64> {
     UnitQuaternion::from_axis_angle(&Vector3::x_axis(), theta)
 }
 
@@ -24,12 +24,12 @@ fn steady_precession_turns_steadily() {
         let [slow, fast] = top.steady_precession(30.0, theta, &g).expect("fast");
         for rate in [slow, fast] {
             let (spin, up) = (30.0 - rate * theta.cos(), Vector3::z());
-            let omega = leaning(theta).inverse_transform_vector(&(rate * up)) + spin * up;
-            let motion = HeavyTop::of(&top, &omega, &leaning(theta), &g).expect("motion");
+            let omega = lean(theta).inverse_transform_vector(&(rate * up)) + spin * up;
+            let motion = HeavyTop::of(&top, &omega, &lean(theta), &g).expect("motion");
             assert!((motion.nutation().precession - rate).abs() < 1e-9 * rate.abs());
             for t in [0.0, 0.1, -3.0, 20.0] {
                 let exact = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), rate * t)
-                    * leaning(theta)
+                    * lean(theta)
                     * UnitQuaternion::from_axis_angle(&Vector3::z_axis(), spin * t);
                 let error = motion.at(t).attitude.angle_to(&exact);
                 assert!(error < 1e-12, "{theta} {rate} {t} {error:e}");
@@ -42,11 +42,11 @@ fn steady_precession_turns_steadily() {
 fn separatrix_of_the_pendulum() {
     // From the lowest point with just the energy of the highest: sin of half the swing is tanh √(g/l) t.
     let (bob, g) = (top(0.0, 0.0, 1.0), Vector3::new(0.0, 0.0, -1.0));
-    let hanging = leaning(std::f64::consts::PI);
+    let hanging = lean(std::f64::consts::PI);
     let hanging =
         UnitQuaternion::new_normalize(nalgebra::Quaternion::new(0.0, hanging.i, 0.0, 0.0));
     let motion = HeavyTop::of(&bob, &Vector3::new(2.0, 0.0, 0.0), &hanging, &g).expect("motion");
-    assert_eq!(motion.nutation().path, Path::Asymptotic);
+    assert_eq!(motion.nutation().mode, Mode::Asymptotic);
     for t in [0.0_f64, 0.3, -1.1, 5.0, 40.0, 1e9] {
         let state = motion.at(t);
         let height = (state.attitude * Vector3::z()).z;
@@ -59,7 +59,7 @@ fn separatrix_of_the_pendulum() {
 #[test]
 fn without_weight_it_precesses_about_its_momentum() {
     let top = top(0.8, 0.5, 0.0);
-    let (omega, start) = (Vector3::new(0.3, -0.4, 1.7), leaning(0.9));
+    let (omega, start) = (Vector3::new(0.3, -0.4, 1.7), lean(0.9));
     let motion = HeavyTop::of(&top, &omega, &start, &Vector3::zeros()).expect("motion");
     let momentum = start * Vector3::new(0.8 * omega.x, 0.8 * omega.y, 0.5 * omega.z);
     let drift = (1.0 - 0.5 / 0.8) * omega.z;
@@ -82,14 +82,14 @@ fn what_rests_stays() {
     ] {
         let spin = Vector3::new(0.0, 0.0, 3.0);
         let motion = HeavyTop::of(&top, &spin, &upright, &g).expect("motion");
-        assert_eq!(motion.nutation().path, Path::Steady);
+        assert_eq!(motion.nutation().mode, Mode::Steady);
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), 30.0);
         assert!(motion.at(10.0).attitude.angle_to(&(upright * turn)) < 1e-15 * 30.0);
         assert_eq!(motion.at(10.0).omega, spin);
     }
-    let resting = HeavyTop::of(&top, &Vector3::zeros(), &leaning(0.4), &Vector3::zeros());
+    let resting = HeavyTop::of(&top, &Vector3::zeros(), &lean(0.4), &Vector3::zeros());
     let state = resting.expect("motion").at(1e300);
-    assert!(state.attitude.angle_to(&leaning(0.4)) < 1e-15 && state.omega == Vector3::zeros());
+    assert!(state.attitude.angle_to(&lean(0.4)) < 1e-15 && state.omega == Vector3::zeros());
 }
 
 #[test]

@@ -1,12 +1,13 @@
 //! The motion of a heavy top, made of its state and asked for its states at other times.
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 
 use super::nutation::Nutation;
 use super::pivoted_top::PivotedTop;
-use super::sampling::TopConstants;
+use super::propagator::TopConstants;
 use crate::error::{Error, all_finite};
-use crate::motion::state::{ClosedForm, State};
+use crate::motion::closed_form::{self, ClosedForm};
+use crate::motion::state::State;
 
 /// The motion of a heavy symmetric top about a fixed point O on its axis, exact at any time.
 ///
@@ -18,7 +19,7 @@ use crate::motion::state::{ClosedForm, State};
 #[doc(alias = "Lagrange top")]
 #[doc(alias = "spherical pendulum")]
 pub struct HeavyTop {
-    course: TopConstants,
+    constants: TopConstants,
     nutation: Nutation,
 }
 
@@ -38,27 +39,26 @@ impl HeavyTop {
         all_finite("omega", omega)?;
         all_finite("gravity", gravity)?;
         all_finite("attitude", attitude.coords.iter())?;
-        let (course, nutation) = TopConstants::of(top, omega, attitude, gravity);
-        Ok(Self { course, nutation })
+        let (constants, nutation) = TopConstants::of(top, omega, attitude, gravity);
+        Ok(Self {
+            constants,
+            nutation,
+        })
     }
 
     /// The state at time `t`; NaN at a time that is not finite, or beyond [`ClosedForm::reach`].
     #[must_use]
     pub fn at(&self, t: f64) -> State {
-        let (mut attitude, mut omega) = ([[0.0; 4]], [[0.0; 3]]);
-        self.sample(&[t], &mut attitude, &mut omega);
-        let [[x, y, z, w]] = attitude;
-        State {
-            attitude: UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)),
-            omega: Vector3::from(omega[0]),
-        }
+        closed_form::at(&self.constants, t)
     }
 
     /// Attitudes as (x, y, z, w) and ω at many times, several side by side; each with the bits of [`HeavyTop::at`].
     ///
     /// Of slices of different lengths the shortest counts.
     pub fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
-        self.course.sample(times, attitudes, omegas);
+        let count = times.len().min(attitudes.len()).min(omegas.len());
+        let (attitudes, omegas) = (&mut attitudes[..count], &mut omegas[..count]);
+        closed_form::sample(&self.constants, &times[..count], attitudes, omegas);
     }
 
     /// How the axis moves.
@@ -70,7 +70,7 @@ impl HeavyTop {
 
 impl ClosedForm for HeavyTop {
     fn reach(&self) -> f64 {
-        self.course.reach
+        self.constants.reach
     }
 
     fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {

@@ -51,15 +51,15 @@ const FINER_ROUNDING: f64 = 8.1e-28; // 2⁻⁹⁰
 impl TurningPoints {
     /// Whether k′² has the digits that long times need.
     pub(super) fn are_good(&self, motion: &Reduced) -> bool {
-        self.gap.high * self.depth.high * HARMLESS >= motion.lost()
+        self.gap.high * self.depth.high * HARMLESS >= motion.rounding_loss()
     }
 }
 
 impl TurningPoints<QuadDouble> {
     /// On the separatrix where nothing is left of the distance from it.
-    pub(super) fn settled(self, motion: &Reduced<QuadDouble>) -> Self {
+    pub(super) fn without_rounding(self, motion: &Reduced<QuadDouble>) -> Self {
         let left = self.gap.rounded() * self.depth.rounded();
-        if left <= FINER_ROUNDING * motion.lost() {
+        if left <= FINER_ROUNDING * motion.rounding_loss() {
             let gap = QuadDouble::default();
             return Self { gap, ..self };
         }

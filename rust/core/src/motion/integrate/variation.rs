@@ -87,12 +87,12 @@ pub fn variations(
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Vec<Variation>, Error> {
     check_times(task.times)?;
-    let is_known = |term: &Term| term.character(task.subject.pivoted).has_series;
+    let is_known = |term: &Term| term.traits(task.body_at_point.pivoted).has_series;
     if !terms.iter().all(is_known) {
         return Err(MotionFault::NoSeries.into());
     }
-    let task = &(task.clone()).carrying(terms.iter().filter_map(Term::carried))?;
-    let states = task.initial.own.len();
+    let task = &(task.clone()).with_carried(terms.iter().filter_map(Term::carried))?;
+    let states = task.initial.internal_state.len();
     let numbers: usize = terms.iter().map(Term::count).sum();
     let start = Variation {
         state: Matrix6::identity(),

@@ -1,12 +1,12 @@
 //! Sums of analytic terms.
 
-use super::bearing::Bearing;
+use super::body_at_point::BodyAtPoint;
 use super::carried::Carried;
+use super::carried::Now;
+use super::law_switches::{LawSwitch, Switch};
 use super::laws::Term;
 use super::load::Load;
-use super::now::Now;
-use super::subject::Subject;
-use super::switch::{Change, Switch};
+use super::stiction::Bearing;
 use super::wrench::Wrench;
 use crate::error::Error;
 use crate::motion::state::Phase;
@@ -14,7 +14,7 @@ use crate::motion::state::Phase;
 /// A sum of analytic terms that acts on a body; without terms the body is free.
 #[derive(Clone, Debug)]
 pub struct Analytic<'a> {
-    subject: Subject,
+    body: BodyAtPoint,
     terms: &'a [Term],
     active: Vec<&'a Term>,
     /// One for each term among those that act whose law has a sign, once they are settled.
@@ -26,11 +26,11 @@ pub struct Analytic<'a> {
 }
 
 impl<'a> Analytic<'a> {
-    /// The sum of `terms` acting on `subject`.
+    /// The sum of `terms` acting on `body`.
     #[must_use]
-    pub fn new(terms: &'a [Term], subject: Subject) -> Self {
+    pub fn new(terms: &'a [Term], body: BodyAtPoint) -> Self {
         Self {
-            subject,
+            body,
             terms,
             active: terms.iter().collect(),
             switches: Vec::new(),
@@ -41,8 +41,8 @@ impl<'a> Analytic<'a> {
 
     /// What it acts on.
     #[must_use]
-    pub fn subject(&self) -> &Subject {
-        &self.subject
+    pub fn body(&self) -> &BodyAtPoint {
+        &self.body
     }
 
     /// The terms.
@@ -105,7 +105,7 @@ impl Load for Analytic<'_> {
         self.switches.clear();
         self.bearings = None;
         for term in self.terms.iter().filter_map(|term| term.active(middle)) {
-            term.check(&self.subject, from, to)?;
+            term.check(&self.body, from, to)?;
             self.active.push(term);
         }
         Ok(())
@@ -113,35 +113,35 @@ impl Load for Analytic<'_> {
 
     fn settle(&mut self, t: f64, phase: &Phase) {
         self.switches.clear();
-        let subject = &self.subject;
-        let switches = (self.active.iter()).filter_map(|term| term.switch(subject, t, phase));
+        let body = &self.body;
+        let switches = (self.active.iter()).filter_map(|term| term.switch(body, t, phase));
         self.switches.extend(switches);
         self.bearings = Some(self.bearings_at(phase));
     }
 
-    fn changes(&self) -> Vec<Change> {
+    fn law_switches(&self) -> Vec<LawSwitch> {
         let of_bearing = |bearing: &Bearing| {
             if bearing.turns == 0.0 {
-                Change::Slip(*bearing)
+                LawSwitch::Slip(*bearing)
             } else {
-                Change::Stop(*bearing)
+                LawSwitch::Stop(*bearing)
             }
         };
-        let signs = self.switches.iter().cloned().map(Change::Sign);
+        let signs = self.switches.iter().cloned().map(LawSwitch::Sign);
         signs
             .chain(self.bearings().iter().map(of_bearing))
             .collect()
     }
 
-    fn change(&mut self, change: &Change) {
+    fn switch_law(&mut self, change: &LawSwitch) {
         match change {
-            Change::Sign(switch) => {
+            LawSwitch::Sign(switch) => {
                 for mine in self.switches.iter_mut().filter(|mine| *mine == switch) {
                     mine.side *= -1.0;
                 }
             }
-            Change::Stop(bearing) => self.turn(bearing.stopped()),
-            Change::Slip(bearing) => self.turn(*bearing),
+            LawSwitch::Stop(bearing) => self.turn(bearing.at_rest()),
+            LawSwitch::Slip(bearing) => self.turn(*bearing),
         }
     }
 
@@ -154,9 +154,9 @@ impl Load for Analytic<'_> {
         for term in self.terms {
             if let Some(carried) = term.carried() {
                 if index == state && carried.count() > 0 {
-                    let side = (term.switch(&self.subject, t, phase)).map_or(1.0, |it| it.side);
+                    let side = (term.switch(&self.body, t, phase)).map_or(1.0, |it| it.side);
                     let now = Now {
-                        subject: &self.subject,
+                        body: &self.body,
                         t,
                         middle: self.middle,
                         phase,
@@ -181,7 +181,7 @@ impl Load for Analytic<'_> {
 
     #[inline]
     fn act(&mut self, t: f64, phase: &Phase, rates: &mut [f64]) -> Result<Wrench, Error> {
-        let (mut own, mut all_rates) = (&phase.own[..], &mut *rates);
+        let (mut states, mut all_rates) = (&phase.internal_state[..], &mut *rates);
         let mut switches = self.switches.iter();
         let mut sum = Wrench::default();
         for term in &self.active {
@@ -191,11 +191,11 @@ impl Load for Analytic<'_> {
                 None
             };
             sum += if let Some(carried) = term.carried() {
-                let mine = own.split_off(..carried.count()).unwrap_or_default();
+                let mine = states.split_off(..carried.count()).unwrap_or_default();
                 let unsettled =
-                    || (term.switch(&self.subject, t, phase)).map_or(1.0, |switch| switch.side);
+                    || (term.switch(&self.body, t, phase)).map_or(1.0, |switch| switch.side);
                 let now = Now {
-                    subject: &self.subject,
+                    body: &self.body,
                     t,
                     middle: self.middle,
                     phase,
@@ -206,9 +206,9 @@ impl Load for Analytic<'_> {
                 }
                 Wrench::couple(carried.torque(&now, mine))
             } else if let Some(switch) = switch {
-                term.settled_wrench(switch.side, &self.subject, t, phase)
+                term.settled_wrench(switch.side, &self.body, t, phase)
             } else {
-                term.wrench(&self.subject, t, phase)
+                term.wrench(&self.body, t, phase)
             };
         }
         let unsettled;

@@ -1,12 +1,13 @@
-//! What a load carries along in the body, with states of its own: wheels, slugs.
+//! What a load carries along in the body, with internal states: wheels, slugs.
 
 use nalgebra::Vector3;
 
-use super::now::Now;
+use super::body_at_point::BodyAtPoint;
+use crate::motion::state::Phase;
 
-/// What a law carries along in the body: an angular momentum beside I ω, and states of its own that go on with the motion.
+/// What a law carries along in the body: an angular momentum beside I ω, and internal states that go on with the motion.
 ///
-/// I is the tensor of the body with its wheels locked, ω that of B relative to N; all components in B. `own`: the states.
+/// I is the tensor of the body with its wheels locked, ω that of B relative to N; all components in B. `state`: the states.
 pub trait Carried {
     /// How many states it has.
     fn count(&self) -> usize;
@@ -26,7 +27,7 @@ pub trait Carried {
     }
 
     /// The states as they are reported, of the same number: those of a wheel are its momentum `h = J (Ω + a·ω)`.
-    fn reported(&self, own: &[f64], omega: &Vector3<f64>) -> Vec<f64>;
+    fn reported(&self, state: &[f64], omega: &Vector3<f64>) -> Vec<f64>;
 
     /// Its states where a motion starts at time `t` with `omega`, from those reported.
     fn resumed(&self, reported: &[f64], t: f64, omega: &Vector3<f64>) -> Vec<f64>;
@@ -53,14 +54,29 @@ pub trait Carried {
     }
 
     /// The torque about the reference point that stands beside that tensor.
-    fn torque(&self, now: &Now<'_>, own: &[f64]) -> Vector3<f64>;
+    fn torque(&self, now: &Now<'_>, state: &[f64]) -> Vector3<f64>;
 
     /// The rates of its states, into `rates`.
-    fn rates(&self, now: &Now<'_>, own: &[f64], rates: &mut [f64]);
+    fn rates(&self, now: &Now<'_>, state: &[f64], rates: &mut [f64]);
 
     /// Its momentum beside I ω.
-    fn momentum(&self, own: &[f64], omega: &Vector3<f64>) -> Vector3<f64>;
+    fn momentum(&self, state: &[f64], omega: &Vector3<f64>) -> Vector3<f64>;
 
     /// Its kinetic energy beside ½ ω·I ω; of a momentum that is constant nothing.
-    fn energy(&self, own: &[f64], omega: &Vector3<f64>) -> f64;
+    fn energy(&self, state: &[f64], omega: &Vector3<f64>) -> f64;
+}
+
+/// When, on what and in which state a law acts within a run.
+#[derive(Clone, Copy, Debug)]
+pub struct Now<'a> {
+    /// What it acts on.
+    pub body: &'a BodyAtPoint,
+    /// The time.
+    pub t: f64,
+    /// A time within the span under way, which has no breaks.
+    pub middle: f64,
+    /// The state.
+    pub phase: &'a Phase,
+    /// The sign that a law with one is taken for.
+    pub side: f64,
 }

@@ -2,12 +2,11 @@
 
 use nalgebra::Vector3;
 
-use super::axes::{Axes, Exact};
+use super::body_at_point::BodyAtPoint;
 use super::carried::Carried;
-use super::linear::Linear;
-use super::parameter::Parameter;
-use super::subject::Subject;
-use super::switch::Switch;
+use super::law_switches::Switch;
+use super::principal_frame::{LawNumber, PrincipalFrame};
+use super::series_terms::SeriesTerms;
 use super::wrench::Wrench;
 use crate::error::Error;
 use crate::motion::state::Phase;
@@ -59,7 +58,7 @@ impl Kept {
     reason = "each is a question of its own"
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Character {
+pub struct Traits {
     /// Whether it pushes, so that a free body's position depends on it.
     pub exerts_force: bool,
     /// Whether it depends on ω or on the velocity.
@@ -77,9 +76,9 @@ pub struct Character {
 /// An analytic law of a load: one file each.
 pub(super) trait Law: Sized {
     /// What it depends on and does, on a pivoted body or on a free one.
-    fn character(&self, pivoted: bool) -> Character;
+    fn traits(&self, pivoted: bool) -> Traits;
 
-    /// Its numbers. Those that were multiplied by a factor are those after it.
+    /// Its numbers. After [`Self::scaled`], they are the scaled values.
     fn parameters(&self) -> Vec<Parameter>;
 
     /// The law that exerts `factor`, which is finite, times as much.
@@ -90,27 +89,32 @@ pub(super) trait Law: Sized {
 
     /// The law of a motion that began at `t`, for the rest of it.
     #[must_use]
-    fn anchored(self, t: f64) -> Self;
+    fn with_epoch(self, t: f64) -> Self;
 
     /// The times at which it is not smooth, where a step must end; not sorted.
     fn breaks(&self) -> Vec<f64>;
 
-    /// Checks that it can act on `subject` from one time to another.
+    /// Checks that it can act on `body` from one time to another.
     ///
     /// # Errors
     /// When it cannot.
-    fn check(&self, subject: &Subject, from: f64, to: f64) -> Result<(), Error>;
+    fn check(&self, body: &BodyAtPoint, from: f64, to: f64) -> Result<(), Error>;
 
     /// Force in N and torque in B about the reference point at time `t`.
-    fn wrench(&self, subject: &Subject, t: f64, phase: &Phase) -> Wrench;
+    fn wrench(&self, body: &BodyAtPoint, t: f64, phase: &Phase) -> Wrench;
 
     /// The energy of position that the body has in its field, when it has one: force and torque are what it loses. A law that
     /// depends on time has none.
-    fn potential(&self, subject: &Subject, phase: &Phase) -> Option<f64>;
+    fn potential(&self, body: &BodyAtPoint, phase: &Phase) -> Option<f64>;
 
     /// Adds what it does to the equations of a series, in numbers of any precision; `side` is the sign that the law is taken
-    /// for. Which [`Parts`](super::Parts) it adds depends neither on the time nor on the side: the driver has room for those.
-    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, side: f64);
+    /// for. Which parts ([`SeriesStructure`](super::SeriesStructure)) it adds depends neither on the time nor on the side: the driver has room for those.
+    fn add_to<'a, X: LawNumber>(
+        &'a self,
+        series: &mut SeriesTerms<'a, X>,
+        axes: &PrincipalFrame<'_, X>,
+        side: f64,
+    );
 
     /// Whether its law has a sign that changes with the state.
     fn may_switch(&self) -> bool {
@@ -118,19 +122,22 @@ pub(super) trait Law: Sized {
     }
 
     /// What changes its law at a time and `phase`, for a law that [may switch](Self::may_switch).
-    fn switch(&self, subject: &Subject, t: f64, phase: &Phase) -> Option<Switch> {
-        let _ = (subject, t, phase);
+    fn switch(&self, body: &BodyAtPoint, t: f64, phase: &Phase) -> Option<Switch> {
+        let _ = (body, t, phase);
         None
     }
 
     /// As [`Self::wrench`], with the law on one side of its switch.
-    fn settled_wrench(&self, side: f64, subject: &Subject, t: f64, phase: &Phase) -> Wrench {
+    fn settled_wrench(&self, side: f64, body: &BodyAtPoint, t: f64, phase: &Phase) -> Wrench {
         let _ = side;
-        self.wrench(subject, t, phase)
+        self.wrench(body, t, phase)
     }
 
     /// The function of the attitude (x, y, z, w), linear in it, whose sign the law has.
-    fn switching<X: Exact>(&self, axes: &Axes<'_, X>) -> Option<nalgebra::Vector4<X>> {
+    fn switch_function<X: LawNumber>(
+        &self,
+        axes: &PrincipalFrame<'_, X>,
+    ) -> Option<nalgebra::Vector4<X>> {
         let _ = axes;
         None
     }
@@ -138,5 +145,30 @@ pub(super) trait Law: Sized {
     /// What it carries along in the body. [`Self::wrench`] of a law with states is that where a motion starts.
     fn carried(&self) -> Option<&dyn Carried> {
         None
+    }
+}
+
+/// Numbers of a term of a load, under the name and with the shape that they have where the term is made.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Parameter {
+    /// The name.
+    pub name: &'static str,
+    /// How many in each direction; in C order.
+    pub shape: Vec<usize>,
+}
+
+impl Parameter {
+    /// Of this name and shape.
+    pub(super) fn new(name: &'static str, shape: &[usize]) -> Self {
+        Self {
+            name,
+            shape: shape.to_vec(),
+        }
+    }
+
+    /// How many numbers they are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.shape.iter().product()
     }
 }

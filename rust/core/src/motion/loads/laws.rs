@@ -1,7 +1,7 @@
 //! The list of the laws. Each stands in a file of its own in `laws`, which answers what a [`Law`] is asked; here its module is
 //! declared, its type handed on, and its variant listed.
 
-use nalgebra::Vector4;
+use nalgebra::{Vector3, Vector4};
 
 pub mod constant_force;
 pub mod constant_torque;
@@ -25,20 +25,218 @@ pub use self::rotor::Rotor;
 pub use self::sampled::Sampled;
 pub use self::slug::Slug;
 pub use self::uniform_gravity::UniformGravity;
-pub use self::wheel::Wheel;
+pub use self::wheel::{Drive, Wheel};
 
-use super::axes::{Axes, Exact};
+use super::body_at_point::BodyAtPoint;
 use super::carried::Carried;
-use super::law::{Character, Law};
-use super::linear::Linear;
-use super::list::laws;
-use super::parameter::Parameter;
+use super::law::Parameter;
+use super::law::{Kept, Law, Traits};
+use super::law_switches::Switch;
+use super::principal_frame::{LawNumber, PrincipalFrame};
 use super::schedule::Windows;
-use super::subject::Subject;
-use super::switch::Switch;
+use super::series_terms::SeriesTerms;
 use super::wrench::Wrench;
-use crate::error::{Error, finite};
+use crate::error::{Error, MotionFault, finite};
+use crate::motion::kinematics::Frame;
 use crate::motion::state::Phase;
+
+/// From the list of the laws: each is a variant of [`Term`](super::Term), which passes every question on to it. A law that is
+/// not asked something does not compile. `for_each_law` hands the names to whoever has something of his own for each.
+macro_rules! laws {
+    (($d:tt) $(#[$about:meta])* pub enum Term { $($(#[$of_law:meta])+ $law:ident($same:ident),)+ }) => {
+        $(#[$about])*
+        pub enum Term {
+            $($(#[$of_law])+ $law($same),)+
+            /// A term that acts in some windows of time only.
+            Scheduled {
+                /// When.
+                windows: Windows,
+                /// Which.
+                term: Box<Term>,
+            },
+        }
+
+        $(impl From<$law> for Term {
+            fn from(law: $law) -> Self {
+                Self::$law(law)
+            }
+        })+
+
+        /// Calls a macro with the names of all laws.
+        #[doc(hidden)]
+        #[macro_export]
+        macro_rules! for_each_law {
+            ($d call:ident) => {
+                $d call!($($law)+)
+            };
+        }
+
+        impl Term {
+            /// What it depends on and does, on a pivoted body or on a free one.
+            #[must_use]
+            pub fn traits(&self, pivoted: bool) -> Traits {
+                match self {
+                    $(Self::$law(law) => law.traits(pivoted),)+
+                    Self::Scheduled { term, .. } => term.traits(pivoted),
+                }
+            }
+
+            /// Its numbers, under the names and with the shapes that they have where the term is made. After [`Self::scaled`],
+            /// they are the scaled values.
+            #[must_use]
+            pub fn parameters(&self) -> Vec<Parameter> {
+                match self {
+                    $(Self::$law(law) => law.parameters(),)+
+                    Self::Scheduled { term, .. } => term.parameters(),
+                }
+            }
+
+            /// The term that exerts `factor` times as much.
+            ///
+            /// # Errors
+            /// When `factor` or what it makes is not finite.
+            pub fn scaled(&self, factor: f64) -> Result<Self, Error> {
+                finite("the factor of a load", factor)?;
+                Ok(match self {
+                    $(Self::$law(law) => Self::$law(law.scaled(factor)?),)+
+                    Self::Scheduled { windows, term } => Self::Scheduled {
+                        windows: windows.clone(),
+                        term: Box::new(term.scaled(factor)?),
+                    },
+                })
+            }
+
+            /// The term of a motion that began at `t`, for the rest of it.
+            #[must_use]
+            pub fn with_epoch(self, t: f64) -> Self {
+                match self {
+                    $(Self::$law(law) => Self::$law(law.with_epoch(t)),)+
+                    Self::Scheduled { windows, term } => Self::Scheduled {
+                        windows,
+                        term: Box::new(term.with_epoch(t)),
+                    },
+                }
+            }
+
+            /// The times at which it is not smooth, where a step must end; not sorted.
+            #[must_use]
+            pub fn breaks(&self) -> Vec<f64> {
+                match self {
+                    $(Self::$law(law) => law.breaks(),)+
+                    Self::Scheduled { windows, term } => {
+                        let mut breaks = windows.switches();
+                        breaks.extend(term.breaks());
+                        breaks
+                    }
+                }
+            }
+
+            /// Checks that the term can act on `body` from one time to another.
+            ///
+            /// # Errors
+            /// [`OutsideSamples`](crate::error::MotionFault::OutsideSamples);
+            /// [`PivotedInOrbit`](crate::error::MotionFault::PivotedInOrbit).
+            pub fn check(&self, body: &BodyAtPoint, from: f64, to: f64) -> Result<(), Error> {
+                match self {
+                    $(Self::$law(law) => law.check(body, from, to),)+
+                    Self::Scheduled { term, .. } => term.check(body, from, to),
+                }
+            }
+
+            /// Force in N and torque in B about the reference point at time `t`. A scheduled term counts as switched on or off
+            /// by the time; in a run by [`Term::active`].
+            #[inline]
+            #[must_use]
+            pub fn wrench(&self, body: &BodyAtPoint, t: f64, phase: &Phase) -> Wrench {
+                match self {
+                    $(Self::$law(law) => law.wrench(body, t, phase),)+
+                    Self::Scheduled { windows, term } => {
+                        if windows.contains(t) {
+                            term.wrench(body, t, phase)
+                        } else {
+                            Wrench::default()
+                        }
+                    }
+                }
+            }
+
+            /// The energy of position that the body has in the term's field, when it has one: force and torque are what it
+            /// loses. Positions from the origin of N. A term that depends on time has none.
+            #[must_use]
+            pub fn potential(&self, body: &BodyAtPoint, phase: &Phase) -> Option<f64> {
+                match self {
+                    $(Self::$law(law) => law.potential(body, phase),)+
+                    Self::Scheduled { .. } => None,
+                }
+            }
+
+            /// Adds what the term, switched on, does to the equations of a series; `side` is the sign that its law is taken for.
+            pub(in crate::motion) fn add_to<'a, X: LawNumber>(
+                &'a self,
+                series: &mut SeriesTerms<'a, X>,
+                axes: &PrincipalFrame<'_, X>,
+                side: f64,
+            ) {
+                match self {
+                    $(Self::$law(law) => law.add_to(series, axes, side),)+
+                    Self::Scheduled { term, .. } => term.add_to(series, axes, side),
+                }
+            }
+
+            /// What changes its law at a time and `phase`, if its law has a sign that changes with the state.
+            pub(super) fn switch(&self, body: &BodyAtPoint, t: f64, phase: &Phase) -> Option<Switch> {
+                match self {
+                    $(Self::$law(law) => law.switch(body, t, phase),)+
+                    Self::Scheduled { term, .. } => term.switch(body, t, phase),
+                }
+            }
+
+            /// As [`Self::wrench`], with the law of the term, switched on, on one side of its switch.
+            #[inline]
+            pub(super) fn settled_wrench(
+                &self,
+                side: f64,
+                body: &BodyAtPoint,
+                t: f64,
+                phase: &Phase,
+            ) -> Wrench {
+                match self {
+                    $(Self::$law(law) => law.settled_wrench(side, body, t, phase),)+
+                    Self::Scheduled { term, .. } => term.settled_wrench(side, body, t, phase),
+                }
+            }
+
+            /// The function of the attitude (x, y, z, w), linear in it, whose sign its law has.
+            pub(in crate::motion) fn switch_function<X: LawNumber>(
+                &self,
+                axes: &PrincipalFrame<'_, X>,
+            ) -> Option<Vector4<X>> {
+                match self {
+                    $(Self::$law(law) => law.switch_function(axes),)+
+                    Self::Scheduled { term, .. } => term.switch_function(axes),
+                }
+            }
+
+            /// What it carries along in the body.
+            #[must_use]
+            pub fn carried(&self) -> Option<&dyn Carried> {
+                match self {
+                    $(Self::$law(law) => law.carried(),)+
+                    Self::Scheduled { .. } => None, // what is carried along cannot be scheduled
+                }
+            }
+
+            /// Whether its law has a sign that changes with the state.
+            #[inline]
+            pub(super) fn may_switch(&self) -> bool {
+                match self {
+                    $(Self::$law(law) => law.may_switch(),)+
+                    Self::Scheduled { term, .. } => term.may_switch(),
+                }
+            }
+        }
+    };
+}
 
 laws!(
     ($)
@@ -70,3 +268,110 @@ laws!(
         Slug(Slug),
     }
 );
+
+impl Term {
+    /// A torque constant in `frame`.
+    ///
+    /// # Errors
+    /// When a component is not finite.
+    pub fn constant_torque(vector: &Vector3<f64>, frame: Frame) -> Result<Self, Error> {
+        ConstantTorque::new(vector, frame).map(Self::from)
+    }
+
+    /// A force constant in `frame` at `point` (from the origin of B), or at C.
+    ///
+    /// # Errors
+    /// When a component is not finite.
+    pub fn constant_force(
+        vector: &Vector3<f64>,
+        frame: Frame,
+        point: Option<&Vector3<f64>>,
+    ) -> Result<Self, Error> {
+        ConstantForce::new(vector, frame, point).map(Self::from)
+    }
+
+    /// The weight of the body in the field g (in N).
+    ///
+    /// # Errors
+    /// When a component is not finite.
+    pub fn uniform_gravity(gravity: &Vector3<f64>) -> Result<Self, Error> {
+        UniformGravity::new(gravity).map(Self::from)
+    }
+
+    /// The term in `windows` only; of a scheduled one, where both sets of windows are open.
+    ///
+    /// # Errors
+    /// [`MotionFault::StatesStay`] for what the body carries along.
+    pub fn scheduled(self, windows: &Windows) -> Result<Self, Error> {
+        if self.carried().is_some() {
+            return Err(MotionFault::StatesStay { what: "scheduled" }.into());
+        }
+        Ok(match self {
+            Self::Scheduled {
+                windows: own,
+                term: inner,
+            } => Self::Scheduled {
+                windows: own.within(windows),
+                term: inner,
+            },
+            term => Self::Scheduled {
+                windows: windows.clone(),
+                term: Box::new(term),
+            },
+        })
+    }
+
+    /// The term as it acts throughout a span of time without breaks around `middle`: nothing where it is switched off,
+    /// else never a scheduled one.
+    #[must_use]
+    pub fn active(&self, middle: f64) -> Option<&Self> {
+        match self {
+            Self::Scheduled { windows, term } => {
+                (windows.contains(middle)).then(|| term.active(middle))?
+            }
+            law => Some(law),
+        }
+    }
+
+    /// How many internal states it has.
+    #[must_use]
+    pub fn internal_states(&self) -> usize {
+        self.carried().map_or(0, Carried::count)
+    }
+
+    /// How many numbers it has.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.parameters().iter().map(Parameter::count).sum()
+    }
+
+    /// Whether it pushes, so that a free body's position depends on it.
+    #[must_use]
+    pub fn exerts_force(&self) -> bool {
+        self.traits(false).exerts_force
+    }
+
+    /// Whether it depends on ω or on the velocity.
+    #[must_use]
+    pub fn depends_on_rates(&self) -> bool {
+        self.traits(false).depends_on_rates
+    }
+
+    /// Whether it depends on the body it acts on.
+    #[must_use]
+    pub fn needs_body(&self) -> bool {
+        self.traits(false).needs_body
+    }
+
+    /// Whether it begins with the motion, wherever in time that is.
+    #[must_use]
+    pub fn needs_epoch(&self) -> bool {
+        self.traits(false).needs_epoch
+    }
+
+    /// What of the angular momentum about the reference point it leaves as it is, on a pivoted body or on a free one.
+    #[must_use]
+    pub fn keeps(&self, pivoted: bool) -> Kept {
+        self.traits(pivoted).keeps
+    }
+}

@@ -1,11 +1,12 @@
 //! A load, whoever computes it.
 
-use super::bearing::Bearing;
 use super::carried::Carried;
+use super::law_switches::LawSwitch;
 use super::laws::Term;
-use super::switch::Change;
+use super::stiction::{Bearing, Stiction};
 use super::wrench::Wrench;
 use crate::error::Error;
+use crate::motion::euler_equations::EulerEquations;
 use crate::motion::state::Phase;
 
 /// A load as a function of time and state, whoever computes it.
@@ -15,12 +16,12 @@ use crate::motion::state::Phase;
 /// ```
 /// use std::ops::ControlFlow;
 /// use polhode::mass::{Amount, solids};
-/// use polhode::motion::loads::{Bearing, Carried, Change, Load, Wrench};
+/// use polhode::motion::loads::{Bearing, Carried, LawSwitch, Load, Wrench};
 /// use polhode::motion::simulate::{Method, NoEvents, Phase, State, Task, Tolerance, simulate};
 /// use polhode::nalgebra::{UnitQuaternion, Vector3};
 ///
 /// /// A brake that is on for the first second. A closure would do ([`Callback`](super::Callback)); what a trait adds are
-/// /// states and laws of its own: [`Carried`], [`Change`], [`Bearing`].
+/// /// internal states and laws that switch: [`Carried`], [`LawSwitch`], [`Bearing`].
 /// struct Brake {
 ///     is_on: bool,
 /// }
@@ -51,8 +52,8 @@ use crate::motion::state::Phase;
 /// let tolerance = Tolerance::new(1e-12, 0.0)?;
 /// let task = Task::free(&ball, Phase::in_place(&state), &[0.0, 3.0], Method::Auto, tolerance);
 /// let mut brake = Brake { is_on: true };
-/// let (carried, changes, bearings): (Vec<&dyn Carried>, Vec<Change>, &[Bearing]) =
-///     (brake.carried(), brake.changes(), brake.bearings());
+/// let (carried, changes, bearings): (Vec<&dyn Carried>, Vec<LawSwitch>, &[Bearing]) =
+///     (brake.carried(), brake.law_switches(), brake.bearings());
 /// assert!(carried.is_empty() && changes.is_empty() && bearings.is_empty());
 /// let go_on = &mut |_| ControlFlow::Continue(());
 /// let run = simulate(&task, &mut brake, &mut NoEvents::new(), go_on).into_result()?;
@@ -92,12 +93,12 @@ pub trait Load {
     }
 
     /// What may change the law that it was settled for; nothing of a law without signs.
-    fn changes(&self) -> Vec<Change> {
+    fn law_switches(&self) -> Vec<LawSwitch> {
         Vec::new()
     }
 
-    /// Takes the law beyond one of its [changes](Self::changes).
-    fn change(&mut self, change: &Change) {
+    /// Takes the law beyond one of its [changes](Self::law_switches).
+    fn switch_law(&mut self, change: &LawSwitch) {
         let _ = change;
     }
 
@@ -124,7 +125,7 @@ pub trait Load {
         Vec::new()
     }
 
-    /// What counts as large of each of its own states besides the largest it has been: a number times the largest |ω|, and a number.
+    /// What counts as large of each of its internal states besides the largest it has been: a number times the largest |ω|, and a number.
     fn sizes(&self) -> Vec<[f64; 2]> {
         let carried = self.carried().into_iter();
         carried
@@ -132,7 +133,7 @@ pub trait Load {
             .collect()
     }
 
-    /// As [`Self::wrench`], with the rates of the states that it has of its own into `rates`.
+    /// As [`Self::wrench`], with the rates of its internal states into `rates`.
     ///
     /// # Errors
     /// As [`Self::wrench`].
@@ -141,7 +142,7 @@ pub trait Load {
         self.wrench(t, phase)
     }
 
-    /// The states that it has of its own jump to where a span without breaks begins, at time `t`: those of a controller that looks at
+    /// Its internal states jump to where a span without breaks begins, at time `t`: those of a controller that looks at
     /// the body now and then.
     ///
     /// # Errors
@@ -150,4 +151,39 @@ pub trait Load {
         let _ = (t, phase);
         Ok(())
     }
+}
+
+/// What a load exerts at a state outside a run, on a body with these equations (without the wheels that turn freely): the bearings at
+/// rest hold as far as they can.
+///
+/// # Errors
+/// As [`Load::wrench`].
+pub fn wrench_at<L: Load>(
+    load: &mut L,
+    euler: &EulerEquations,
+    t: f64,
+    phase: &Phase,
+) -> Result<Wrench, L::Error> {
+    load.settle(t, phase);
+    let mut bearings = load.bearings().to_vec();
+    let mut motors = vec![0.0; phase.internal_state.len()];
+    let mut wrench = load.act(t, phase, &mut motors)?;
+    // One after the other slips, first the one that is furthest beyond its most.
+    while let Some(resting) = Stiction::of(euler, &bearings) {
+        let mut rates = motors.clone();
+        let torque = resting.hold(&phase.omega, &wrench.torque, &mut rates);
+        let held = |bearing: &Bearing| rates[bearing.index] - motors[bearing.index];
+        let slips =
+            |bearing: &Bearing| bearing.turns == 0.0 && bearing.until_slip(held(bearing)) < 0.0;
+        let share = |bearing: &Bearing| held(bearing).abs() / bearing.most;
+        let worst = (bearings.iter_mut())
+            .filter(|bearing| slips(bearing))
+            .max_by(|a, b| share(a).total_cmp(&share(b)));
+        let Some(worst) = worst else {
+            return Ok(Wrench { torque, ..wrench });
+        };
+        *worst = worst.in_slip(held(worst));
+        wrench.torque -= worst.axis * worst.friction();
+    }
+    Ok(wrench)
 }

@@ -5,15 +5,15 @@
 //!
 //! | file | what it knows |
 //! |---|---|
-//! | `laws` | the list of the laws, each of which is a file of its own in the folder |
+//! | `laws` | the list of the laws, each of which is a file in the folder; the type of a term, made from the list |
 //! | `law` | what every law is asked |
-//! | `list`, `term` | the type of a term, made from the list, and how it is made |
-//! | `linear`, `formula`, `forcing` | what a law adds to the equations of a series |
-//! | `path`, [`kepler`], `oblate` | orbits |
-//! | `aim` | where a feedback turns the body |
-//! | [`held`], `drive`, `bearing`, `resting` | motors and friction of wheels |
+//! | `load`, `analytic`, [`Callback`] | a load, whoever computes it: sums of terms, closures |
+//! | `series_terms`, `principal_frame`, `variables` | what a law adds to the equations of a series, and in which numbers |
+//! | `orbit_model`, [`kepler`], `oblate` | orbits |
+//! | `attitude_target`, `law_switches` | where a feedback turns the body, and by which sign |
+//! | `carried`, `stiction`, [`piecewise_signal`] | wheels and slugs, dry friction, what motors are told |
 //!
-//! A law more is a file more in `laws`, which answers what a `Law` is asked, and its lines in the list, `laws.rs`.
+//! A new law is a new file in `laws`, which answers what a `Law` is asked, and its lines in the list, `laws.rs`.
 //!
 //! # Examples
 //!
@@ -21,7 +21,7 @@
 //! use std::ops::ControlFlow;
 //! use polhode::mass::{Amount, solids};
 //! use polhode::motion::loads::{
-//!     Analytic, ConstantForce, ConstantTorque, Damping, Frame, Load, Parameter, Rotor, Slug, Subject, Term, UniformGravity, Wrench,
+//!     Analytic, ConstantForce, ConstantTorque, Damping, Frame, Load, Parameter, Rotor, Slug, BodyAtPoint, Term, UniformGravity, Wrench,
 //! };
 //! use polhode::motion::simulate::{Method, NoEvents, Phase, State, Task, Tolerance, simulate};
 //! use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
@@ -41,16 +41,16 @@
 //! let state = State { attitude: UnitQuaternion::identity(), omega: Vector3::new(0.0, 0.0, 200.0) };
 //! let tolerance = Tolerance::new(1e-12, 0.0)?;
 //! let task = Task::pivoted(&disk, Phase::in_place(&state), &[0.0, 0.5], Method::Auto, tolerance);
-//! let mut load = Analytic::new(&terms, task.subject);
+//! let mut load = Analytic::new(&terms, task.body_at_point);
 //! assert!(load.depends_on_rates());
-//! assert_eq!((load.terms().len(), load.subject()), (6, &Subject::pivoted(&disk, 0.0)));
+//! assert_eq!((load.terms().len(), load.body()), (6, &BodyAtPoint::pivoted(&disk, 0.0)));
 //! let go_on = &mut |_| ControlFlow::Continue(());
 //! let run = simulate(&task, &mut load, &mut NoEvents::new(), go_on).into_result()?;
 //! assert!(run.phase.omega.z < 200.0);
 //! assert_eq!(load.active().len(), 6); // those that act in the last span of time
 //!
 //! // Each by itself: what it exerts at a state, and its numbers by name.
-//! let Wrench { force, torque } = terms[0].wrench(&task.subject, 0.0, &run.samples[0]);
+//! let Wrench { force, torque } = terms[0].wrench(&task.body_at_point, 0.0, &run.samples[0]);
 //! assert_eq!((force.z, torque), (-19.62, Vector3::zeros()));
 //! let numbers: Vec<Parameter> = terms[0].parameters();
 //! assert_eq!(numbers[0].count(), 3);
@@ -58,59 +58,48 @@
 //! # Ok::<(), polhode::Error>(())
 //! ```
 
-mod aim;
 mod analytic;
-mod axes;
-mod bearing;
+mod attitude_target;
+mod body_at_point;
 mod callback;
 mod carried;
-mod drive;
-mod forcing;
-mod formula;
-pub mod held;
 pub mod kepler;
 mod law;
+mod law_switches;
 mod laws;
-mod linear;
-mod list;
 mod load;
-mod now;
 mod oblate;
-mod parameter;
-mod path;
-mod resting;
+mod orbit_model;
+pub mod piecewise_signal;
+mod principal_frame;
 pub mod schedule;
+mod series_terms;
 mod spline;
-mod stumpff;
-mod subject;
-mod switch;
-mod term;
+mod stiction;
 pub(in crate::motion) mod variables;
 mod wrench;
 
-pub use self::aim::{Aim, Sampling};
 pub use self::analytic::Analytic;
-pub(crate) use self::axes::{Axes, Exact};
-pub use self::bearing::Bearing;
+pub use self::attitude_target::{AttitudeTarget, Sampling};
+pub use self::body_at_point::BodyAtPoint;
 pub use self::callback::Callback;
 pub use self::carried::Carried;
-pub use self::drive::Drive;
-pub(crate) use self::forcing::{Forcing, OnOrbit, When};
-pub(crate) use self::formula::{Formula, Step};
-#[cfg(test)]
-pub(crate) use self::formula::{OMEGA, Steps};
-pub use self::held::Held;
 pub use self::law::Kept;
+pub use self::law::Parameter;
+pub use self::law_switches::{LawSwitch, Switch};
 pub use self::laws::*;
-pub(crate) use self::linear::{Linear, Own, Parts};
-pub use self::load::Load;
+pub use self::load::{Load, wrench_at};
 pub use self::oblate::Oblate;
-pub use self::parameter::Parameter;
-pub use self::path::Path;
-pub(in crate::motion) use self::resting::Resting;
-pub use self::resting::wrench_at;
+pub use self::orbit_model::OrbitModel;
+pub use self::piecewise_signal::PiecewiseSignal;
+pub(crate) use self::principal_frame::{LawNumber, PrincipalFrame};
 pub use self::schedule::Windows;
-pub use self::subject::Subject;
-pub use self::switch::{Change, Switch};
+pub(crate) use self::series_terms::{Forcing, OnOrbit, When};
+pub(crate) use self::series_terms::{FormulaStep, TorqueFormula};
+pub(crate) use self::series_terms::{InternalState, SeriesStructure, SeriesTerms};
+#[cfg(test)]
+pub(crate) use self::series_terms::{OMEGA, Steps};
+pub use self::stiction::Bearing;
+pub(in crate::motion) use self::stiction::Stiction;
 pub use self::wrench::Wrench;
 pub use super::kinematics::Frame;

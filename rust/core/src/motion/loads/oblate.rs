@@ -226,7 +226,7 @@ impl Oblate {
             height[n] = position[n].dot(&self.pole);
             height_square[n] = product(&height, &height, n);
             for (series, power) in [(&mut third, -1.5), (&mut fifth, -2.5), (&mut seventh, -3.5)] {
-                series[n] = raised(&square, series, power, n);
+                series[n] = power_coefficient(&square, series, power, n);
             }
             // r̈ = −r (μ/r³ + k/r⁵ − 5k z²/r⁷) − p 2k z/r⁵.
             pull[n] = mu * third[n] + k * (fifth[n] - 5.0 * product(&height_square, &seventh, n));
@@ -272,7 +272,7 @@ fn product(a: &[f64], b: &[f64], n: usize) -> f64 {
 }
 
 /// Coefficient n of a power of a series, from those before it.
-fn raised(base: &[f64], before: &[f64], power: f64, n: usize) -> f64 {
+fn power_coefficient(base: &[f64], before: &[f64], power: f64, n: usize) -> f64 {
     if n == 0 {
         return base[0].powf(power);
     }
@@ -311,7 +311,7 @@ mod tests {
         let pole = Vector3::new(0.1, -0.2, 1.0).normalize();
         let (j2, radius) = (1.082_63e-3, 6.378_137e6);
         let oblate = Oblate::new(&orbit(), j2, radius, &pole).expect("a pole");
-        let kept = |t: f64| {
+        let invariants = |t: f64| {
             let (r, v) = oblate.at(t);
             let (distance, mu) = (r.norm(), oblate.mu());
             let s = r.dot(&pole) / distance;
@@ -321,9 +321,9 @@ mod tests {
                 r.cross(&v).dot(&pole),
             ]
         };
-        let [energy, spin] = kept(0.0);
+        let [energy, spin] = invariants(0.0);
         for t in [3e3, 1e5, 1e6, -2e5] {
-            let [now, turns] = kept(t);
+            let [now, turns] = invariants(t);
             assert!(
                 (now / energy - 1.0).abs() < 1e-12,
                 "{t} {}",

@@ -2,7 +2,6 @@
 
 use nalgebra::Vector3;
 
-use super::held::ascending;
 use crate::error::{Error, MotionFault, all_finite, finite};
 use crate::numerics::number::Real;
 use crate::numerics::threads::{Watch, each_watched};
@@ -40,7 +39,7 @@ impl Spline {
             });
         }
         let [when, span, what, through] = names;
-        ascending(when, times)?;
+        check_ascending(when, times)?;
         all_finite(what, values.iter().flatten())?;
         finite(span, times[times.len() - 1] - times[0])?;
         let pieces = pieces(times, values, watch)?;
@@ -193,6 +192,23 @@ fn slopes<X: Real>(
     Ok(slopes)
 }
 
+/// Check that times are finite and ascend.
+pub(super) fn check_ascending(what: &'static str, times: &[f64]) -> Result<(), Error> {
+    all_finite(what, times)?;
+    for (k, pair) in times.windows(2).enumerate() {
+        if pair[1] <= pair[0] {
+            return Err(Error::Motion(MotionFault::NotMonotone {
+                what,
+                order: "ascending",
+                index: k + 1,
+                previous: pair[0],
+                next: pair[1],
+            }));
+        }
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use std::ops::ControlFlow;
@@ -200,7 +216,7 @@ mod tests {
     use nalgebra::UnitQuaternion;
 
     use super::*;
-    use crate::motion::loads::{Aim, Frame, MagneticField, Path, Sampled};
+    use crate::motion::loads::{AttitudeTarget, Frame, MagneticField, OrbitModel, Sampled};
 
     /// Makes something of samples; tells what is wrong with it.
     type Make<'a> = dyn Fn(&mut Watch<'_>) -> Option<Error> + 'a;
@@ -217,8 +233,8 @@ mod tests {
             let made: [&Make<'_>; 4] = [
                 &|watch| Sampled::new_watched(&times, &values, Frame::Body, watch).err(),
                 &|watch| MagneticField::sampled_watched(&times, &values, watch).err(),
-                &|watch| Path::sampled_watched(&times, &values, watch).err(),
-                &|watch| Aim::sampled_watched(&times, &attitudes, watch).err(),
+                &|watch| OrbitModel::sampled_watched(&times, &values, watch).err(),
+                &|watch| AttitudeTarget::sampled_watched(&times, &attitudes, watch).err(),
             ];
             for (make, most) in made.iter().flat_map(|make| [(make, 1), (make, 9)]) {
                 let mut looks = 0;

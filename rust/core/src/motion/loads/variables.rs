@@ -128,6 +128,6 @@ impl Variables<Varied> for Block {
         column: usize,
     ) -> (Vector3<Varied>, Vector3<Varied>) {
         let number = |value, n| self.number(value, column + n);
-        orbit.varied(elapsed, number)
+        orbit.at_with_derivatives(elapsed, number)
     }
 }

@@ -2,23 +2,14 @@
 //!
 //! | what | file |
 //! |---|---|
-//! | what is to be simulated, and how | `task` |
-//! | the methods by name | `method` |
-//! | how accurate it is to be | `tolerance` |
+//! | what is to be simulated, by which method and how accurately | `task` |
 //! | which runs are refused | `limits` |
-//! | passages through zero | `crossing` |
-//! | what a run gives | `outcome` |
+//! | what a run looks for and what it gives | `outcome` |
 
-mod crossing;
 pub(in crate::motion) mod limits;
-mod method;
 mod outcome;
 mod task;
-mod tolerance;
 
-pub use self::crossing::{Crossing, Direction, Rule, Watched};
 pub use self::limits::{MOST_STEPS, check_scales, check_times};
-pub use self::method::Method;
-pub use self::outcome::{Effort, End, Run};
-pub use self::task::{Footing, Task};
-pub use self::tolerance::{TIGHTEST, TIGHTEST_TWOFOLD, Tolerance};
+pub use self::outcome::{Crossing, Direction, Effort, End, Rule, Run, Watched};
+pub use self::task::{Method, ReferencePoint, TIGHTEST, TIGHTEST_TWOFOLD, Task, Tolerance};

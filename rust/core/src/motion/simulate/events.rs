@@ -1,6 +1,12 @@
-//! Events: the times at which a function of time and state passes through zero.
+//! Events: the times at which a function of time and state passes through zero, and the search for them, step by step.
 
-use crate::motion::problem::Rule;
+use std::ops::ControlFlow;
+
+use super::roots_in_step::{Look, MOST_LOOKS, RootSearch, sign};
+use super::stepper::Dense;
+use crate::error::{Error, MotionFault};
+use crate::motion::loads::LawSwitch;
+use crate::motion::problem::{Crossing, Direction, Rule, Watched};
 use crate::motion::state::Phase;
 
 /// Functions whose passages through zero are events.
@@ -39,5 +45,227 @@ impl<E> Events for NoEvents<E> {
 
     fn value(&mut self, _: usize, _: f64, _: &Phase) -> Result<f64, E> {
         Ok(f64::NAN)
+    }
+}
+
+/// How far the body turns in a part of a step, in radians.
+const PART_OF_STEP: f64 = 100.0;
+/// Parts of the run in each of which every function is looked at, however still the body is.
+const PARTS_OF_RUN: f64 = 16.0;
+
+/// A part of a step that was searched for events.
+pub(super) struct PartOfStep {
+    /// Its end: time since the start of the span.
+    pub(super) end: f64,
+    /// Whether the step ends there too.
+    pub(super) is_last: bool,
+    /// The event at which the run is to end, if one is within the part: time since the start of the span, and the state then.
+    pub(super) event: Option<(f64, Phase)>,
+}
+
+/// The functions as a run goes on.
+pub(super) struct EventDetector<'a, E> {
+    events: &'a mut dyn Events<Error = E>,
+    rules: Vec<Rule>,
+    /// The sign each function had when it was last not zero, and zero after it was found at zero.
+    signs: Vec<f64>,
+    /// Its value where the last step ended.
+    values: Vec<f64>,
+    counts: Vec<u64>,
+    /// How many looks at parts that were halved are left for each.
+    left: Vec<u64>,
+    /// The length of the run, negative where it goes back in time.
+    span: f64,
+    pub(super) crossings: Vec<Crossing>,
+}
+
+impl<'a, E: From<Error>> EventDetector<'a, E> {
+    pub(super) fn new(
+        events: &'a mut dyn Events<Error = E>,
+        t: f64,
+        phase: &Phase,
+        span: f64,
+        over_limit: &dyn Fn(usize) -> f64,
+    ) -> Result<Self, E> {
+        let rules = events.rules().to_vec();
+        let values = (0..rules.len())
+            .map(|event| match rules[event].watched {
+                Watched::Function => events.value(event, t, phase),
+                Watched::Limit(state) => Ok(over_limit(state)),
+                Watched::Stop(_) | Watched::Slip(_) => Ok(f64::NAN),
+            })
+            .collect::<Result<Vec<_>, E>>()?;
+        Ok(Self {
+            events,
+            signs: values.iter().map(|value| sign(*value)).collect(),
+            values,
+            counts: vec![0; rules.len()],
+            left: vec![MOST_LOOKS; rules.len()],
+            rules,
+            span,
+            crossings: Vec::new(),
+        })
+    }
+
+    /// Search the last step for events, in parts so that the run can be stopped between them. `visit` gets each part after it was
+    /// searched; where it breaks, the rest of the step is left.
+    #[inline]
+    pub(super) fn search_step<B>(
+        &mut self,
+        step: &mut dyn Dense<Error = E>,
+        start: f64,
+        [from, to]: [f64; 2],
+        mut visit: impl FnMut(&mut dyn Dense<Error = E>, PartOfStep) -> Result<ControlFlow<B>, E>,
+    ) -> Result<ControlFlow<B>, E> {
+        let parts = self.parts(step.turn(to - from));
+        let (mut part, mut begin) = (0.0, from);
+        while part < parts {
+            part += 1.0;
+            let is_last = part == parts;
+            let end = if is_last {
+                to
+            } else {
+                from + (to - from) * (part / parts)
+            };
+            let event = self.look(step, start, begin, end)?;
+            let visited = PartOfStep {
+                end,
+                is_last,
+                event,
+            };
+            if let ControlFlow::Break(value) = visit(step, visited)? {
+                return Ok(ControlFlow::Break(value));
+            }
+            begin = end;
+        }
+        Ok(ControlFlow::Continue(()))
+    }
+
+    /// Into how many parts a step is cut in which the body turns by so many radians.
+    fn parts(&self, turn: f64) -> f64 {
+        if self.rules.is_empty() || turn.is_nan() {
+            return 1.0;
+        }
+        (turn / PART_OF_STEP).ceil().max(1.0)
+    }
+
+    /// Looks through the last step, or a part of it; where the run is to end, if it is, as time since the span's start and the
+    /// state there.
+    fn look(
+        &mut self,
+        stepper: &mut dyn Dense<Error = E>,
+        start: f64,
+        from: f64,
+        to: f64,
+    ) -> Result<Option<(f64, Phase)>, E> {
+        if self.rules.is_empty() {
+            return Ok(None);
+        }
+        // Where a function ends the run, the others are looked at no further.
+        let (mut found, mut to) = (Vec::new(), to);
+        for event in 0..self.rules.len() {
+            let (events, rule) = (&mut *self.events, self.rules[event]);
+            let watched = rule.watched;
+            if matches!(watched, Watched::Stop(_) | Watched::Slip(_)) {
+                continue; // told by the load
+            }
+            let turn = stepper.turn(to - from);
+            let mut search = RootSearch {
+                function: &mut |stepper, at, phase| match watched {
+                    Watched::Limit(state) => Ok(stepper.over_limit(state, at, phase)),
+                    _ => events.value(event, start + at, phase),
+                },
+                event: Some(event),
+                stepper: &mut *stepper,
+                start,
+                end: to,
+                longest: self.span.abs() / PARTS_OF_RUN,
+                halved: None,
+                left: &mut self.left[event],
+            };
+            let mut before = Look {
+                at: from,
+                value: self.values[event],
+            };
+            let (last_sign, mut count) = (&mut self.signs[event], self.counts[event]);
+            let forward = self.span > 0.0;
+            search.visit_looks(before, turn, &mut |search, after| {
+                let (was, is) = (*last_sign, sign(after.value));
+                let bracket = [before, after];
+                before = after;
+                if was * is > 0.0 || was == 0.0 {
+                    *last_sign = if was == 0.0 { is } else { was };
+                    return Ok(ControlFlow::Continue(()));
+                }
+                *last_sign = is;
+                if is.is_nan() || was.is_nan() {
+                    return Ok(ControlFlow::Continue(()));
+                }
+                let rising = (was < 0.0) == forward;
+                let counts = match rule.direction {
+                    Direction::Any => true,
+                    Direction::Rising => rising,
+                    Direction::Falling => !rising,
+                };
+                if counts {
+                    let place = if is == 0.0 {
+                        after.at
+                    } else {
+                        search.locate(bracket, was)?
+                    };
+                    found.push((place, event));
+                    count += 1;
+                    if count == rule.last {
+                        to = place;
+                        return Ok(ControlFlow::Break(()));
+                    }
+                }
+                Ok(ControlFlow::Continue(()))
+            })?;
+            self.values[event] = before.value;
+        }
+        found.sort_by(|(a, _), (b, _)| a.abs().total_cmp(&b.abs()));
+        for (place, event) in found {
+            let phase = if place == stepper.elapsed() {
+                stepper.phase()
+            } else {
+                stepper.within(place)?
+            };
+            let time = start + place;
+            if !phase.is_finite() {
+                return Err(Error::Motion(MotionFault::NotFiniteMotion { time }).into());
+            }
+            if self.count(event, time, &phase) {
+                return Ok(Some((place, phase)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Counts an event; whether the run is to end there.
+    fn count(&mut self, event: usize, time: f64, phase: &Phase) -> bool {
+        self.crossings.push(Crossing {
+            event,
+            time,
+            phase: phase.clone(),
+        });
+        self.counts[event] += 1;
+        self.counts[event] == self.rules[event].last
+    }
+
+    /// A change of the law of the load, at this time and state; whether the run is to end there.
+    pub(super) fn note(&mut self, change: &LawSwitch, time: f64, phase: &Phase) -> bool {
+        let watched = match change {
+            LawSwitch::Stop(bearing) => Watched::Stop(bearing.index()),
+            LawSwitch::Slip(bearing) => Watched::Slip(bearing.index()),
+            LawSwitch::Sign(_) => return false,
+        };
+        let mut is_last = false;
+        for event in 0..self.rules.len() {
+            if self.rules[event].watched == watched {
+                is_last |= self.count(event, time, phase);
+            }
+        }
+        is_last
     }
 }

@@ -4,24 +4,24 @@
 //!
 //! | what | file |
 //! |---|---|
-//! | which method serves; what all motions of a stack have in common | `choose`, `plan` |
-//! | one motion; many, on as many cores as may take part | `one`, `many` |
-//! | bodies and tops in closed form | `exact` |
-//! | methods of steps, through spans of time in which the load is smooth | `steps` |
-//! | what a run needs of such a method; the one place that makes it | `stepper`, `begin` |
-//! | the methods: Runge-Kutta, splitting, Taylor series looked through as they are summed | `solved`, `kicked`, `summed` |
-//! | what Runge-Kutta methods see of the mechanics | `equations` |
-//! | what is looked for, and the look through a step | [`events`], `lookout`, `along` |
-//! | where a load changes its law with the state | `flips` |
+//! | which method serves; what all motions of a stack have in common | `plan` |
+//! | one motion; many, on as many cores as may take part | `runs` |
+//! | the loop over the steps, through spans of time in which the load is smooth | `run_loop` |
+//! | what a run needs of a method of steps | `stepper` |
+//! | the methods: Runge-Kutta, splitting, Taylor series with events | `runge_kutta_run`, `splitting_run`, `taylor_run_with_events` |
+//! | bodies and tops in closed form | `closed_form_run` |
+//! | the search for events | [`events`] |
+//! | all zeros of a function within a step | `roots_in_step` |
+//! | where a load changes its law with the state | `law_switches` |
 //!
 //! # Examples
 //!
 //! ```
 //! use std::ops::ControlFlow;
 //! use polhode::mass::{Amount, solids};
-//! use polhode::motion::loads::{Callback, Carried, Subject, Term};
+//! use polhode::motion::loads::{Callback, Carried, BodyAtPoint, Term};
 //! use polhode::motion::simulate::{
-//!     Crossing, Direction, End, Events, Footing, MOST_STEPS, Method, Phase, Rule, Run, State, TIGHTEST, TIGHTEST_TWOFOLD, Task,
+//!     Crossing, Direction, End, Events, ReferencePoint, MOST_STEPS, Method, Phase, Rule, Run, State, TIGHTEST, TIGHTEST_TWOFOLD, Task,
 //!     Tolerance, Watched, check_scales, simulate,
 //! };
 //! use polhode::nalgebra::{UnitQuaternion, Vector3};
@@ -49,9 +49,9 @@
 //! assert!(tolerance.most_steps < MOST_STEPS && tolerance.relative > TIGHTEST);
 //! let times = [0.0, 100.0];
 //! check_scales(&rod, true, &times)?;
-//! let footing = Footing::pivoted(&rod, times[0]);
-//! assert_eq!(footing.subject, Subject::pivoted(&rod, 0.0));
-//! let task: Task = Task::on(&footing, &rod, start, &times, Method::Auto, tolerance);
+//! let reference_point = ReferencePoint::pivoted(&rod, times[0]);
+//! assert_eq!(reference_point.body_at_point, BodyAtPoint::pivoted(&rod, 0.0));
+//! let task: Task = Task::about(&reference_point, &rod, start, &times, Method::Auto, tolerance);
 //! assert!(Tolerance::new(1e-20, 0.0)?.is_beyond_doubles() && Tolerance::new(0.5 * TIGHTEST_TWOFOLD, 0.0).is_err());
 //!
 //! let weight = |_: f64, phase: &Phase| {
@@ -70,34 +70,27 @@
 //! assert_eq!(run.with_error(|error| error.to_string()).end, End::Event);
 //! let slug = Term::Slug(polhode::motion::loads::Slug::new(0.01, 0.1)?);
 //! let carried: Option<&dyn Carried> = slug.carried();
-//! assert_eq!(task.carrying(carried.into_iter())?.initial.own.len(), 3);
+//! assert_eq!(task.with_carried(carried.into_iter())?.initial.internal_state.len(), 3);
 //! # Ok::<(), polhode::Error>(())
 //! ```
 
-mod along;
-mod begin;
-mod choose;
-mod equations;
+mod closed_form_run;
 pub mod events;
-mod exact;
-mod flips;
-mod kicked;
-mod lookout;
-mod many;
-mod one;
+mod law_switches;
 mod plan;
-mod solved;
+mod roots_in_step;
+mod run_loop;
+mod runge_kutta_run;
+mod runs;
+mod splitting_run;
 mod stepper;
-mod steps;
-mod summed;
+mod taylor_run_with_events;
 
-pub use self::choose::most_demanding;
 pub use self::events::{Events, NoEvents};
-pub use self::many::{Calls, Row, Rows, simulate_many};
-pub use self::one::simulate;
-pub use self::plan::{Ask, Plan, Refusal};
+pub use self::plan::{Ask, Plan, Refusal, most_demanding};
+pub use self::runs::{Batch, CallbackPolicy, Member, simulate, simulate_many};
 pub use super::problem::{
-    Crossing, Direction, Effort, End, Footing, MOST_STEPS, Method, Rule, Run, TIGHTEST,
+    Crossing, Direction, Effort, End, MOST_STEPS, Method, ReferencePoint, Rule, Run, TIGHTEST,
     TIGHTEST_TWOFOLD, Task, Tolerance, Watched, check_scales, check_times,
 };
 pub use super::state::{Phase, State};

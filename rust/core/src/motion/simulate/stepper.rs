@@ -1,8 +1,7 @@
 //! What a run needs of a method of steps.
 
-use super::equations::Scales;
 use crate::motion::integrate::splitting::Scheme;
-use crate::motion::loads::{Bearing, Change};
+use crate::motion::loads::{Bearing, LawSwitch};
 use crate::motion::problem::Effort;
 use crate::motion::state::Phase;
 
@@ -11,7 +10,7 @@ pub(super) trait Dense {
     /// As of the load.
     type Error;
 
-    /// The end of the step: time since the start of the span; its whole length, to the bit, when it is over.
+    /// Time from the start of the span to the end of the last step; at the end exactly the length of the span.
     fn elapsed(&self) -> f64;
 
     /// The state then.
@@ -22,7 +21,12 @@ pub(super) trait Dense {
 
     /// The torque that a bearing at rest takes at a time since the start of the span and the state then; only what carries wheels
     /// has bearings.
-    fn held(&mut self, bearing: &Bearing, elapsed: f64, phase: &Phase) -> Result<f64, Self::Error> {
+    fn bearing_torque(
+        &mut self,
+        bearing: &Bearing,
+        elapsed: f64,
+        phase: &Phase,
+    ) -> Result<f64, Self::Error> {
         let _ = (bearing, elapsed, phase);
         Ok(0.0)
     }
@@ -52,7 +56,16 @@ pub(super) trait Stepper: Dense {
     fn carry(&self) -> Carry;
 
     /// What may change the law of its load within a step.
-    fn changes(&self) -> Vec<Change>;
+    fn law_switches(&self) -> Vec<LawSwitch>;
+}
+
+/// The largest |ω|, |r|, |v| and internal states of the load so far: what errors are relative to.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scales {
+    pub(super) omega: f64,
+    pub(super) position: f64,
+    pub(super) velocity: f64,
+    pub(super) internal_state: Vec<f64>,
 }
 
 /// What one span leaves to the next.

@@ -1,4 +1,3 @@
-use super::axes::Vector;
 use super::*;
 use crate::numerics::double_double::DoubleDouble;
 use proptest::prelude::*;

@@ -176,7 +176,7 @@ impl Body {
             omega: self.q_bp * self.omega(point),
             position: point.position.value,
             velocity: point.velocity.value,
-            own: Box::default(),
+            internal_state: Box::default(),
         }
     }
 

@@ -387,7 +387,7 @@ mod tests {
     use super::*;
     use crate::mass::RigidBody;
     use crate::motion::euler_equations::EulerEquations;
-    use crate::motion::loads::{Analytic, Subject, Term};
+    use crate::motion::loads::{Analytic, BodyAtPoint, Term};
     use crate::motion::state::{Phase, State};
 
     #[test]
@@ -424,7 +424,7 @@ mod tests {
                 omega: Vector3::new(0.3, 0.1, 12.0),
             });
             let gravity = [Term::uniform_gravity(&Vector3::new(0.0, 0.0, -9.81)).expect("finite")];
-            let mut load = Analytic::new(&gravity, Subject::pivoted(&body, 0.0));
+            let mut load = Analytic::new(&gravity, BodyAtPoint::pivoted(&body, 0.0));
             let times = [0.0, 200.0];
             let mut run =
                 Splitting::new(&euler, None, times, &phase, &mut load, 1e-8, None).expect("smooth");
@@ -458,7 +458,7 @@ mod tests {
             omega: Vector3::new(0.3, 0.1, 3.0),
         });
         let gravity = [Term::uniform_gravity(&Vector3::new(0.0, 0.0, -9.81)).expect("finite")];
-        let mut load = Analytic::new(&gravity, Subject::pivoted(&body, 0.0));
+        let mut load = Analytic::new(&gravity, BodyAtPoint::pivoted(&body, 0.0));
         let mut go = |times: [f64; 2], phase: &Phase| {
             let mut run =
                 Splitting::new(&euler, None, times, phase, &mut load, 1e-12, None).expect("smooth");

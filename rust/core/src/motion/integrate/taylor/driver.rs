@@ -15,7 +15,7 @@ use super::series::{Coefficient, Series, direction_in_body};
 use super::step::{Compensated, Observer, Step, longest_step};
 use super::translation::Translation;
 use crate::error::Error;
-use crate::motion::loads::{Forcing, Parts};
+use crate::motion::loads::{Forcing, SeriesStructure};
 use crate::motion::problem::{Effort, End, Run};
 use crate::motion::state::Phase;
 use crate::numerics::double_double::{fast_two_sum, two_sum};
@@ -44,12 +44,12 @@ pub(super) struct Settings {
     last_term: f64,
     /// The least ω that errors are relative to: absolute over relative tolerance.
     floor: f64,
-    pub(super) parts: Parts,
+    pub(super) parts: SeriesStructure,
 }
 
 impl Settings {
     /// Return the settings for motions with derivatives, whose series limit the step themselves.
-    pub(super) fn of_derivatives(order: usize, parts: Parts) -> Self {
+    pub(super) fn of_derivatives(order: usize, parts: SeriesStructure) -> Self {
         Self {
             order,
             last_term: 0.0,
@@ -60,7 +60,12 @@ impl Settings {
 
     /// Return the settings for equations with these `parts`, with the order at which the work is least: the work grows with the square
     /// of the order, the step with `tolerance^(1/order)`. The order is at most `highest`.
-    pub(super) fn new(relative: f64, absolute: f64, highest: usize, parts: Parts) -> Self {
+    pub(super) fn new(
+        relative: f64,
+        absolute: f64,
+        highest: usize,
+        parts: SeriesStructure,
+    ) -> Self {
         let nats = -(LAST_TERM * relative).ln();
         let mut halves = (4..highest / 2).filter(|&half| half as f64 + 1.0 <= 0.36 * nats);
         let order = 2 * halves.next_back().map_or(4, |half| half + 1);
@@ -244,7 +249,7 @@ where
                 .parts
                 .is_pushed
                 .then(|| Box::new(Translation::new())),
-            internal_states: match settings.parts.own {
+            internal_states: match settings.parts.internal_states {
                 0 => None,
                 count => Some(Box::new(InternalStates::new(count))),
             },

@@ -10,7 +10,8 @@ use crate::mass::validity::ROUNDING;
 use crate::motion::kinematics::Frame;
 use crate::motion::loads::variables::{ATTITUDE, MASS, RATES, Variables};
 use crate::motion::loads::{
-    Axes, Exact, Forcing, Formula, Linear, Own, Parts, Subject, Term, When,
+    BodyAtPoint, Forcing, InternalState, LawNumber, PrincipalFrame, SeriesStructure, SeriesTerms,
+    Term, TorqueFormula, When,
 };
 use crate::motion::problem::Task;
 use crate::motion::problem::limits::check_steps;
@@ -36,7 +37,7 @@ pub(super) struct PiecewiseEquations<'a, X: Precision> {
     /// The ends of the segments, and the index of the present one.
     breaks: Vec<f64>,
     segment: usize,
-    linear: Linear<'a, X>,
+    linear: SeriesTerms<'a, X>,
     /// The sign switches of the feedbacks that act.
     switches: Vec<Switch<X>>,
     /// The unit of rates: a power of two near the fastest rate of the motion.
@@ -98,7 +99,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
             products: principal.products.into(),
             breaks,
             segment: 0,
-            linear: Linear::default(),
+            linear: SeriesTerms::default(),
             switches: Vec::new(),
             unit: 1.0,
         };
@@ -106,7 +107,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         let mut from = start;
         for &to in &equations.breaks {
             for (_, term) in equations.acting(from, to) {
-                term.check(&task.subject, from, to)?;
+                term.check(&task.body_at_point, from, to)?;
             }
             from = to;
         }
@@ -122,11 +123,11 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
 
     /// Compute the terms of the present segment.
     fn linearize(&mut self, state: &[X; 7]) -> Result<(), Error> {
-        let mut linear = Linear::default();
+        let mut linear = SeriesTerms::default();
         let mut switches: Vec<Switch<X>> = Vec::new();
         for (first, term) in self.acting(self.segment_start(), self.breaks[self.segment]) {
             let (axes, mut side) = (self.principal_axes(first), 1.0);
-            if let Some(scalar) = term.switching(&axes) {
+            if let Some(scalar) = term.switch_function(&axes) {
                 let torque = Matrix3x4::zeros();
                 let mut switch = Switch {
                     scalar,
@@ -136,10 +137,10 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
                 };
                 switch.side = switch.sign(state);
                 side = switch.side;
-                let mut own = Linear::default();
+                let mut own = SeriesTerms::default();
                 term.add_to(&mut own, &axes, side);
                 switch.torque = own.on_attitude();
-                let states = (linear.own.len()..).zip(&own.own);
+                let states = (linear.internal_states.len()..).zip(&own.internal_states);
                 switch.own = states.map(|(i, state)| (i, state.on_attitude)).collect();
                 switches.push(switch);
             }
@@ -152,9 +153,9 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
     }
 
     /// Return the axes for the term whose first number is the variable of the column `first`.
-    fn principal_axes(&self, first: usize) -> Axes<'_, X> {
-        Axes {
-            subject: &self.task.subject,
+    fn principal_axes(&self, first: usize) -> PrincipalFrame<'_, X> {
+        PrincipalFrame {
+            body: &self.task.body_at_point,
             columns: &self.axes,
             q_bp: &self.q_bp,
             variables: self.variables,
@@ -164,7 +165,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
     }
 
     /// Check that no torque acts along an axis without moment of inertia.
-    fn check_massless(&self, linear: &Linear<'_, X>, state: &[X; 7]) -> Result<(), Error> {
+    fn check_massless(&self, linear: &SeriesTerms<'_, X>, state: &[X; 7]) -> Result<(), Error> {
         for (n, moment) in self.task.euler.moments().into_iter().enumerate() {
             if moment > 0.0 {
                 continue;
@@ -190,7 +191,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
                 let (size, matrix) = (vector.map(X::rounded).norm(), matrix.map(X::rounded));
                 parts.push((matrix.row(n).norm() * size, matrix.norm() * size));
             }
-            for own in &linear.own {
+            for own in &linear.internal_states {
                 let (torque, momentum) = (own.torque.map(X::rounded), own.momentum.map(X::rounded));
                 let mut across = momentum;
                 across[n] = 0.0;
@@ -268,12 +269,12 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
             // The torque changes its sign.
             let more = switch.torque * attitude * X::from(2.0);
             for (omega, more) in state.iter_mut().zip(&more.component_mul(&over_moment)) {
-                *omega += more.until_later(switch.scalar.dot(&attitude), rate);
+                *omega += more.saltation(switch.scalar.dot(&attitude), rate);
             }
             for (number, on_attitude) in &switch.own {
                 let more = on_attitude.dot(&attitude) * X::from(2.0) / X::from(self.unit);
                 if let Some(own) = own.get_mut(*number) {
-                    *own += more.until_later(switch.scalar.dot(&attitude), rate);
+                    *own += more.saltation(switch.scalar.dot(&attitude), rate);
                 }
             }
         }
@@ -309,13 +310,14 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
             vector.map(X::rounded).amax() * matrix.map(X::rounded).amax() * over_moment
         });
         let middle = self.middle();
-        let timed = (linear.timed.iter())
-            .map(|(_, torque)| torque.square_of_rate(&self.task.subject, middle, over_moment));
+        let timed = (linear.timed.iter()).map(|(_, torque)| {
+            torque.square_of_rate(&self.task.body_at_point, middle, over_moment)
+        });
         let gradients = (linear.gradients.iter())
-            .map(|(_, gradient)| gradient.square_of_rate(&self.task.subject));
+            .map(|(_, gradient)| gradient.square_of_rate(&self.task.body_at_point));
         let timed = timed.chain(gradients);
         let (mut momentum, mut torque, mut decay) = (Vector3::zeros(), Vector3::zeros(), 0.0_f64);
-        for (state, &value) in linear.own.iter().zip(own) {
+        for (state, &value) in linear.internal_states.iter().zip(own) {
             momentum += state.momentum.map(X::rounded) * value.rounded();
             torque += state.torque.map(X::rounded) * value.rounded();
             decay = decay.max(state.on_itself.rounded().abs());
@@ -346,7 +348,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
             .map(|(i, j, k)| self.kappa[i] + (along[j] - along[k]) * self.inverse_moments[i]);
         let off_diagonal =
             [(0, 1, 2), (1, 2, 0), (2, 0, 1)].map(|(i, j, k)| self.products[i] + across[(j, k)]);
-        let mass = (self.variables).number(self.task.subject.mass, MASS);
+        let mass = (self.variables).number(self.task.body_at_point.mass, MASS);
         let mut linear_terms = LinearTerms {
             kappa: self.kappa.into(),
             inverse_moments: self.inverse_moments.into(),
@@ -375,7 +377,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
     }
 
     /// Iterate over the formulas of the present segment, each with its matrix over the moments in the unit of rates.
-    pub(super) fn formulas(&self) -> impl Iterator<Item = (&Formula<X>, [[X; 3]; 3])> {
+    pub(super) fn formulas(&self) -> impl Iterator<Item = (&TorqueFormula<X>, [[X; 3]; 3])> {
         let inverse = Matrix3::from_diagonal(&self.inverse_moments);
         self.linear.formulas.iter().map(move |formula| {
             // Units are powers of two.
@@ -427,8 +429,8 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
     }
 
     /// Return the equations of the states of the load in the present segment.
-    pub(super) fn internal_states(&self) -> &[Own<X>] {
-        &self.linear.own
+    pub(super) fn internal_states(&self) -> &[InternalState<X>] {
+        &self.linear.internal_states
     }
 
     pub(super) fn inverse_moments(&self) -> &Vector3<X> {
@@ -477,7 +479,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
             omega: (self.axes * Vector3::new(x, y, z)).map(X::rounded) * self.unit,
             position,
             velocity,
-            own: if auxiliary.internal_states.is_empty() {
+            internal_state: if auxiliary.internal_states.is_empty() {
                 Box::default()
             } else {
                 let own = self
@@ -491,7 +493,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
     /// Compute the states of the load at the start; vectors among them in principal axes.
     pub(super) fn internal_states_at_start(&self) -> Vec<X> {
         let first = self.firsts.get(self.terms.len()).copied().unwrap_or(0);
-        let given = self.task.initial.own.iter().enumerate();
+        let given = self.task.initial.internal_state.iter().enumerate();
         let given: Vec<X> = given
             .map(|(i, &x)| self.variables.number(x, first + i))
             .collect();
@@ -509,7 +511,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         let states = self
             .internal_states_in_body(own)
             .into_iter()
-            .zip(&self.linear.own);
+            .zip(&self.linear.internal_states);
         states
             .map(|(value, state)| value + state.reported_on_omega.dot(&omega))
             .collect()
@@ -517,7 +519,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
 
     fn rotate_internal_states(&self, own: &[X], turn: impl Fn(Vector3<X>) -> Vector3<X>) -> Vec<X> {
         let mut turned = own.to_vec();
-        for (number, state) in self.linear.own.iter().enumerate() {
+        for (number, state) in self.linear.internal_states.iter().enumerate() {
             if let Some((first, component)) = state.turned {
                 let vector = turn(Vector3::from_column_slice(&own[first..first + 3]));
                 turned[number] = vector[component];
@@ -641,11 +643,11 @@ fn free_wheel_tensor<X: Precision>(
     variables: X::Variables,
     firsts: &[usize],
 ) -> Matrix3<X> {
-    let mut linear = Linear::default();
+    let mut linear = SeriesTerms::default();
     for (k, term) in terms.iter().enumerate() {
         if term.carried().is_some() {
-            let axes = Axes {
-                subject: &task.subject,
+            let axes = PrincipalFrame {
+                body: &task.body_at_point,
                 columns: &principal.axes,
                 q_bp: &principal.q_bp,
                 variables,
@@ -668,18 +670,18 @@ fn quotient_or_zero<X: Real>(number: X, moment: X) -> X {
 
 /// Return the parts of the equations of a motion of `subject` under these terms, whether they are switched on or not. The principal axes
 /// do not matter for it. `variables` are those of the derivatives; `has_path` is true if the path of the body is part of the motion.
-pub(super) fn parts<X: Exact>(
+pub(super) fn parts<X: LawNumber>(
     terms: &[Term],
-    subject: &Subject,
+    subject: &BodyAtPoint,
     variables: X::Variables,
     has_path: bool,
-) -> Parts {
+) -> SeriesStructure {
     let (zero, one) = (X::zero(), X::one());
-    let mut linear = Linear::default();
+    let mut linear = SeriesTerms::default();
     let firsts = variables.columns(&mut terms.iter().map(Term::count));
     for (k, term) in terms.iter().enumerate() {
-        let axes = Axes {
-            subject,
+        let axes = PrincipalFrame {
+            body: subject,
             columns: &Matrix3::identity(),
             q_bp: &[zero, zero, zero, one],
             variables,
@@ -688,7 +690,7 @@ pub(super) fn parts<X: Exact>(
         };
         term.add_to(&mut linear, &axes, 1.0);
     }
-    linear.parts(has_path)
+    linear.structure(has_path)
 }
 
 fn rows<X: Real>(matrix: &Matrix3<X>) -> [[X; 3]; 3] {

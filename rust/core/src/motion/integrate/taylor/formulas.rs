@@ -3,7 +3,7 @@
 use super::batch::{Batch, CacheAligned};
 use super::principal_frame::Precision;
 use super::series::{MAX_COUNT, Series};
-use crate::motion::loads::{Formula, Step};
+use crate::motion::loads::{FormulaStep, TorqueFormula};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
 use crate::numerics::number::{Number, Real};
@@ -22,7 +22,7 @@ struct Vector<T>([[T; 3]; MAX_COUNT]);
 #[derive(Clone, Debug)]
 #[repr(align(64))] // see Batch
 struct FormulaSeries<T> {
-    steps: Vec<Step>,
+    steps: Vec<FormulaStep>,
     vector: usize,
     /// The matrix over the moments; zero in a row without this formula.
     matrix: [[T; 3]; 3],
@@ -71,7 +71,7 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Batch<L, R>> {
     pub(super) fn set<'a>(
         &mut self,
         row: usize,
-        formulas: impl Iterator<Item = (&'a Formula<L::Real>, [[L::Real; 3]; 3])>,
+        formulas: impl Iterator<Item = (&'a TorqueFormula<L::Real>, [[L::Real; 3]; 3])>,
     ) {
         self.clear(row);
         let mut taken = vec![false; self.formulas.len()];
@@ -233,18 +233,18 @@ impl<N: Number<Real: Precision>, S: Series<Batch<N, R>, B>, const R: usize, cons
 }
 
 impl<L: Number<Real: Precision>, const R: usize> FormulaSeries<Batch<L, R>> {
-    fn new(formula: &Formula<L::Real>) -> Self {
+    fn new(formula: &TorqueFormula<L::Real>) -> Self {
         let zero = Batch::new(0.0);
         let (mut scalars, mut vectors, mut speed) = (Vec::new(), Vec::new(), None);
         for step in &formula.steps {
             match step {
-                Step::Square | Step::Speed(_) => {
-                    if matches!(step, Step::Speed(_)) {
+                FormulaStep::Square | FormulaStep::Speed(_) => {
+                    if matches!(step, FormulaStep::Speed(_)) {
                         speed = Some(scalars.len());
                     }
                     scalars.push(Scalar([zero; MAX_COUNT]));
                 }
-                Step::Times(..) => vectors.push(Vector([[zero; 3]; MAX_COUNT])),
+                FormulaStep::Times(..) => vectors.push(Vector([[zero; 3]; MAX_COUNT])),
             }
         }
         Self {
@@ -254,7 +254,12 @@ impl<L: Number<Real: Precision>, const R: usize> FormulaSeries<Batch<L, R>> {
             scalars,
             vectors,
             speed,
-            is_quadratic: formula.steps == [Step::Square, Step::Speed(0), Step::Times(1, 0)]
+            is_quadratic: formula.steps
+                == [
+                    FormulaStep::Square,
+                    FormulaStep::Speed(0),
+                    FormulaStep::Times(1, 0),
+                ]
                 && formula.vector == 1,
             half_over_speed: zero,
         }
@@ -301,16 +306,16 @@ impl<L: Number<Real: Precision>, const R: usize> FormulaSeries<Batch<L, R>> {
         let (mut scalars, mut vectors) = (0, 0);
         for i in 0..self.steps.len() {
             match self.steps[i] {
-                Step::Square => {
+                FormulaStep::Square => {
                     self.scalars[scalars].0[k] = square(k, series);
                     scalars += 1;
                 }
-                Step::Speed(of) => {
+                FormulaStep::Speed(of) => {
                     let square = self.scalars[of].0[k];
                     let _speeds = self.set_speed(k, scalars, square, rest_speed);
                     scalars += 1;
                 }
-                Step::Times(factor, vector) => {
+                FormulaStep::Times(factor, vector) => {
                     let factor = &self.scalars[factor].0;
                     let product = if vector == 0 {
                         times(k, factor, |j| series.get(j).w)

@@ -6,7 +6,7 @@ use super::series::MAX_COUNT;
 use super::series::Series;
 use super::step::{compensate, exp2, log2_step};
 use super::variational_series::ConvergenceRadius;
-use crate::motion::loads::Own;
+use crate::motion::loads::InternalState;
 use crate::motion::loads::variables::WIDTH;
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
@@ -95,7 +95,7 @@ impl<L: Number<Real: Precision>, const R: usize> InternalStates<Batch<L, R>> {
     pub(super) fn set_rates(
         &mut self,
         row: usize,
-        own: &[Own<L::Real>],
+        own: &[InternalState<L::Real>],
         inverse_moments: [L::Real; 3],
         unit: f64,
     ) {
@@ -122,7 +122,7 @@ impl<L: Number<Real: Precision>, const R: usize> InternalStates<Batch<L, R>> {
 
     /// Remove the states of one row.
     pub(super) fn clear(&mut self, row: usize) {
-        let none = Own::default();
+        let none = InternalState::default();
         let count = self.states.len();
         self.set(row, &vec![L::Real::default(); count]);
         self.set_rates(row, &vec![none; count], [L::Real::default(); 3], 1.0);

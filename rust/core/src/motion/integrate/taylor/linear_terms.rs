@@ -2,7 +2,7 @@
 
 use super::batch::Batch;
 use super::series::Coefficient;
-use crate::motion::loads::Parts;
+use crate::motion::loads::SeriesStructure;
 use crate::numerics::number::Number;
 
 type Square<T> = [[T; 3]; 3];
@@ -98,7 +98,7 @@ impl<L: Number, const R: usize, const B: usize> LinearTerms<Batch<L, R>, B> {
     #[inline(always)]
     pub(super) fn acceleration(
         &self,
-        parts: Parts,
+        parts: SeriesStructure,
         k: usize,
         products: [Batch<L, R>; 3],
         at: &Coefficient<Batch<L, R>, B>,

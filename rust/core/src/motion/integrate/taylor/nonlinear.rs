@@ -9,7 +9,7 @@ use super::linear_terms::LinearTerms;
 use super::orbit_cache::{CacheKey, OrbitSeriesCache, round_step_end};
 use super::principal_frame::Precision;
 use super::series::Series;
-use crate::motion::loads::{Forcing, OnOrbit, Parts};
+use crate::motion::loads::{Forcing, OnOrbit, SeriesStructure};
 use crate::numerics::number::Number;
 
 /// The nonlinear terms of a load; most loads have none.
@@ -41,7 +41,7 @@ enum OrbitSource {
 
 impl<L: Number<Real: Precision>, const R: usize> NonlinearTerms<Batch<L, R>> {
     #[inline(always)]
-    pub(super) fn new(parts: &Parts) -> Self {
+    pub(super) fn new(parts: &SeriesStructure) -> Self {
         let mut gradients = Vec::new();
         for _ in 0..parts.gradients {
             gradients.push(GravityGradientSeries::new());
@@ -275,9 +275,9 @@ impl<L: Number<Real: Precision>, const R: usize> NonlinearTerms<Batch<L, R>> {
 }
 
 /// Return whether nothing but one gravity gradient depends on the attitude: then its series may be relative to any frame.
-fn is_of_orbit_alone(parts: &Parts) -> bool {
+fn is_of_orbit_alone(parts: &SeriesStructure) -> bool {
     let sees_space = parts.directions > 0 || parts.on_attitude || parts.is_pushed;
-    parts.gradients == 1 && !sees_space && !parts.is_timed && parts.own == 0
+    parts.gradients == 1 && !sees_space && !parts.is_timed && parts.internal_states == 0
 }
 
 /// Torques that are cubic polynomials in time, in the body or in space; in space the coefficient is `Σ_j τ_j·γ_{k−j}` with the axes
@@ -381,9 +381,9 @@ mod tests {
     #[test]
     fn entries_are_read_before_one_is_replaced() {
         let (keys, new) = (neighbours(), ENTRIES);
-        let one_gradient = Parts {
+        let one_gradient = SeriesStructure {
             gradients: 1,
-            ..Parts::default()
+            ..SeriesStructure::default()
         };
         for seeker in 0..2 {
             let reader = 1 - seeker;
@@ -425,35 +425,38 @@ mod tests {
     /// With another term that depends on the attitude the series are in N; otherwise the attitude goes to the orbit's frame and back.
     #[test]
     fn series_are_seen_from_the_orbit_if_nothing_else_sees_space() {
-        let alone = Parts {
+        let alone = SeriesStructure {
             gradients: 1,
             on_omega: true,
             quadratic: true,
-            ..Parts::default()
+            ..SeriesStructure::default()
         };
         let others = [
-            Parts {
+            SeriesStructure {
                 gradients: 2,
                 ..alone
             },
-            Parts {
+            SeriesStructure {
                 directions: 1,
                 ..alone
             },
-            Parts {
+            SeriesStructure {
                 on_attitude: true,
                 ..alone
             },
-            Parts {
+            SeriesStructure {
                 is_pushed: true,
                 ..alone
             },
-            Parts {
+            SeriesStructure {
                 is_timed: true,
                 ..alone
             },
-            Parts { own: 1, ..alone },
-            Parts {
+            SeriesStructure {
+                internal_states: 1,
+                ..alone
+            },
+            SeriesStructure {
                 gradients: 0,
                 ..alone
             },

@@ -5,7 +5,7 @@ use nalgebra::Matrix3;
 use crate::mass::refined::RefinedPrincipal;
 use crate::motion::attitude::{components, from_axes};
 use crate::motion::euler_equations::EulerEquations;
-use crate::motion::loads::Exact;
+use crate::motion::loads::LawNumber;
 use crate::motion::loads::variables::{Block, Fixed, MOMENTS, PRODUCTS, Variables, Varied, WIDTH};
 use crate::motion::problem::Task;
 use crate::numerics::double_double::DoubleDouble;
@@ -28,7 +28,7 @@ pub(super) struct PrincipalInertia<X> {
 }
 
 /// The numbers of a run: doubles, double-double, or doubles with derivatives.
-pub(super) trait Precision: Exact {
+pub(super) trait Precision: LawNumber {
     /// Whether an orbit is continued from step to step by its own series, because Kepler's equation is solved in doubles only.
     const CARRIES_ORBITS: bool;
     /// Quadratic damping is left out while |ω| is below this part of its largest value. The error of ω, relative to the largest, is
@@ -80,9 +80,9 @@ impl Precision for DoubleDouble {
     const REST_SPEED_BESIDE_TORQUES: f64 = 1e-7;
 
     fn principal(task: &Task<'_>, _: Fixed) -> PrincipalInertia<Self> {
-        let refined = match &task.casing {
-            Some(casing) => **casing,
-            None => RefinedPrincipal::about(task.body, &task.subject.point),
+        let refined = match &task.body_without_wheels {
+            Some(body_without_wheels) => **body_without_wheels,
+            None => RefinedPrincipal::about(task.body, &task.body_at_point.point),
         };
         let [i1, i2, i3] = refined.moments;
         let axes = refined.axes();
@@ -124,9 +124,9 @@ impl Precision for Varied {
         let [yz, zx, xy] = [0, 1, 2].map(|n| variable(0.0, PRODUCTS + n));
         let [x, y, z] = along;
         let mut tensor = Matrix3::new(x, xy, zx, xy, y, yz, zx, yz, z);
-        if task.casing.is_some() {
+        if task.body_without_wheels.is_some() {
             // The variables are of the body with its wheels locked, in its axes.
-            let whole = EulerEquations::refined_about(task.body, &task.subject.point);
+            let whole = EulerEquations::refined_about(task.body, &task.body_at_point.point);
             let turn = (whole.axes().transpose() * plain.axes).map(Self::constant);
             tensor = turn.transpose() * tensor * turn;
         }
@@ -219,7 +219,7 @@ mod tests {
             (0.0, 0.1, 3.1),
         ] {
             let q = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
-            let q = <DoubleDouble as Exact>::quaternion(&q);
+            let q = <DoubleDouble as LawNumber>::quaternion(&q);
             let turned = |i: usize| {
                 let mut e = [DoubleDouble::default(); 4];
                 e[i] = 1.0.into();

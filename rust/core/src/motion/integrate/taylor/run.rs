@@ -17,7 +17,7 @@ use super::step::{Observer, Step};
 use super::variational_series::{ORDER, VariationalSeries};
 use crate::error::{Error, MotionFault};
 use crate::motion::loads::variables::{Block, Fixed, Varied};
-use crate::motion::loads::{Parts, Term};
+use crate::motion::loads::{SeriesStructure, Term};
 use crate::motion::problem::{End, Run, Task, check_times};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::double_double::DoubleDouble;
@@ -47,7 +47,7 @@ fn solve(
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
     observer: Option<Observer>,
 ) {
-    let subject = &task.subject;
+    let subject = &task.body_at_point;
     let parts = parts::<f64>(terms, subject, Fixed, !subject.pivoted);
     let settings = choose_settings(task, parts);
     // The run contains how it ended.
@@ -198,9 +198,9 @@ impl Tasks<'_, '_> {
     ) -> (Vec<Option<Run<Error>>>, ControlFlow<()>) {
         let (first, count, example) = (some.start, some.len(), (self.task)(some.start));
         let mut runs = vec![None; count];
-        let mut common = Parts::default();
+        let mut common = SeriesStructure::default();
         for row in some {
-            let (terms, subject) = ((self.terms)(row), &example.subject);
+            let (terms, subject) = ((self.terms)(row), &example.body_at_point);
             common = common.of_both(parts::<f64>(terms, subject, Fixed, !subject.pivoted));
         }
         let settings = choose_settings(&example, common);
@@ -277,7 +277,7 @@ pub(in crate::motion::integrate) fn solve_variational(
         sink(k, state, own);
     };
     // The path of the body is not part of the motion here.
-    let parts = parts::<Varied>(terms, &task.subject, block, false);
+    let parts = parts::<Varied>(terms, &task.body_at_point, block, false);
     let settings = Settings::of_derivatives(ORDER, parts);
     let job = Job {
         equations,
@@ -316,7 +316,7 @@ fn drive_directions<const B: usize>(
     drive::<Varied, VariationalSeries<B>, B, 1>(settings, jobs, watch, None, cache)
 }
 
-fn choose_settings(task: &Task<'_>, parts: Parts) -> Settings {
+fn choose_settings(task: &Task<'_>, parts: SeriesStructure) -> Settings {
     let tolerance = task.tolerance;
     let highest = if tolerance.is_beyond_doubles() {
         series::MAX_ORDER_DOUBLE_DOUBLE
@@ -341,9 +341,9 @@ fn prepare_job<'a, X: Precision<Variables = Fixed>>(
         return None;
     }
     let equations = (task.clone())
-        .carrying(terms.iter().filter_map(Term::carried))
+        .with_carried(terms.iter().filter_map(Term::carried))
         .and_then(|task| {
-            (run.samples[0].own).clone_from(&task.initial.own);
+            (run.samples[0].internal_state).clone_from(&task.initial.internal_state);
             PiecewiseEquations::new(&task, terms, Fixed)
         });
     match equations {

@@ -252,7 +252,7 @@ impl Step {
             omega: Vector3::new(x, y, z),
             position,
             velocity,
-            own: self.own_at(within),
+            internal_state: self.own_at(within),
         }
     }
 

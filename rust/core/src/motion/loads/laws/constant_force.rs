@@ -4,11 +4,11 @@ use nalgebra::Vector3;
 
 use crate::error::{Error, all_finite};
 use crate::motion::kinematics::Frame;
-use crate::motion::loads::axes::{Axes, Exact};
-use crate::motion::loads::law::{Character, Kept, Law};
-use crate::motion::loads::linear::Linear;
-use crate::motion::loads::parameter::Parameter;
-use crate::motion::loads::subject::Subject;
+use crate::motion::loads::body_at_point::BodyAtPoint;
+use crate::motion::loads::law::Parameter;
+use crate::motion::loads::law::{Kept, Law, Traits};
+use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
+use crate::motion::loads::series_terms::SeriesTerms;
 use crate::motion::loads::wrench::{Wrench, in_body, times};
 use crate::motion::state::Phase;
 use crate::numerics::quaternion::cross_matrix;
@@ -44,8 +44,8 @@ impl ConstantForce {
     }
 
     /// From the reference point to where it acts.
-    fn arm(&self, subject: &Subject) -> Vector3<f64> {
-        (self.point).map_or(subject.center, |point| point - subject.point)
+    fn arm(&self, body: &BodyAtPoint) -> Vector3<f64> {
+        (self.point).map_or(body.center, |point| point - body.point)
     }
 
     /// Whether it may turn a body that is pivoted or free.
@@ -67,8 +67,8 @@ crate::numerics::stored_form::form! {
 }
 
 impl Law for ConstantForce {
-    fn character(&self, pivoted: bool) -> Character {
-        Character {
+    fn traits(&self, pivoted: bool) -> Traits {
+        Traits {
             exerts_force: true,
             depends_on_rates: false,
             needs_body: true,
@@ -97,7 +97,7 @@ impl Law for ConstantForce {
         })
     }
 
-    fn anchored(self, _: f64) -> Self {
+    fn with_epoch(self, _: f64) -> Self {
         self
     }
 
@@ -105,41 +105,46 @@ impl Law for ConstantForce {
         Vec::new()
     }
 
-    fn check(&self, _: &Subject, _: f64, _: f64) -> Result<(), Error> {
+    fn check(&self, _: &BodyAtPoint, _: f64, _: f64) -> Result<(), Error> {
         Ok(())
     }
 
-    fn wrench(&self, subject: &Subject, _: f64, phase: &Phase) -> Wrench {
+    fn wrench(&self, body: &BodyAtPoint, _: f64, phase: &Phase) -> Wrench {
         let force = match self.frame {
             Frame::Body => phase.attitude * self.vector,
             Frame::Space => self.vector,
         };
         Wrench {
             force,
-            torque: (self.arm(subject)).cross(&in_body(&self.vector, self.frame, &phase.attitude)),
+            torque: (self.arm(body)).cross(&in_body(&self.vector, self.frame, &phase.attitude)),
         }
     }
 
     /// `−F·r` of a force constant in N at the point r, from the origin of N.
-    fn potential(&self, subject: &Subject, phase: &Phase) -> Option<f64> {
-        let place = || phase.position + phase.attitude * self.arm(subject);
+    fn potential(&self, body: &BodyAtPoint, phase: &Phase) -> Option<f64> {
+        let place = || phase.position + phase.attitude * self.arm(body);
         (self.frame == Frame::Space).then(|| -self.vector.dot(&place()))
     }
 
-    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
+    fn add_to<'a, X: LawNumber>(
+        &'a self,
+        series: &mut SeriesTerms<'a, X>,
+        axes: &PrincipalFrame<'_, X>,
+        _: f64,
+    ) {
         let arm = (self.point).map_or(axes.center(), |point| axes.vector(&point, 3) - axes.point());
         let vector = axes.vector(&self.vector, 0);
         match self.frame {
             Frame::Body => {
-                linear.constant += axes.principal(&arm.cross(&vector));
-                linear.add_thrust(&axes.principal(&vector));
+                series.constant += axes.principal(&arm.cross(&vector));
+                series.add_thrust(&axes.principal(&vector));
             }
             Frame::Space => {
-                if self.turns(axes.subject.pivoted) {
+                if self.turns(axes.body.pivoted) {
                     let lever = cross_matrix(&axes.principal(&arm));
-                    linear.on_space.push((vector, lever));
+                    series.on_space.push((vector, lever));
                 }
-                linear.add_force(&vector);
+                series.add_force(&vector);
             }
         }
     }

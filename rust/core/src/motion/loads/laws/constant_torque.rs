@@ -4,11 +4,11 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::error::{Error, all_finite};
 use crate::motion::kinematics::Frame;
-use crate::motion::loads::axes::{Axes, Exact};
-use crate::motion::loads::law::{Character, Kept, Law};
-use crate::motion::loads::linear::Linear;
-use crate::motion::loads::parameter::Parameter;
-use crate::motion::loads::subject::Subject;
+use crate::motion::loads::body_at_point::BodyAtPoint;
+use crate::motion::loads::law::Parameter;
+use crate::motion::loads::law::{Kept, Law, Traits};
+use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
+use crate::motion::loads::series_terms::SeriesTerms;
 use crate::motion::loads::wrench::{Wrench, in_body, times};
 use crate::motion::state::Phase;
 
@@ -42,8 +42,8 @@ crate::numerics::stored_form::form! {
 }
 
 impl Law for ConstantTorque {
-    fn character(&self, _: bool) -> Character {
-        Character {
+    fn traits(&self, _: bool) -> Traits {
+        Traits {
             exerts_force: false,
             depends_on_rates: false,
             needs_body: false,
@@ -64,7 +64,7 @@ impl Law for ConstantTorque {
         })
     }
 
-    fn anchored(self, _: f64) -> Self {
+    fn with_epoch(self, _: f64) -> Self {
         self
     }
 
@@ -72,23 +72,28 @@ impl Law for ConstantTorque {
         Vec::new()
     }
 
-    fn check(&self, _: &Subject, _: f64, _: f64) -> Result<(), Error> {
+    fn check(&self, _: &BodyAtPoint, _: f64, _: f64) -> Result<(), Error> {
         Ok(())
     }
 
-    fn wrench(&self, _: &Subject, _: f64, phase: &Phase) -> Wrench {
+    fn wrench(&self, _: &BodyAtPoint, _: f64, phase: &Phase) -> Wrench {
         Wrench::couple(in_body(&self.vector, self.frame, &phase.attitude))
     }
 
-    fn potential(&self, _: &Subject, _: &Phase) -> Option<f64> {
+    fn potential(&self, _: &BodyAtPoint, _: &Phase) -> Option<f64> {
         None
     }
 
-    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
+    fn add_to<'a, X: LawNumber>(
+        &'a self,
+        series: &mut SeriesTerms<'a, X>,
+        axes: &PrincipalFrame<'_, X>,
+        _: f64,
+    ) {
         let vector = axes.vector(&self.vector, 0);
         match self.frame {
-            Frame::Body => linear.constant += axes.principal(&vector),
-            Frame::Space => linear.on_space.push((vector, Matrix3::identity())),
+            Frame::Body => series.constant += axes.principal(&vector),
+            Frame::Space => series.on_space.push((vector, Matrix3::identity())),
         }
     }
 }

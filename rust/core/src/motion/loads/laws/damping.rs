@@ -3,12 +3,12 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::{Error, all_finite};
-use crate::motion::loads::axes::{Axes, Exact};
-use crate::motion::loads::formula::{OMEGA, Steps};
-use crate::motion::loads::law::{Character, Kept, Law};
-use crate::motion::loads::linear::Linear;
-use crate::motion::loads::parameter::Parameter;
-use crate::motion::loads::subject::Subject;
+use crate::motion::loads::body_at_point::BodyAtPoint;
+use crate::motion::loads::law::Parameter;
+use crate::motion::loads::law::{Kept, Law, Traits};
+use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
+use crate::motion::loads::series_terms::SeriesTerms;
+use crate::motion::loads::series_terms::{OMEGA, Steps};
 use crate::motion::loads::wrench::Wrench;
 use crate::motion::state::Phase;
 
@@ -47,7 +47,7 @@ impl Damping {
     /// [`Self::torque`] with ω in registers. Loaded from memory, two of its numbers at a time would have to wait for the two
     /// stores that they have just come from.
     #[inline(never)]
-    fn exerted(&self, x: f64, y: f64, z: f64) -> Wrench {
+    fn wrench_at(&self, x: f64, y: f64, z: f64) -> Wrench {
         Wrench::couple(self.torque(&Vector3::new(x, y, z)))
     }
 }
@@ -59,8 +59,8 @@ crate::numerics::stored_form::form! {
 }
 
 impl Law for Damping {
-    fn character(&self, _: bool) -> Character {
-        Character {
+    fn traits(&self, _: bool) -> Traits {
+        Traits {
             exerts_force: false,
             depends_on_rates: true,
             needs_body: false,
@@ -81,7 +81,7 @@ impl Law for Damping {
         Self::new(&(self.linear * factor), &(self.quadratic * factor))
     }
 
-    fn anchored(self, _: f64) -> Self {
+    fn with_epoch(self, _: f64) -> Self {
         self
     }
 
@@ -89,29 +89,34 @@ impl Law for Damping {
         Vec::new()
     }
 
-    fn check(&self, _: &Subject, _: f64, _: f64) -> Result<(), Error> {
+    fn check(&self, _: &BodyAtPoint, _: f64, _: f64) -> Result<(), Error> {
         Ok(())
     }
 
     // Out of line in every build: where it is inlined, ω is loaded as other laws need it.
     #[inline(never)]
-    fn wrench(&self, _: &Subject, _: f64, phase: &Phase) -> Wrench {
+    fn wrench(&self, _: &BodyAtPoint, _: f64, phase: &Phase) -> Wrench {
         let omega = &phase.omega;
-        self.exerted(omega.x, omega.y, omega.z)
+        self.wrench_at(omega.x, omega.y, omega.z)
     }
 
-    fn potential(&self, _: &Subject, _: &Phase) -> Option<f64> {
+    fn potential(&self, _: &BodyAtPoint, _: &Phase) -> Option<f64> {
         None
     }
 
-    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
-        linear.add_on_omega(&-axes.tensor(&axes.matrix(&self.linear, 0)));
+    fn add_to<'a, X: LawNumber>(
+        &'a self,
+        series: &mut SeriesTerms<'a, X>,
+        axes: &PrincipalFrame<'_, X>,
+        _: f64,
+    ) {
+        series.add_on_omega(&-axes.tensor(&axes.matrix(&self.linear, 0)));
         if self.quadratic != Matrix3::zeros() || axes.varies(9, 9) {
             let mut steps = Steps::default();
             let speed = steps.speed();
             let vector = steps.times(speed, OMEGA);
             let matrix = -axes.tensor(&axes.matrix(&self.quadratic, 9));
-            linear.formulas.push(steps.torque(matrix, vector));
+            series.formulas.push(steps.torque(matrix, vector));
         }
     }
 }

@@ -5,14 +5,14 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Matrix3x4, UnitQuaternion, Vector3, Vector4};
 
 use crate::error::{Error, all_finite};
-use crate::motion::loads::aim::Aim;
-use crate::motion::loads::axes::{Axes, Exact};
-use crate::motion::loads::law::{Character, Kept, Law};
-use crate::motion::loads::linear::Linear;
-use crate::motion::loads::now::Now;
-use crate::motion::loads::parameter::Parameter;
-use crate::motion::loads::subject::Subject;
-use crate::motion::loads::switch::{Switch, off};
+use crate::motion::loads::attitude_target::AttitudeTarget;
+use crate::motion::loads::body_at_point::BodyAtPoint;
+use crate::motion::loads::carried::Now;
+use crate::motion::loads::law::Parameter;
+use crate::motion::loads::law::{Kept, Law, Traits};
+use crate::motion::loads::law_switches::{Switch, attitude_error};
+use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
+use crate::motion::loads::series_terms::SeriesTerms;
 use crate::motion::loads::variables::Variables;
 use crate::motion::loads::wrench::Wrench;
 use crate::motion::state::Phase;
@@ -30,7 +30,7 @@ pub struct Feedback {
     /// D: torque over angular velocity.
     pub damping: Matrix3<f64>,
     /// `q_target`.
-    pub aim: Arc<Aim>,
+    pub target: Arc<AttitudeTarget>,
 }
 
 impl Feedback {
@@ -43,7 +43,7 @@ impl Feedback {
         damping: &Matrix3<f64>,
         target: &UnitQuaternion<f64>,
     ) -> Result<Self, Error> {
-        Self::toward(stiffness, damping, Aim::Fixed(*target))
+        Self::toward(stiffness, damping, AttitudeTarget::Fixed(*target))
     }
 
     /// Checked gains, toward any target.
@@ -53,14 +53,14 @@ impl Feedback {
     pub fn toward(
         stiffness: &Matrix3<f64>,
         damping: &Matrix3<f64>,
-        aim: Aim,
+        target: AttitudeTarget,
     ) -> Result<Self, Error> {
         all_finite("K", stiffness)?;
         all_finite("D", damping)?;
         Ok(Self {
             stiffness: *stiffness,
             damping: *damping,
-            aim: Arc::new(aim),
+            target: Arc::new(target),
         })
     }
 
@@ -73,7 +73,7 @@ impl Feedback {
     /// The torque that it asks for, with the sign of w that it is taken for.
     #[inline]
     pub(super) fn torque_on(&self, now: &Now<'_>) -> Vector3<f64> {
-        let (error, omega) = off(&self.aim, now.subject.start, now.t, now.phase);
+        let (error, omega) = attitude_error(&self.target, now.body.start, now.t, now.phase);
         self.torque(now.side, &error, &omega)
     }
 
@@ -86,15 +86,15 @@ impl Feedback {
         if self.stiffness != Matrix3::from_diagonal_element(k) || self.damping != Matrix3::zeros() {
             return None;
         }
-        let error = self.aim.fixed()?.conjugate() * attitude;
+        let error = self.target.fixed()?.conjugate() * attitude;
         // 1 − |w| = |vec|²/(1 + |w|), which loses nothing near the target.
         Some(2.0 * k * error.imag().norm_squared() / (1.0 + error.w.abs()))
     }
 
     /// `q_target⁻¹ ∘ q_NP ∘ q_PB` is linear in (x, y, z, w) of `q_NP`: its column for each of them.
-    fn error_columns<X: Exact>(&self, axes: &Axes<'_, X>) -> [[X; 4]; 4] {
+    fn error_columns<X: LawNumber>(&self, axes: &PrincipalFrame<'_, X>) -> [[X; 4]; 4] {
         // One that moves has no series: the law toward the attitude that it has at the start.
-        let (target, _) = self.aim.at(axes.subject.start, axes.subject.start);
+        let (target, _) = self.target.at(axes.body.start, axes.body.start);
         let left = (axes.variables).turned(X::quaternion(&target), axes.first + 18);
         let [o, l] = [X::zero(), X::one()];
         let units = [[l, o, o, o], [o, l, o, o], [o, o, l, o], [o, o, o, l]];
@@ -103,14 +103,14 @@ impl Feedback {
 }
 
 impl Law for Feedback {
-    fn character(&self, _: bool) -> Character {
-        Character {
+    fn traits(&self, _: bool) -> Traits {
+        Traits {
             exerts_force: false,
             depends_on_rates: self.damping.iter().any(|&x| x != 0.0),
             needs_body: false,
-            needs_epoch: self.aim.needs_epoch(),
+            needs_epoch: self.target.needs_epoch(),
             keeps: Kept::Nothing,
-            has_series: self.aim.fixed().is_some(),
+            has_series: self.target.fixed().is_some(),
         }
     }
 
@@ -127,62 +127,67 @@ impl Law for Feedback {
         Self::toward(
             &(self.stiffness * factor),
             &(self.damping * factor),
-            (*self.aim).clone(),
+            (*self.target).clone(),
         )
     }
 
-    fn anchored(self, t: f64) -> Self {
-        if !self.aim.needs_epoch() {
+    fn with_epoch(self, t: f64) -> Self {
+        if !self.target.needs_epoch() {
             return self;
         }
         Self {
-            aim: Arc::new((*self.aim).clone().anchored(t)),
+            target: Arc::new((*self.target).clone().with_epoch(t)),
             ..self
         }
     }
 
     fn breaks(&self) -> Vec<f64> {
-        self.aim.breaks().to_vec()
+        self.target.breaks().to_vec()
     }
 
-    fn check(&self, subject: &Subject, from: f64, to: f64) -> Result<(), Error> {
-        self.aim.check(subject.start, from, to)
+    fn check(&self, body: &BodyAtPoint, from: f64, to: f64) -> Result<(), Error> {
+        self.target.check(body.start, from, to)
     }
 
     #[inline]
-    fn wrench(&self, subject: &Subject, t: f64, phase: &Phase) -> Wrench {
-        let (error, omega) = off(&self.aim, subject.start, t, phase);
+    fn wrench(&self, body: &BodyAtPoint, t: f64, phase: &Phase) -> Wrench {
+        let (error, omega) = attitude_error(&self.target, body.start, t, phase);
         let side = if error.w < 0.0 { -1.0 } else { 1.0 };
         Wrench::couple(self.torque(side, &error, &omega))
     }
 
-    fn potential(&self, _: &Subject, phase: &Phase) -> Option<f64> {
+    fn potential(&self, _: &BodyAtPoint, phase: &Phase) -> Option<f64> {
         self.energy(&phase.attitude)
     }
 
-    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, side: f64) {
-        linear.add_on_omega(&-axes.tensor(&axes.matrix(&self.damping, 9)));
+    fn add_to<'a, X: LawNumber>(
+        &'a self,
+        series: &mut SeriesTerms<'a, X>,
+        axes: &PrincipalFrame<'_, X>,
+        side: f64,
+    ) {
+        series.add_on_omega(&-axes.tensor(&axes.matrix(&self.damping, 9)));
         let stiffness = (axes.columns).tr_mul(&axes.matrix(&self.stiffness, 0));
         let columns = self.error_columns(axes);
         let vector = Matrix3x4::from_columns(&columns.map(|[x, y, z, _]| Vector3::new(x, y, z)));
-        linear.add_on_attitude(&-(stiffness * vector * X::from(side)));
+        series.add_on_attitude(&-(stiffness * vector * X::from(side)));
     }
 
     fn may_switch(&self) -> bool {
         true
     }
 
-    fn switch(&self, subject: &Subject, t: f64, phase: &Phase) -> Option<Switch> {
-        Some(Switch::toward(&self.aim, subject.start, t, phase))
+    fn switch(&self, body: &BodyAtPoint, t: f64, phase: &Phase) -> Option<Switch> {
+        Some(Switch::toward(&self.target, body.start, t, phase))
     }
 
     #[inline]
-    fn settled_wrench(&self, side: f64, subject: &Subject, t: f64, phase: &Phase) -> Wrench {
-        let (error, omega) = off(&self.aim, subject.start, t, phase);
+    fn settled_wrench(&self, side: f64, body: &BodyAtPoint, t: f64, phase: &Phase) -> Wrench {
+        let (error, omega) = attitude_error(&self.target, body.start, t, phase);
         Wrench::couple(self.torque(side, &error, &omega))
     }
 
-    fn switching<X: Exact>(&self, axes: &Axes<'_, X>) -> Option<Vector4<X>> {
+    fn switch_function<X: LawNumber>(&self, axes: &PrincipalFrame<'_, X>) -> Option<Vector4<X>> {
         let columns = self.error_columns(axes);
         Some(Vector4::from(columns.map(|[_, _, _, w]| w)))
     }
@@ -218,14 +223,14 @@ mod tests {
         let (spring, still) = (Matrix3::identity(), Matrix3::zeros());
         let feedback = Feedback::new(&spring, &still, &UnitQuaternion::identity()).expect("finite");
         let body = crate::mass::RigidBody::new(1.0, &spring, &Vector3::zeros(), 0.0);
-        let subject = Subject::free(&body.expect("a ball"), 0.0);
+        let body = BodyAtPoint::free(&body.expect("a ball"), 0.0);
         let omega = Vector3::zeros();
         let phase = Phase::in_place(&State { attitude, omega });
-        let side = Switch::toward(&feedback.aim, 0.0, 0.0, &phase).side;
+        let side = Switch::toward(&feedback.target, 0.0, 0.0, &phase).side;
         assert_eq!((attitude.w, side), (0.0, 1.0));
         let torques = [
-            feedback.wrench(&subject, 0.0, &phase).torque,
-            feedback.settled_wrench(side, &subject, 0.0, &phase).torque,
+            feedback.wrench(&body, 0.0, &phase).torque,
+            feedback.settled_wrench(side, &body, 0.0, &phase).torque,
         ];
         assert_eq!(torques, [Vector3::new(-1.0, 0.0, 0.0); 2]);
     }

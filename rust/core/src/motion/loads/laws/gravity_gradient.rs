@@ -4,14 +4,14 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::slug::positive;
 use crate::error::{Error, MotionFault};
-use crate::motion::loads::axes::{Axes, Exact};
-use crate::motion::loads::forcing::{OnOrbit, Orbiting, When};
+use crate::motion::loads::body_at_point::BodyAtPoint;
 use crate::motion::loads::kepler::Orbit;
-use crate::motion::loads::law::{Character, Kept, Law};
-use crate::motion::loads::linear::Linear;
-use crate::motion::loads::parameter::Parameter;
-use crate::motion::loads::path::Path;
-use crate::motion::loads::subject::Subject;
+use crate::motion::loads::law::Parameter;
+use crate::motion::loads::law::{Kept, Law, Traits};
+use crate::motion::loads::orbit_model::OrbitModel;
+use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
+use crate::motion::loads::series_terms::SeriesTerms;
+use crate::motion::loads::series_terms::{OnOrbit, Orbiting, When};
 use crate::motion::loads::variables::Variables;
 use crate::motion::loads::wrench::Wrench;
 use crate::motion::state::Phase;
@@ -32,7 +32,7 @@ use crate::motion::state::Phase;
 ///
 /// ```
 /// use polhode::mass::{Amount, solids};
-/// use polhode::motion::loads::{GravityGradient, Subject};
+/// use polhode::motion::loads::{GravityGradient, BodyAtPoint};
 /// use polhode::nalgebra::{UnitQuaternion, Vector3};
 ///
 /// // A rod of 6 m and 10 kg on a circle about the earth, at 45° from the vertical in the plane of the orbit.
@@ -40,21 +40,21 @@ use crate::motion::state::Phase;
 /// let (mu, r) = (3.986_004_418e14_f64, 7e6_f64);
 /// let speed = (mu / r).sqrt();
 /// let law = GravityGradient::new(mu, &(Vector3::x() * r), &(Vector3::y() * speed), None)?;
-/// let subject = Subject::free(&rod, 0.0);
+/// let body = BodyAtPoint::free(&rod, 0.0);
 /// let tilted = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_4);
-/// let torque = law.torque(&subject, 0.0, &tilted);
+/// let torque = law.torque(&body, 0.0, &tilted);
 /// assert!((torque.z / (-1.5 * mu / r.powi(3) * 30.0) - 1.0).abs() < 1e-12); // 3/2 n² ΔI sin 2α
 /// assert_eq!((law.mu(), law.coefficient()), (mu, 3.0 * mu));
 /// // A quarter of a revolution later.
 /// let quarter = std::f64::consts::FRAC_PI_2 * r / speed;
-/// assert!((law.orbit_at(&subject, quarter).0 - Vector3::y() * r).norm() < 1e-6);
+/// assert!((law.orbit_at(&body, quarter).0 - Vector3::y() * r).norm() < 1e-6);
 /// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct GravityGradient {
     mu: f64,
-    path: Path,
-    /// How many times the torque acts.
+    orbit: OrbitModel,
+    /// The factor of the load.
     strength: f64,
 }
 
@@ -69,24 +69,24 @@ impl GravityGradient {
         velocity: &Vector3<f64>,
         epoch: Option<f64>,
     ) -> Result<Self, Error> {
-        let path = Path::kepler(&Orbit::new(mu, position, velocity)?, epoch)?;
-        Self::along(mu, path)
+        let orbit = OrbitModel::kepler(&Orbit::new(mu, position, velocity)?, epoch)?;
+        Self::along(mu, orbit)
     }
 
-    /// With C along a path.
+    /// With C on an orbit of any kind.
     ///
     /// # Errors
     /// For μ that is not positive.
-    pub fn along(mu: f64, path: Path) -> Result<Self, Error> {
+    pub fn along(mu: f64, orbit: OrbitModel) -> Result<Self, Error> {
         positive("mu", mu)?;
         Ok(Self {
             mu,
-            path,
+            orbit,
             strength: 1.0,
         })
     }
 
-    /// `3μ` times how often the torque acts: `N = coefficient/r⁵ r×(I_C r)`.
+    /// `3μ` times the factor of the load: `N = coefficient/r⁵ r×(I_C r)`.
     #[must_use]
     pub fn coefficient(&self) -> f64 {
         3.0 * self.mu * self.strength
@@ -100,30 +100,30 @@ impl GravityGradient {
 
     /// Position and velocity of C from the attractor at time `t`, in N.
     #[must_use]
-    pub fn orbit_at(&self, subject: &Subject, t: f64) -> (Vector3<f64>, Vector3<f64>) {
-        self.path.at(subject.start, t)
+    pub fn orbit_at(&self, body: &BodyAtPoint, t: f64) -> (Vector3<f64>, Vector3<f64>) {
+        self.orbit.at(body.start, t)
     }
 
     /// The torque in B.
     #[must_use]
     pub fn torque(
         &self,
-        subject: &Subject,
+        body: &BodyAtPoint,
         t: f64,
         attitude: &UnitQuaternion<f64>,
     ) -> Vector3<f64> {
-        let (r, _) = self.orbit_at(subject, t);
+        let (r, _) = self.orbit_at(body, t);
         let distance = r.norm();
         let strength = self.coefficient() / distance / distance / distance;
         let n = attitude.inverse_transform_vector(&(r / distance));
-        let along = n.cross(&(subject.inertia * n));
-        let Some(oblate) = self.path.as_oblate() else {
+        let along = n.cross(&(body.inertia * n));
+        let Some(oblate) = self.orbit.as_oblate() else {
             return along * strength;
         };
         let p = attitude.inverse_transform_vector(oblate.pole());
         let (s, part) = (n.dot(&p), oblate.bulge() / distance / distance / 6.0);
-        let mixed = n.cross(&(subject.inertia * p)) + p.cross(&(subject.inertia * n));
-        let polar = p.cross(&(subject.inertia * p));
+        let mixed = n.cross(&(body.inertia * p)) + p.cross(&(body.inertia * n));
+        let polar = p.cross(&(body.inertia * p));
         (along * (1.0 + part * (15.0 - 105.0 * s * s)) + mixed * (30.0 * part * s)
             - polar * (6.0 * part))
             * strength
@@ -131,14 +131,14 @@ impl GravityGradient {
 }
 
 impl Law for GravityGradient {
-    fn character(&self, _: bool) -> Character {
-        Character {
+    fn traits(&self, _: bool) -> Traits {
+        Traits {
             exerts_force: false,
             depends_on_rates: false,
             needs_body: true,
-            needs_epoch: self.path.needs_epoch(),
+            needs_epoch: self.orbit.needs_epoch(),
             keeps: Kept::Nothing,
-            has_series: self.path.as_kepler().is_some(),
+            has_series: self.orbit.as_kepler().is_some(),
         }
     }
 
@@ -159,44 +159,49 @@ impl Law for GravityGradient {
     }
 
     /// The epoch is `t` where it has none.
-    fn anchored(self, t: f64) -> Self {
+    fn with_epoch(self, t: f64) -> Self {
         Self {
-            path: self.path.anchored(t),
+            orbit: self.orbit.with_epoch(t),
             ..self
         }
     }
 
     fn breaks(&self) -> Vec<f64> {
-        self.path.breaks().to_vec()
+        self.orbit.breaks().to_vec()
     }
 
-    fn check(&self, subject: &Subject, from: f64, to: f64) -> Result<(), Error> {
-        if subject.pivoted {
+    fn check(&self, body: &BodyAtPoint, from: f64, to: f64) -> Result<(), Error> {
+        if body.pivoted {
             return Err(Error::Motion(MotionFault::PivotedInOrbit));
         }
-        self.path.check(subject.start, from, to)
+        self.orbit.check(body.start, from, to)
     }
 
-    fn wrench(&self, subject: &Subject, t: f64, phase: &Phase) -> Wrench {
-        Wrench::couple(self.torque(subject, t, &phase.attitude))
+    fn wrench(&self, body: &BodyAtPoint, t: f64, phase: &Phase) -> Wrench {
+        Wrench::couple(self.torque(body, t, &phase.attitude))
     }
 
-    fn potential(&self, _: &Subject, _: &Phase) -> Option<f64> {
+    fn potential(&self, _: &BodyAtPoint, _: &Phase) -> Option<f64> {
         None
     }
 
-    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
-        linear.gradients.push((axes.first, self));
+    fn add_to<'a, X: LawNumber>(
+        &'a self,
+        series: &mut SeriesTerms<'a, X>,
+        axes: &PrincipalFrame<'_, X>,
+        _: f64,
+    ) {
+        series.gradients.push((axes.first, self));
     }
 }
 
-impl<X: Exact> Orbiting<X> for GravityGradient {
-    fn on_orbit(&self, axes: &Axes<'_, X>, when: &When<X>) -> OnOrbit<X> {
+impl<X: LawNumber> Orbiting<X> for GravityGradient {
+    fn on_orbit(&self, axes: &PrincipalFrame<'_, X>, when: &When<X>) -> OnOrbit<X> {
         // Others have no series.
-        let Some((orbit, epoch)) = self.path.as_kepler() else {
+        let Some((orbit, epoch)) = self.orbit.as_kepler() else {
             return OnOrbit::none();
         };
-        let elapsed = when.time - epoch.unwrap_or(axes.subject.start);
+        let elapsed = when.time - epoch.unwrap_or(axes.body.start);
         let (r, v) = (axes.variables).on_orbit(orbit, elapsed, axes.first);
         let (distance, unit) = (r.dot(&r).root(), X::from(when.unit));
         let cube = distance * distance * distance * unit * unit;
@@ -210,8 +215,8 @@ impl<X: Exact> Orbiting<X> for GravityGradient {
         }
     }
 
-    fn square_of_rate(&self, subject: &Subject) -> f64 {
-        let (r, v) = self.orbit_at(subject, subject.start);
+    fn square_of_rate(&self, body: &BodyAtPoint) -> f64 {
+        let (r, v) = self.orbit_at(body, body.start);
         let distance = r.norm();
         let pull = self.coefficient().abs().max(self.mu()) / distance.powi(3);
         pull.max((v.norm() / distance).powi(2))

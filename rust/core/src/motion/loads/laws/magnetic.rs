@@ -6,13 +6,13 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use crate::error::{Error, MotionFault, all_finite, finite};
-use crate::motion::loads::axes::{Axes, Exact};
-use crate::motion::loads::law::{Character, Kept, Law};
-use crate::motion::loads::linear::Linear;
-use crate::motion::loads::parameter::Parameter;
-use crate::motion::loads::path::Path;
+use crate::motion::loads::body_at_point::BodyAtPoint;
+use crate::motion::loads::law::Parameter;
+use crate::motion::loads::law::{Kept, Law, Traits};
+use crate::motion::loads::orbit_model::OrbitModel;
+use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
+use crate::motion::loads::series_terms::SeriesTerms;
 use crate::motion::loads::spline::Spline;
-use crate::motion::loads::subject::Subject;
 use crate::motion::loads::wrench::{Wrench, times};
 use crate::motion::state::Phase;
 use crate::numerics::quaternion::cross_matrix;
@@ -20,17 +20,17 @@ use crate::numerics::threads::Watch;
 
 /// A magnetic field, components in N.
 #[derive(Clone, Debug, PartialEq)]
-pub struct MagneticField(Source);
+pub struct MagneticField(FieldModel);
 
 #[derive(Clone, Debug, PartialEq)]
-enum Source {
+enum FieldModel {
     /// The same everywhere and always.
     Uniform(Vector3<f64>),
     /// Known at some times, a cubic spline in between.
     Sampled(Arc<Spline>),
     /// That of a dipole at the attractor of an orbit.
     Dipole {
-        path: Path,
+        orbit: OrbitModel,
         /// μ₀/4π times the dipole's moment.
         strength: Vector3<f64>,
     },
@@ -43,7 +43,7 @@ impl MagneticField {
     /// When a component is not finite.
     pub fn uniform(field: &Vector3<f64>) -> Result<Self, Error> {
         all_finite("field", field)?;
-        Ok(Self(Source::Uniform(*field)))
+        Ok(Self(FieldModel::Uniform(*field)))
     }
 
     /// The spline through `fields` at the ascending `times`.
@@ -76,17 +76,17 @@ impl MagneticField {
             "the spline through field",
         ];
         let spline = Spline::through(names, times, fields, watch)?;
-        Ok(Self(Source::Sampled(Arc::new(spline))))
+        Ok(Self(FieldModel::Sampled(Arc::new(spline))))
     }
 
     /// `B = 3 (M·r) r/r⁵ − M/r³` on an orbit, with M the `strength`: μ₀/4π times the moment of a dipole at the attractor.
     ///
     /// # Errors
     /// When a number is not finite.
-    pub fn of_dipole(strength: &Vector3<f64>, path: Path) -> Result<Self, Error> {
+    pub fn of_dipole(strength: &Vector3<f64>, orbit: OrbitModel) -> Result<Self, Error> {
         all_finite("strength", strength)?;
-        Ok(Self(Source::Dipole {
-            path,
+        Ok(Self(FieldModel::Dipole {
+            orbit,
             strength: *strength,
         }))
     }
@@ -95,10 +95,10 @@ impl MagneticField {
     #[must_use]
     pub fn at(&self, start: f64, t: f64) -> [Vector3<f64>; 2] {
         match &self.0 {
-            Source::Uniform(field) => [*field, Vector3::zeros()],
-            Source::Sampled(spline) => spline.at(t),
-            Source::Dipole { path, strength } => {
-                let (r, v) = path.at(start, t);
+            FieldModel::Uniform(field) => [*field, Vector3::zeros()],
+            FieldModel::Sampled(spline) => spline.at(t),
+            FieldModel::Dipole { orbit, strength } => {
+                let (r, v) = orbit.at(start, t);
                 field_and_rate(strength, &r, &v)
             }
         }
@@ -147,7 +147,7 @@ pub fn field_and_rate(
 /// ```
 /// use std::ops::ControlFlow;
 /// use polhode::mass::{Amount, solids};
-/// use polhode::motion::loads::{Magnetic, MagneticField, Path, Subject, Term, kepler::Orbit};
+/// use polhode::motion::loads::{Magnetic, MagneticField, OrbitModel, BodyAtPoint, Term, kepler::Orbit};
 /// use polhode::motion::simulate::{Phase, State};
 /// use polhode::nalgebra::{UnitQuaternion, Vector3};
 ///
@@ -156,11 +156,11 @@ pub fn field_and_rate(
 /// let needle: Term = Magnetic::new(&Vector3::new(0.1, 0.0, 0.0), None, field)?.into();
 /// let body = solids::cuboid(&[0.05, 0.002, 0.001], Amount::Mass(0.001))?;
 /// let rest = Phase::in_place(&State { attitude: UnitQuaternion::identity(), omega: Vector3::zeros() });
-/// let torque = needle.wrench(&Subject::free(&body, 0.0), 0.0, &rest).torque;
+/// let torque = needle.wrench(&BodyAtPoint::free(&body, 0.0), 0.0, &rest).torque;
 /// assert!((torque.z - 5e-6).abs() < 1e-20);
 ///
 /// // The field along an orbit about a dipole, twice as strong above its pole as above its equator, or through samples.
-/// let orbit = Path::kepler(&Orbit::new(1.0, &Vector3::x(), &Vector3::z())?, None)?;
+/// let orbit = OrbitModel::kepler(&Orbit::new(1.0, &Vector3::x(), &Vector3::z())?, None)?;
 /// let dipole = MagneticField::of_dipole(&Vector3::z(), orbit)?;
 /// let [above_equator, _] = dipole.at(0.0, 0.0);
 /// let [above_pole, _] = dipole.at(0.0, std::f64::consts::FRAC_PI_2);
@@ -202,25 +202,25 @@ impl Magnetic {
     /// The field, where it is uniform and the moment is fixed in the body.
     fn constant(&self) -> Option<&Vector3<f64>> {
         match &self.field.0 {
-            Source::Uniform(field) if self.gain.is_none() => Some(field),
+            FieldModel::Uniform(field) if self.gain.is_none() => Some(field),
             _ => None,
         }
     }
 }
 
 impl Law for Magnetic {
-    fn character(&self, _: bool) -> Character {
-        Character {
+    fn traits(&self, _: bool) -> Traits {
+        Traits {
             exerts_force: false,
             depends_on_rates: self.gain.is_some(),
             needs_body: false,
             needs_epoch: match &self.field.0 {
-                Source::Dipole { path, .. } => path.needs_epoch(),
-                Source::Uniform(_) | Source::Sampled(_) => false,
+                FieldModel::Dipole { orbit, .. } => orbit.needs_epoch(),
+                FieldModel::Uniform(_) | FieldModel::Sampled(_) => false,
             },
             keeps: match &self.field.0 {
-                Source::Uniform(field) => Kept::along(field),
-                Source::Sampled(_) | Source::Dipole { .. } => Kept::Nothing,
+                FieldModel::Uniform(field) => Kept::along(field),
+                FieldModel::Sampled(_) | FieldModel::Dipole { .. } => Kept::Nothing,
             },
             has_series: self.constant().is_some(),
         }
@@ -242,10 +242,10 @@ impl Law for Magnetic {
         )
     }
 
-    fn anchored(self, t: f64) -> Self {
+    fn with_epoch(self, t: f64) -> Self {
         let field = match self.field.0 {
-            Source::Dipole { path, strength } => Source::Dipole {
-                path: path.anchored(t),
+            FieldModel::Dipole { orbit, strength } => FieldModel::Dipole {
+                orbit: orbit.with_epoch(t),
                 strength,
             },
             other => other,
@@ -258,29 +258,29 @@ impl Law for Magnetic {
 
     fn breaks(&self) -> Vec<f64> {
         match &self.field.0 {
-            Source::Sampled(spline) => spline.knots().to_vec(),
-            Source::Dipole { path, .. } => path.breaks().to_vec(),
-            Source::Uniform(_) => Vec::new(),
+            FieldModel::Sampled(spline) => spline.knots().to_vec(),
+            FieldModel::Dipole { orbit, .. } => orbit.breaks().to_vec(),
+            FieldModel::Uniform(_) => Vec::new(),
         }
     }
 
-    fn check(&self, subject: &Subject, from: f64, to: f64) -> Result<(), Error> {
+    fn check(&self, body: &BodyAtPoint, from: f64, to: f64) -> Result<(), Error> {
         match &self.field.0 {
-            Source::Sampled(spline) => spline.check_at(from).and_then(|()| spline.check_at(to)),
-            Source::Dipole { .. } if subject.pivoted => {
+            FieldModel::Sampled(spline) => spline.check_at(from).and_then(|()| spline.check_at(to)),
+            FieldModel::Dipole { .. } if body.pivoted => {
                 Err(Error::Motion(MotionFault::PivotedInOrbit))
             }
-            Source::Dipole { path, .. } => path.check(subject.start, from, to),
-            Source::Uniform(_) => Ok(()),
+            FieldModel::Dipole { orbit, .. } => orbit.check(body.start, from, to),
+            FieldModel::Uniform(_) => Ok(()),
         }
     }
 
-    fn wrench(&self, subject: &Subject, t: f64, phase: &Phase) -> Wrench {
+    fn wrench(&self, body: &BodyAtPoint, t: f64, phase: &Phase) -> Wrench {
         let in_body = |vector| phase.attitude.inverse_transform_vector(vector);
         if let Some(field) = self.constant() {
             return Wrench::couple(self.dipole.cross(&in_body(field)));
         }
-        let [field, rate] = self.field.at(subject.start, t);
+        let [field, rate] = self.field.at(body.start, t);
         let (field, rate) = (in_body(&field), in_body(&rate));
         let seen = rate - phase.omega.cross(&field);
         let moment = self
@@ -290,15 +290,20 @@ impl Law for Magnetic {
     }
 
     /// `−d·B` in a uniform field.
-    fn potential(&self, _: &Subject, phase: &Phase) -> Option<f64> {
+    fn potential(&self, _: &BodyAtPoint, phase: &Phase) -> Option<f64> {
         let in_body = |field| phase.attitude.inverse_transform_vector(field);
         (self.constant()).map(|field| -self.dipole.dot(&in_body(field)))
     }
 
-    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
+    fn add_to<'a, X: LawNumber>(
+        &'a self,
+        series: &mut SeriesTerms<'a, X>,
+        axes: &PrincipalFrame<'_, X>,
+        _: f64,
+    ) {
         if let Some(field) = self.constant() {
             let lever = cross_matrix(&axes.principal(&axes.vector(&self.dipole, 0)));
-            linear.on_space.push((axes.vector(field, 3), lever));
+            series.on_space.push((axes.vector(field, 3), lever));
         }
     }
 }
@@ -315,9 +320,9 @@ mod tests {
         let times: Vec<f64> = (0..9).map(f64::from).collect();
         let samples: Vec<_> = times.iter().map(|&t| orbit.at(t).0).collect();
         let strength = Vector3::new(0.2, -0.3, 0.9);
-        let path = |epoch| Path::kepler(&orbit, epoch).expect("finite");
+        let orbit = |epoch| OrbitModel::kepler(&orbit, epoch).expect("finite");
         for field in [
-            MagneticField::of_dipole(&strength, path(Some(0.5))).expect("finite"),
+            MagneticField::of_dipole(&strength, orbit(Some(0.5))).expect("finite"),
             MagneticField::sampled(&times, &samples).expect("ascending"),
         ] {
             for t in [0.3, 2.2, 6.9] {
@@ -328,7 +333,7 @@ mod tests {
             }
         }
         // On the axis of the dipole 2M/r³, across it −M/r³.
-        let field = MagneticField::of_dipole(&position, path(None)).expect("finite");
+        let field = MagneticField::of_dipole(&position, orbit(None)).expect("finite");
         let [along, _] = field.at(3.0, 3.0);
         assert!((along - position * (2.0 / position.norm().powi(3))).norm() < 1e-15);
     }

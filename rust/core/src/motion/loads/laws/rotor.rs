@@ -3,13 +3,13 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::{Error, all_finite};
-use crate::motion::loads::axes::{Axes, Exact};
+use crate::motion::loads::body_at_point::BodyAtPoint;
 use crate::motion::loads::carried::Carried;
-use crate::motion::loads::law::{Character, Kept, Law};
-use crate::motion::loads::linear::Linear;
-use crate::motion::loads::now::Now;
-use crate::motion::loads::parameter::Parameter;
-use crate::motion::loads::subject::Subject;
+use crate::motion::loads::carried::Now;
+use crate::motion::loads::law::Parameter;
+use crate::motion::loads::law::{Kept, Law, Traits};
+use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
+use crate::motion::loads::series_terms::SeriesTerms;
 use crate::motion::loads::wrench::{Wrench, times};
 use crate::motion::state::Phase;
 
@@ -43,8 +43,8 @@ crate::numerics::stored_form::form! {
 }
 
 impl Law for Rotor {
-    fn character(&self, _: bool) -> Character {
-        Character {
+    fn traits(&self, _: bool) -> Traits {
+        Traits {
             exerts_force: false,
             depends_on_rates: true,
             needs_body: false,
@@ -62,7 +62,7 @@ impl Law for Rotor {
         times(&self.momentum, factor).map(|momentum| Self { momentum })
     }
 
-    fn anchored(self, _: f64) -> Self {
+    fn with_epoch(self, _: f64) -> Self {
         self
     }
 
@@ -70,25 +70,30 @@ impl Law for Rotor {
         Vec::new()
     }
 
-    fn check(&self, _: &Subject, _: f64, _: f64) -> Result<(), Error> {
+    fn check(&self, _: &BodyAtPoint, _: f64, _: f64) -> Result<(), Error> {
         Ok(())
     }
 
     #[inline]
-    fn wrench(&self, _: &Subject, _: f64, phase: &Phase) -> Wrench {
+    fn wrench(&self, _: &BodyAtPoint, _: f64, phase: &Phase) -> Wrench {
         Wrench::couple(self.momentum.cross(&phase.omega))
     }
 
     /// It does no work.
-    fn potential(&self, _: &Subject, _: &Phase) -> Option<f64> {
+    fn potential(&self, _: &BodyAtPoint, _: &Phase) -> Option<f64> {
         Some(0.0)
     }
 
-    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
+    fn add_to<'a, X: LawNumber>(
+        &'a self,
+        series: &mut SeriesTerms<'a, X>,
+        axes: &PrincipalFrame<'_, X>,
+        _: f64,
+    ) {
         let [x, y, z] = axes.principal(&axes.vector(&self.momentum, 0)).into();
         let o = X::zero();
         // h × ω.
-        linear.add_on_omega(&Matrix3::new(o, -z, y, z, o, -x, -y, x, o));
+        series.add_on_omega(&Matrix3::new(o, -z, y, z, o, -x, -y, x, o));
     }
 
     fn carried(&self) -> Option<&dyn Carried> {

@@ -7,13 +7,13 @@ use nalgebra::Vector3;
 
 use crate::error::Error;
 use crate::motion::kinematics::Frame;
-use crate::motion::loads::axes::{Axes, Exact, exact};
-use crate::motion::loads::forcing::{Timed, When};
-use crate::motion::loads::law::{Character, Kept, Law};
-use crate::motion::loads::linear::Linear;
-use crate::motion::loads::parameter::Parameter;
+use crate::motion::loads::body_at_point::BodyAtPoint;
+use crate::motion::loads::law::Parameter;
+use crate::motion::loads::law::{Kept, Law, Traits};
+use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame, exact};
+use crate::motion::loads::series_terms::SeriesTerms;
+use crate::motion::loads::series_terms::{Timed, When};
 use crate::motion::loads::spline::{Spline, pieces};
-use crate::motion::loads::subject::Subject;
 use crate::motion::loads::variables::Variables;
 use crate::motion::loads::wrench::{Wrench, in_body};
 use crate::motion::state::Phase;
@@ -133,7 +133,11 @@ impl Sampled {
 impl Sampled {
     /// As [`Self::piece`], with the derivatives by the samples: those of the spline through them, which is linear in them. Samples
     /// farther than [`NEAR`] do not count.
-    fn varied_piece<X: Exact>(&self, axes: &Axes<'_, X>, t: f64) -> (f64, [Vector3<X>; 4]) {
+    fn varied_piece<X: LawNumber>(
+        &self,
+        axes: &PrincipalFrame<'_, X>,
+        t: f64,
+    ) -> (f64, [Vector3<X>; 4]) {
         let (from, piece) = self.piece(t);
         let (knots, mut piece) = (self.knots(), piece.each_ref().map(exact::<X>));
         let index = self.spline.index(t);
@@ -153,8 +157,8 @@ impl Sampled {
 }
 
 impl Law for Sampled {
-    fn character(&self, _: bool) -> Character {
-        Character {
+    fn traits(&self, _: bool) -> Traits {
+        Traits {
             exerts_force: false,
             depends_on_rates: false,
             needs_body: false,
@@ -175,7 +179,7 @@ impl Law for Sampled {
         })
     }
 
-    fn anchored(self, _: f64) -> Self {
+    fn with_epoch(self, _: f64) -> Self {
         self
     }
 
@@ -183,30 +187,35 @@ impl Law for Sampled {
         self.knots().to_vec()
     }
 
-    fn check(&self, _: &Subject, from: f64, to: f64) -> Result<(), Error> {
+    fn check(&self, _: &BodyAtPoint, from: f64, to: f64) -> Result<(), Error> {
         self.check_at(from).and_then(|()| self.check_at(to))
     }
 
     #[inline]
-    fn wrench(&self, _: &Subject, t: f64, phase: &Phase) -> Wrench {
+    fn wrench(&self, _: &BodyAtPoint, t: f64, phase: &Phase) -> Wrench {
         Wrench::couple(in_body(&self.at(t), self.frame, &phase.attitude))
     }
 
-    fn potential(&self, _: &Subject, _: &Phase) -> Option<f64> {
+    fn potential(&self, _: &BodyAtPoint, _: &Phase) -> Option<f64> {
         None
     }
 
-    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
-        linear.timed.push((axes.first, self));
+    fn add_to<'a, X: LawNumber>(
+        &'a self,
+        series: &mut SeriesTerms<'a, X>,
+        axes: &PrincipalFrame<'_, X>,
+        _: f64,
+    ) {
+        series.timed.push((axes.first, self));
     }
 }
 
-impl<X: Exact> Timed<X> for Sampled {
+impl<X: LawNumber> Timed<X> for Sampled {
     fn frame(&self) -> Frame {
         self.frame
     }
 
-    fn cubic(&self, axes: &Axes<'_, X>, when: &When<X>) -> [Vector3<X>; 4] {
+    fn cubic(&self, axes: &PrincipalFrame<'_, X>, when: &When<X>) -> [Vector3<X>; 4] {
         let (from, [c0, c1, c2, c3]) = self.varied_piece(axes, when.middle);
         let x = when.elapsed + X::pair(when.start, -from);
         let (two, three) = (X::from(2.0), X::from(3.0));
@@ -225,7 +234,7 @@ impl<X: Exact> Timed<X> for Sampled {
 
     /// From the largest that the torque may be between two samples. The rate of a torque that hardly moves the body is still not
     /// so low that powers of the time between samples over it overflow in a series.
-    fn square_of_rate(&self, _: &Subject, middle: f64, over_moment: f64) -> f64 {
+    fn square_of_rate(&self, _: &BodyAtPoint, middle: f64, over_moment: f64) -> f64 {
         let (index, (_, piece)) = (self.spline.index(middle), self.piece(middle));
         let length = self.knots()[index + 1] - self.knots()[index];
         let largest = (piece.iter().rev()).fold(0.0, |sum, c| sum * length + c.amax());
@@ -300,7 +309,7 @@ mod tests {
             Sampled::new(&knots, &values, Frame::Body).expect("ascending")
         };
         let (columns, q_bp) = (Matrix3::identity(), [0.0, 0.0, 0.0, 1.0].map(Varied::from));
-        let subject = Subject {
+        let body = BodyAtPoint {
             mass: 1.0,
             inertia: Matrix3::identity(),
             point: Vector3::zeros(),
@@ -309,8 +318,8 @@ mod tests {
             start: 0.0,
         };
         for sample in [0, 1, 57, 200, 398, 399] {
-            let axes = Axes {
-                subject: &subject,
+            let axes = PrincipalFrame {
+                body: &body,
                 columns: &columns,
                 q_bp: &q_bp,
                 variables: Block { first: 3 * sample },

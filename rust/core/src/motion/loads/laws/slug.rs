@@ -3,13 +3,13 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::{Error, MotionFault, finite};
-use crate::motion::loads::axes::{Axes, Exact};
+use crate::motion::loads::body_at_point::BodyAtPoint;
 use crate::motion::loads::carried::Carried;
-use crate::motion::loads::law::{Character, Kept, Law};
-use crate::motion::loads::linear::{Linear, Own};
-use crate::motion::loads::now::Now;
-use crate::motion::loads::parameter::Parameter;
-use crate::motion::loads::subject::Subject;
+use crate::motion::loads::carried::Now;
+use crate::motion::loads::law::Parameter;
+use crate::motion::loads::law::{Kept, Law, Traits};
+use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
+use crate::motion::loads::series_terms::{InternalState, SeriesTerms};
 use crate::motion::loads::wrench::Wrench;
 use crate::motion::state::Phase;
 
@@ -44,8 +44,8 @@ impl Slug {
 
     /// k (σ − ω).
     #[inline]
-    fn drag(&self, omega: &Vector3<f64>, own: &[f64]) -> Vector3<f64> {
-        (Vector3::from_column_slice(own) - omega) * self.damping
+    fn drag(&self, omega: &Vector3<f64>, state: &[f64]) -> Vector3<f64> {
+        (Vector3::from_column_slice(state) - omega) * self.damping
     }
 }
 
@@ -56,8 +56,8 @@ crate::numerics::stored_form::form! {
 }
 
 impl Law for Slug {
-    fn character(&self, _: bool) -> Character {
-        Character {
+    fn traits(&self, _: bool) -> Traits {
+        Traits {
             exerts_force: false,
             depends_on_rates: true,
             needs_body: false,
@@ -78,7 +78,7 @@ impl Law for Slug {
         Err(MotionFault::StatesStay { what: "scaled" }.into())
     }
 
-    fn anchored(self, _: f64) -> Self {
+    fn with_epoch(self, _: f64) -> Self {
         self
     }
 
@@ -86,34 +86,39 @@ impl Law for Slug {
         Vec::new()
     }
 
-    fn check(&self, _: &Subject, _: f64, _: f64) -> Result<(), Error> {
+    fn check(&self, _: &BodyAtPoint, _: f64, _: f64) -> Result<(), Error> {
         Ok(())
     }
 
     /// At a start: σ = ω.
-    fn wrench(&self, _: &Subject, _: f64, _: &Phase) -> Wrench {
+    fn wrench(&self, _: &BodyAtPoint, _: f64, _: &Phase) -> Wrench {
         Wrench::default()
     }
 
     /// It takes energy, but without damping.
-    fn potential(&self, _: &Subject, _: &Phase) -> Option<f64> {
+    fn potential(&self, _: &BodyAtPoint, _: &Phase) -> Option<f64> {
         (self.damping == 0.0).then_some(0.0)
     }
 
-    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
+    fn add_to<'a, X: LawNumber>(
+        &'a self,
+        series: &mut SeriesTerms<'a, X>,
+        axes: &PrincipalFrame<'_, X>,
+        _: f64,
+    ) {
         let (inertia, damping) = (axes.number(self.inertia, 0), axes.number(self.damping, 1));
         let rate = damping / inertia;
-        linear.add_on_omega(&Matrix3::from_diagonal_element(-damping));
-        let first = linear.own.len();
+        series.add_on_omega(&Matrix3::from_diagonal_element(-damping));
+        let first = series.internal_states.len();
         for component in 0..3 {
             let unit = Vector3::from_fn(|i, _| if i == component { X::one() } else { X::zero() });
-            linear.own.push(Own {
+            series.internal_states.push(InternalState {
                 torque: unit * damping,
                 on_itself: -rate,
                 on_omega: unit * rate,
                 turned: Some((first, component)),
                 size: 1.0,
-                ..Own::default()
+                ..InternalState::default()
             });
         }
     }
@@ -143,8 +148,8 @@ impl Carried for Slug {
             .collect()
     }
 
-    fn reported(&self, own: &[f64], _: &Vector3<f64>) -> Vec<f64> {
-        own.to_vec()
+    fn reported(&self, state: &[f64], _: &Vector3<f64>) -> Vec<f64> {
+        state.to_vec()
     }
 
     fn resumed(&self, reported: &[f64], _: f64, _: &Vector3<f64>) -> Vec<f64> {
@@ -155,22 +160,22 @@ impl Carried for Slug {
         None
     }
 
-    fn torque(&self, now: &Now<'_>, own: &[f64]) -> Vector3<f64> {
-        self.drag(&now.phase.omega, own)
+    fn torque(&self, now: &Now<'_>, state: &[f64]) -> Vector3<f64> {
+        self.drag(&now.phase.omega, state)
     }
 
-    fn rates(&self, now: &Now<'_>, own: &[f64], rates: &mut [f64]) {
-        let (sigma, omega) = (Vector3::from_column_slice(own), &now.phase.omega);
-        let rate = -self.drag(omega, own) / self.inertia - omega.cross(&sigma);
+    fn rates(&self, now: &Now<'_>, state: &[f64], rates: &mut [f64]) {
+        let (sigma, omega) = (Vector3::from_column_slice(state), &now.phase.omega);
+        let rate = -self.drag(omega, state) / self.inertia - omega.cross(&sigma);
         rates.copy_from_slice(rate.as_slice());
     }
 
-    fn momentum(&self, own: &[f64], _: &Vector3<f64>) -> Vector3<f64> {
-        Vector3::from_column_slice(own) * self.inertia
+    fn momentum(&self, state: &[f64], _: &Vector3<f64>) -> Vector3<f64> {
+        Vector3::from_column_slice(state) * self.inertia
     }
 
-    fn energy(&self, own: &[f64], _: &Vector3<f64>) -> f64 {
-        0.5 * self.inertia * Vector3::from_column_slice(own).norm_squared()
+    fn energy(&self, state: &[f64], _: &Vector3<f64>) -> f64 {
+        0.5 * self.inertia * Vector3::from_column_slice(state).norm_squared()
     }
 }
 

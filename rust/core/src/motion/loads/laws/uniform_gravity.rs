@@ -3,11 +3,11 @@
 use nalgebra::Vector3;
 
 use crate::error::{Error, all_finite};
-use crate::motion::loads::axes::{Axes, Exact};
-use crate::motion::loads::law::{Character, Kept, Law};
-use crate::motion::loads::linear::Linear;
-use crate::motion::loads::parameter::Parameter;
-use crate::motion::loads::subject::Subject;
+use crate::motion::loads::body_at_point::BodyAtPoint;
+use crate::motion::loads::law::Parameter;
+use crate::motion::loads::law::{Kept, Law, Traits};
+use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
+use crate::motion::loads::series_terms::SeriesTerms;
 use crate::motion::loads::wrench::{Wrench, times};
 use crate::motion::state::Phase;
 use crate::numerics::quaternion::cross_matrix;
@@ -37,8 +37,8 @@ crate::numerics::stored_form::form! {
 }
 
 impl Law for UniformGravity {
-    fn character(&self, pivoted: bool) -> Character {
-        Character {
+    fn traits(&self, pivoted: bool) -> Traits {
+        Traits {
             exerts_force: true,
             depends_on_rates: false,
             needs_body: true,
@@ -62,7 +62,7 @@ impl Law for UniformGravity {
         })
     }
 
-    fn anchored(self, _: f64) -> Self {
+    fn with_epoch(self, _: f64) -> Self {
         self
     }
 
@@ -70,32 +70,37 @@ impl Law for UniformGravity {
         Vec::new()
     }
 
-    fn check(&self, _: &Subject, _: f64, _: f64) -> Result<(), Error> {
+    fn check(&self, _: &BodyAtPoint, _: f64, _: f64) -> Result<(), Error> {
         Ok(())
     }
 
-    fn wrench(&self, subject: &Subject, _: f64, phase: &Phase) -> Wrench {
-        let weight = self.gravity * subject.mass;
+    fn wrench(&self, body: &BodyAtPoint, _: f64, phase: &Phase) -> Wrench {
+        let weight = self.gravity * body.mass;
         let in_body = phase.attitude.inverse_transform_vector(&weight);
         Wrench {
             force: weight,
-            torque: subject.center.cross(&in_body),
+            torque: body.center.cross(&in_body),
         }
     }
 
     /// `−m g·r_C`, from the origin of N.
-    fn potential(&self, subject: &Subject, phase: &Phase) -> Option<f64> {
-        let place = phase.position + phase.attitude * subject.center;
-        Some(-subject.mass * self.gravity.dot(&place))
+    fn potential(&self, body: &BodyAtPoint, phase: &Phase) -> Option<f64> {
+        let place = phase.position + phase.attitude * body.center;
+        Some(-body.mass * self.gravity.dot(&place))
     }
 
-    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
+    fn add_to<'a, X: LawNumber>(
+        &'a self,
+        series: &mut SeriesTerms<'a, X>,
+        axes: &PrincipalFrame<'_, X>,
+        _: f64,
+    ) {
         let (gravity, mass) = (axes.vector(&self.gravity, 0), axes.mass());
-        if axes.subject.pivoted {
+        if axes.body.pivoted {
             let lever = axes.center() * mass;
             let lever = cross_matrix(&axes.principal(&lever));
-            linear.on_space.push((gravity, lever));
+            series.on_space.push((gravity, lever));
         }
-        linear.add_force(&(gravity * mass));
+        series.add_force(&(gravity * mass));
     }
 }

@@ -5,15 +5,13 @@ use nalgebra::{Vector3, Vector4};
 use super::feedback::Feedback;
 use super::slug::{not_negative, positive};
 use crate::error::{Error, MotionFault, finite};
-use crate::motion::loads::axes::{Axes, Exact, exact};
-use crate::motion::loads::carried::Carried;
-use crate::motion::loads::drive::Drive;
-use crate::motion::loads::law::{Character, Kept, Law};
-use crate::motion::loads::linear::{Linear, Own};
-use crate::motion::loads::now::Now;
-use crate::motion::loads::parameter::Parameter;
-use crate::motion::loads::subject::Subject;
-use crate::motion::loads::switch::Switch;
+use crate::motion::loads::body_at_point::BodyAtPoint;
+use crate::motion::loads::carried::{Carried, Now};
+use crate::motion::loads::law::{Kept, Law, Parameter, Traits};
+use crate::motion::loads::law_switches::Switch;
+use crate::motion::loads::piecewise_signal::PiecewiseSignal;
+use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame, exact};
+use crate::motion::loads::series_terms::{InternalState, SeriesTerms};
 use crate::motion::loads::wrench::Wrench;
 use crate::motion::state::Phase;
 
@@ -114,32 +112,32 @@ impl Wheel {
     }
 
     /// Ω from the state.
-    fn speed(&self, own: &[f64], omega: &Vector3<f64>) -> f64 {
+    fn speed(&self, state: &[f64], omega: &Vector3<f64>) -> f64 {
         if self.has_speed() {
-            own[0] / self.inertia
+            state[0] / self.inertia
         } else {
-            own[0] / self.inertia - self.unit.dot(omega)
+            state[0] / self.inertia - self.unit.dot(omega)
         }
     }
 
     /// The rate of the state: ḣ, or JΩ̇ where the speed is given.
-    fn rate_of_state(&self, now: &Now<'_>, own: &[f64]) -> f64 {
+    fn rate_of_state(&self, now: &Now<'_>, state: &[f64]) -> f64 {
         let motor = match &self.drive {
             Drive::Speed(speed) => return self.inertia * speed.line(now.middle)[1],
             Drive::Torque(torque) => torque.value(now.middle),
-            Drive::Feedback(law) => self.asked(law, now),
-            Drive::Limited(law, limit) => self.asked(law, now).clamp(-limit, *limit),
+            Drive::Feedback(law) => self.demanded_torque(law, now),
+            Drive::Limited(law, limit) => self.demanded_torque(law, now).clamp(-limit, *limit),
         };
-        motor - self.friction * self.speed(own, &now.phase.omega)
+        motor - self.friction * self.speed(state, &now.phase.omega)
     }
 
     /// What a feedback asks of the motor.
-    fn asked(&self, law: &Feedback, now: &Now<'_>) -> f64 {
+    fn demanded_torque(&self, law: &Feedback, now: &Now<'_>) -> f64 {
         -(self.unit).dot(&law.torque_on(now))
     }
 
     /// a of unit length, in principal axes.
-    fn direction<X: Exact>(&self, axes: &Axes<'_, X>) -> Vector3<X> {
+    fn direction<X: LawNumber>(&self, axes: &PrincipalFrame<'_, X>) -> Vector3<X> {
         let scale = self.axis.amax().log2().floor().exp2();
         let mut scaled = exact::<X>(&(self.axis / scale));
         if axes.varies(AXIS, 3) {
@@ -152,16 +150,16 @@ impl Wheel {
 }
 
 impl Law for Wheel {
-    fn character(&self, _: bool) -> Character {
-        Character {
+    fn traits(&self, _: bool) -> Traits {
+        Traits {
             exerts_force: false,
             depends_on_rates: true,
             needs_body: !self.has_speed(),
-            needs_epoch: self.feedback().is_some_and(|law| law.aim.needs_epoch()),
+            needs_epoch: self.feedback().is_some_and(|law| law.target.needs_epoch()),
             keeps: Kept::All,
             has_series: !matches!(self.drive, Drive::Limited(..))
                 && self.bearing().is_none()
-                && (self.feedback()).is_none_or(|law| law.aim.fixed().is_some()),
+                && (self.feedback()).is_none_or(|law| law.target.fixed().is_some()),
         }
     }
 
@@ -186,9 +184,9 @@ impl Law for Wheel {
         Err(MotionFault::StatesStay { what: "scaled" }.into())
     }
 
-    fn anchored(mut self, t: f64) -> Self {
+    fn with_epoch(mut self, t: f64) -> Self {
         if let Drive::Feedback(law) | Drive::Limited(law, _) = &mut self.drive {
-            *law = law.clone().anchored(t);
+            *law = law.clone().with_epoch(t);
         }
         self
     }
@@ -197,7 +195,7 @@ impl Law for Wheel {
         self.drive.breaks()
     }
 
-    fn check(&self, subject: &Subject, from: f64, to: f64) -> Result<(), Error> {
+    fn check(&self, body: &BodyAtPoint, from: f64, to: f64) -> Result<(), Error> {
         if to < from && self.bearing().is_some() {
             return Err(Error::OutOfDomain {
                 what: "t",
@@ -205,20 +203,20 @@ impl Law for Wheel {
                 value: to,
             });
         }
-        self.drive.check(subject, from, to)
+        self.drive.check(body, from, to)
     }
 
     /// At a start; of a wheel at rest without what its bearing holds, which follows from all loads on the body.
-    fn wrench(&self, subject: &Subject, t: f64, phase: &Phase) -> Wrench {
-        let own = self.begin(t, &phase.omega);
+    fn wrench(&self, body: &BodyAtPoint, t: f64, phase: &Phase) -> Wrench {
+        let state = self.begin(t, &phase.omega);
         let now = Now {
-            subject,
+            body,
             t,
             middle: t,
             phase,
-            side: (self.switch(subject, t, phase)).map_or(1.0, |switch| switch.side),
+            side: (self.switch(body, t, phase)).map_or(1.0, |switch| switch.side),
         };
-        let mut torque = self.torque(&now, &own);
+        let mut torque = self.torque(&now, &state);
         if self.bearing().is_some() && self.rate != 0.0 {
             torque += self.unit * (self.dry_friction * self.rate.signum());
         }
@@ -226,7 +224,7 @@ impl Law for Wheel {
     }
 
     /// A wheel without motor and friction takes no energy.
-    fn potential(&self, _: &Subject, _: &Phase) -> Option<f64> {
+    fn potential(&self, _: &BodyAtPoint, _: &Phase) -> Option<f64> {
         let is_free = match &self.drive {
             Drive::Torque(torque) => torque.times().is_empty() && torque.value(0.0) == 0.0,
             Drive::Feedback(_) | Drive::Limited(..) | Drive::Speed(_) => false,
@@ -234,7 +232,12 @@ impl Law for Wheel {
         (is_free && self.friction == 0.0 && self.dry_friction == 0.0).then_some(0.0)
     }
 
-    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, side: f64) {
+    fn add_to<'a, X: LawNumber>(
+        &'a self,
+        series: &mut SeriesTerms<'a, X>,
+        axes: &PrincipalFrame<'_, X>,
+        side: f64,
+    ) {
         let a = self.direction(axes);
         let inertia = axes.number(self.inertia, INERTIA);
         let friction = if self.has_speed() {
@@ -242,48 +245,48 @@ impl Law for Wheel {
         } else {
             axes.number(self.friction, FRICTION)
         };
-        let mut own = Own {
+        let mut state = InternalState {
             momentum: a,
             size: self.inertia,
-            ..Own::default()
+            ..InternalState::default()
         };
         match &self.drive {
             Drive::Speed(speed) => {
-                own.constant = inertia * speed.slope(axes.middle, axes, SPEED);
-                own.reported_on_omega = a * inertia;
+                state.constant = inertia * speed.slope(axes.middle, axes, SPEED);
+                state.reported_on_omega = a * inertia;
             }
-            Drive::Torque(torque) => own.constant = torque.number(axes.middle, axes, DRIVE),
+            Drive::Torque(torque) => state.constant = torque.number(axes.middle, axes, DRIVE),
             // With a limit it has no series, nor with dry friction: the law without them.
             Drive::Feedback(law) | Drive::Limited(law, _) => {
-                let mut asked = Linear::default();
+                let mut asked = SeriesTerms::default();
                 law.add_to(&mut asked, &axes.part(DRIVE), side);
-                own.on_omega = -asked.on_omega().tr_mul(&a);
-                own.on_attitude = -asked.on_attitude().tr_mul(&a);
-                linear.add_on_attitude(&-(a * own.on_attitude.transpose()));
+                state.on_omega = -asked.on_omega().tr_mul(&a);
+                state.on_attitude = -asked.on_attitude().tr_mul(&a);
+                series.add_on_attitude(&-(a * state.on_attitude.transpose()));
             }
         }
         if !self.has_speed() {
-            linear.turning += a * a.transpose() * inertia;
-            own.on_itself = -(friction / inertia);
-            own.on_omega += a * friction;
+            series.turning += a * a.transpose() * inertia;
+            state.on_itself = -(friction / inertia);
+            state.on_omega += a * friction;
         }
         // −a ḣ.
-        linear.constant -= a * own.constant;
-        linear.add_on_omega(&-(a * own.on_omega.transpose()));
-        own.torque = -(a * own.on_itself);
-        linear.own.push(own);
+        series.constant -= a * state.constant;
+        series.add_on_omega(&-(a * state.on_omega.transpose()));
+        state.torque = -(a * state.on_itself);
+        series.internal_states.push(state);
     }
 
     fn may_switch(&self) -> bool {
         self.feedback().is_some()
     }
 
-    fn switch(&self, subject: &Subject, t: f64, phase: &Phase) -> Option<Switch> {
-        self.feedback()?.switch(subject, t, phase)
+    fn switch(&self, body: &BodyAtPoint, t: f64, phase: &Phase) -> Option<Switch> {
+        self.feedback()?.switch(body, t, phase)
     }
 
-    fn switching<X: Exact>(&self, axes: &Axes<'_, X>) -> Option<Vector4<X>> {
-        self.feedback()?.switching(&axes.part(DRIVE))
+    fn switch_function<X: LawNumber>(&self, axes: &PrincipalFrame<'_, X>) -> Option<Vector4<X>> {
+        self.feedback()?.switch_function(&axes.part(DRIVE))
     }
 
     fn carried(&self) -> Option<&dyn Carried> {
@@ -331,11 +334,11 @@ impl Carried for Wheel {
         self.has_speed()
     }
 
-    fn reported(&self, own: &[f64], omega: &Vector3<f64>) -> Vec<f64> {
+    fn reported(&self, state: &[f64], omega: &Vector3<f64>) -> Vec<f64> {
         vec![if self.has_speed() {
-            own[0] + self.inertia * self.unit.dot(omega)
+            state[0] + self.inertia * self.unit.dot(omega)
         } else {
-            own[0]
+            state[0]
         }]
     }
 
@@ -368,27 +371,96 @@ impl Carried for Wheel {
             return -1.0;
         };
         // Smooth where nothing is asked for.
-        let share = self.asked(law, now) / limit;
+        let share = self.demanded_torque(law, now) / limit;
         (share - 1.0) * (share + 1.0)
     }
 
-    fn torque(&self, now: &Now<'_>, own: &[f64]) -> Vector3<f64> {
-        let rate = self.rate_of_state(now, own);
-        self.unit.cross(&now.phase.omega) * own[0] - self.unit * rate
+    fn torque(&self, now: &Now<'_>, state: &[f64]) -> Vector3<f64> {
+        let rate = self.rate_of_state(now, state);
+        self.unit.cross(&now.phase.omega) * state[0] - self.unit * rate
     }
 
-    fn rates(&self, now: &Now<'_>, own: &[f64], rates: &mut [f64]) {
-        rates[0] = self.rate_of_state(now, own);
+    fn rates(&self, now: &Now<'_>, state: &[f64], rates: &mut [f64]) {
+        rates[0] = self.rate_of_state(now, state);
     }
 
     /// JΩ a.
-    fn momentum(&self, own: &[f64], omega: &Vector3<f64>) -> Vector3<f64> {
-        self.unit * (self.inertia * self.speed(own, omega))
+    fn momentum(&self, state: &[f64], omega: &Vector3<f64>) -> Vector3<f64> {
+        self.unit * (self.inertia * self.speed(state, omega))
     }
 
     /// `JΩ a·ω + ½ J Ω²`.
-    fn energy(&self, own: &[f64], omega: &Vector3<f64>) -> f64 {
-        let speed = self.speed(own, omega);
+    fn energy(&self, state: &[f64], omega: &Vector3<f64>) -> f64 {
+        let speed = self.speed(state, omega);
         self.inertia * speed * (self.unit.dot(omega) + 0.5 * speed)
+    }
+}
+
+/// What turns a wheel.
+///
+/// # Examples
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use polhode::RigidBody;
+/// use polhode::motion::loads::{Analytic, Drive, PiecewiseSignal, Wheel, wrench_at};
+/// use polhode::motion::simulate::{Method, NoEvents, Phase, State, Task, Tolerance, simulate};
+/// use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
+///
+/// // A satellite at rest, in which a motor of 0.02 N m spins up a wheel of 0.05 kg m² with dry friction of 0.005 N m.
+/// let body = RigidBody::from_principal(90.0, &[8.0, 9.0, 10.0], &Matrix3::identity(), &Vector3::zeros(), 0.0)?;
+/// let motor = Drive::Torque(PiecewiseSignal::constant("torque", 0.02)?);
+/// let wheel = Wheel::new(&Vector3::z(), 0.05, 0.0, 0.0, motor)?.with_dry_friction(0.005)?;
+/// let terms = [wheel.into()];
+/// let state = State { attitude: UnitQuaternion::identity(), omega: Vector3::zeros() };
+/// let tolerance = Tolerance::new(1e-10, 0.0)?;
+/// let task = Task::free(&body, Phase::in_place(&state), &[0.0, 10.0], Method::Auto, tolerance);
+/// let mut load = Analytic::new(&terms, task.body_at_point);
+/// let go_on = &mut |_| ControlFlow::Continue(());
+/// let run = simulate(&task, &mut load, &mut NoEvents::new(), go_on).into_result()?;
+/// // What the wheel has, h = 0.15 N m s, the body lacks: (I − J) ω = −h.
+/// assert!((run.phase.internal_state[0] - 0.15).abs() < 1e-10);
+/// assert!((run.phase.omega.z + 0.15 / 9.95).abs() < 1e-10);
+/// // The torque on the body at the end, beside the tensor without the wheel.
+/// let torque = wrench_at(&mut load, &task.euler, 10.0, &run.phase)?.torque;
+/// assert!((torque.z + 0.015).abs() < 1e-12);
+/// # Ok::<(), polhode::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub enum Drive {
+    /// A motor whose torque τ on the wheel, about its axis, is known; no motor where it is zero.
+    Torque(PiecewiseSignal),
+    /// A motor that exerts on the body, about the wheel's axis, what a feedback asks for: `τ = −a·N`.
+    Feedback(Feedback),
+    /// The same, as far as the motor can: `|τ|` is at most the limit.
+    Limited(Feedback, f64),
+    /// A motor that gives the wheel a speed Ω relative to the body that is known: straight lines between times.
+    Speed(PiecewiseSignal),
+}
+
+impl Drive {
+    /// The feedback that a motor follows.
+    pub(super) fn feedback(&self) -> Option<&Feedback> {
+        match self {
+            Self::Feedback(law) | Self::Limited(law, _) => Some(law),
+            Self::Torque(_) | Self::Speed(_) => None,
+        }
+    }
+
+    /// The times at which it is not smooth.
+    pub(super) fn breaks(&self) -> Vec<f64> {
+        match self {
+            Self::Torque(held) | Self::Speed(held) => held.times().to_vec(),
+            Self::Feedback(law) | Self::Limited(law, _) => law.breaks(),
+        }
+    }
+
+    /// Whether it is known from one time to another.
+    pub(super) fn check(&self, body: &BodyAtPoint, from: f64, to: f64) -> Result<(), Error> {
+        match self {
+            Self::Torque(held) => held.covers("torque", from, to, false),
+            Self::Speed(held) => held.covers("speed", from, to, true),
+            Self::Feedback(law) | Self::Limited(law, _) => law.check(body, from, to),
+        }
     }
 }

@@ -1,0 +1,152 @@
+//! The principal axes of what a load acts on, in numbers of any precision.
+
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+
+use super::body_at_point::BodyAtPoint;
+use super::variables::{Block, CENTER, Fixed, MASS, Variables, Varied};
+use crate::motion::attitude::components;
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::number::Real;
+use crate::numerics::quaternion::normalized;
+
+/// A number in which laws can be stated.
+pub(crate) trait LawNumber: Real {
+    /// What tells which of the numbers of a problem are varied.
+    type Variables: Variables<Self>;
+
+    /// (x, y, z, w) of a rotation, whose direction alone counts.
+    fn quaternion(rotation: &UnitQuaternion<f64>) -> [Self; 4];
+
+    /// Correction to the derivatives when a motion crosses a switching surface (saltation): neighbouring motions cross it at another
+    /// time. `switch` is the switching function, `rate` its time derivative. Zero for numbers without derivatives.
+    #[must_use]
+    fn saltation(self, switch: Self, rate: f64) -> Self;
+}
+
+impl LawNumber for f64 {
+    type Variables = Fixed;
+
+    fn quaternion(rotation: &UnitQuaternion<f64>) -> [Self; 4] {
+        components(rotation)
+    }
+
+    fn saltation(self, _: Self, _: f64) -> Self {
+        0.0
+    }
+}
+
+impl LawNumber for DoubleDouble {
+    type Variables = Fixed;
+
+    fn quaternion(rotation: &UnitQuaternion<f64>) -> [Self; 4] {
+        normalized(components(rotation).map(Self::from))
+    }
+
+    fn saltation(self, _: Self, _: f64) -> Self {
+        Self::default()
+    }
+}
+
+impl LawNumber for Varied {
+    type Variables = Block;
+
+    fn quaternion(rotation: &UnitQuaternion<f64>) -> [Self; 4] {
+        components(rotation).map(Self::constant)
+    }
+
+    fn saltation(self, switch: Self, rate: f64) -> Self {
+        Self {
+            value: 0.0,
+            slopes: switch.slopes.map(|slope| -slope / rate * self.value),
+        }
+    }
+}
+
+/// The principal axes of what a load acts on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PrincipalFrame<'s, X: LawNumber> {
+    /// What it acts on.
+    pub body: &'s BodyAtPoint,
+    /// Columns, in B.
+    pub columns: &'s Matrix3<X>,
+    /// (x, y, z, w) of the rotation from principal axes to B.
+    pub q_bp: &'s [X; 4],
+    /// Which numbers are varied.
+    pub variables: X::Variables,
+    /// The column of the first number of the term that is asked.
+    pub first: usize,
+    /// A time within the span under way, which has no breaks.
+    pub middle: f64,
+}
+
+impl<X: LawNumber> PrincipalFrame<'_, X> {
+    /// A vector of B, components in principal axes.
+    pub(crate) fn principal(&self, vector: &Vector3<X>) -> Vector3<X> {
+        self.columns.tr_mul(vector)
+    }
+
+    /// A tensor of B, components in principal axes.
+    pub(super) fn tensor(&self, matrix: &Matrix3<X>) -> Matrix3<X> {
+        self.columns.tr_mul(matrix) * self.columns
+    }
+
+    /// Numbers of the term: a number, a vector, a matrix that it has, of which the first is its number `index`.
+    pub(super) fn number(&self, value: f64, index: usize) -> X {
+        self.variables.number(value, self.first + index)
+    }
+
+    pub(super) fn vector(&self, value: &Vector3<f64>, index: usize) -> Vector3<X> {
+        self.variables.vector(value, self.first + index)
+    }
+
+    pub(super) fn matrix(&self, value: &Matrix3<f64>, index: usize) -> Matrix3<X> {
+        self.variables.matrix(value, self.first + index)
+    }
+
+    /// The parameter minus its value: numerically zero, but it carries the derivative.
+    pub(super) fn variation(&self, value: f64, index: usize) -> X {
+        self.number(value, index) - X::from(value)
+    }
+
+    /// Whether one of `count` numbers of the term from `index` on is varied.
+    pub(super) fn varies(&self, index: usize, count: usize) -> bool {
+        let first = self.first + index;
+        self.variables.varies(first..first + count)
+    }
+
+    /// Those of the part of the term whose first number is its number `index`.
+    pub(super) fn part(&self, index: usize) -> Self {
+        Self {
+            first: self.first + index,
+            ..*self
+        }
+    }
+
+    /// m.
+    pub(super) fn mass(&self) -> X {
+        self.variables.number(self.body.mass, MASS)
+    }
+
+    /// P from the origin of B: C where the body is free.
+    pub(super) fn point(&self) -> Vector3<X> {
+        if self.body.pivoted {
+            exact(&self.body.point)
+        } else {
+            self.variables.vector(&self.body.point, CENTER)
+        }
+    }
+
+    /// C from P.
+    pub(super) fn center(&self) -> Vector3<X> {
+        if self.body.pivoted {
+            self.variables.vector(&self.body.center, CENTER)
+        } else {
+            exact(&self.body.center)
+        }
+    }
+}
+
+/// A vector in numbers of another precision.
+pub(super) fn exact<X: Real>(vector: &Vector3<f64>) -> Vector3<X> {
+    vector.map(X::from)
+}
