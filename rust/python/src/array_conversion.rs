@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyFloat, PyInt, PyList, PyModule, PySlice, PyTuple};
 
-use crate::depth::Deeper;
+use crate::depth::RecursionGuard;
 use crate::interrupt::Beat;
 use crate::memory;
 use crate::shape::tuple;
@@ -43,14 +43,14 @@ pub(crate) fn is_scalar(object: &Bound<'_, PyAny>) -> bool {
 pub(crate) fn as_array<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
     let py = object.py();
     if !object.is_exact_instance_of::<PyUntypedArray>() {
-        let _deeper = Deeper::argument(name)?;
+        let _guard = RecursionGuard::argument(name)?;
         let mut beat = Beat::new(py);
         nothing_lost(object, name, DEPTH, &mut beat)?;
         if let Some(array) = in_pieces(object, &mut beat)? {
             return Ok(array);
         }
     }
-    let _deeper = Deeper::argument(name)?;
+    let _guard = RecursionGuard::argument(name)?;
     let array = numpy(py)?
         .call_method1(intern!(py, "asarray"), (object,))
         .map_err(|error| {

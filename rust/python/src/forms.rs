@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use crate::arrays::{Argument, read, read_scalar, try_rows, write, write_of};
 use crate::body::PyRigidBody;
 use crate::stack::{Broadcast, Stack};
-use crate::uncertain::{Quantity, carried, of_numbers, quantity, quantity_or};
+use crate::uncertain::{Quantity, of_numbers, propagate_rows, quantity, quantity_or};
 
 type Floats<'py> = Bound<'py, PyArrayDyn<f64>>;
 type Array<'py> = PyResult<Floats<'py>>;
@@ -78,11 +78,11 @@ impl PyRigidBody {
             || moments.is_uncertain()
             || products.is_uncertain()
             || center.is_uncertain();
-        let doubts = carried(py, &grid, is_uncertain, |[m, i, p, c]| {
+        let uncertainties = propagate_rows(py, &grid, is_uncertain, |[m, i, p, c]| {
             let numbers = [mass.row(m), center.row(c), moments.row(i), products.row(p)].concat();
             of_numbers(&FromPositiveProducts, &numbers)
         })?;
-        PyRigidBody::doubtful(bodies, doubts).possible(py)
+        PyRigidBody::with_uncertainty(bodies, uncertainties).possible(py)
     }
 }
 

@@ -4,11 +4,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::free_motion::PyFreeMotion;
-use crate::gyrostat::motion::PyGyrostatMotion;
+use crate::gyrostat::PyGyrostatMotion;
 use crate::heavy_top::PyHeavyTop;
 
 /// The same two methods for each class of exact motions.
-macro_rules! drawn {
+macro_rules! draw_methods {
     ($($class:ident),+) => {$(
         #[pymethods]
         impl $class {
@@ -74,4 +74,4 @@ macro_rules! drawn {
     )+};
 }
 
-drawn!(PyFreeMotion, PyGyrostatMotion, PyHeavyTop);
+draw_methods!(PyFreeMotion, PyGyrostatMotion, PyHeavyTop);

@@ -22,7 +22,7 @@ use crate::principal::{PrincipalAxes, canonical_to_rounding, principal_axes, wit
 /// # Examples
 ///
 /// ```
-/// use polhode::mass::composites::combined;
+/// use polhode::mass::assemblies::combined;
 /// use polhode::mass::{Amount, solids};
 /// use polhode::nalgebra::Vector3;
 ///
@@ -51,14 +51,14 @@ pub fn combined(bodies: &[RigidBody]) -> Result<RigidBody, Error> {
             // The sum of possible bodies is possible.
             let mut principal = canonical_to_rounding(&principal_axes(&sum.inertia));
             if is_thin(&principal) {
-                principal = sum.refined(&principal);
+                principal = sum.refine_principal(&principal);
                 all_finite_of_body("moments", &principal.moments)?;
                 principal.moments = principal.moments.map(|moment| moment.max(0.0));
                 let provenance = sum.provenance().in_own_axes();
                 return Ok(sum.body(principal).with_provenance(provenance));
             }
             let spread = trace(&sum.inertia);
-            let body = RigidBody::admitted(sum.mass, sum.inertia, &sum.center, principal, spread);
+            let body = RigidBody::admit(sum.mass, sum.inertia, &sum.center, principal, spread);
             let provenance = Provenance {
                 rounded_to_zero: body.provenance.rounded_to_zero,
                 ..sum.provenance()
@@ -121,7 +121,7 @@ impl RigidBody {
         }
         let mut provenance = rest.provenance();
         if is_thin(&principal) {
-            principal = rest.refined(&principal);
+            principal = rest.refine_principal(&principal);
             all_finite_of_body("moments", &principal.moments)?;
             provenance = provenance.in_own_axes();
         }
@@ -191,7 +191,7 @@ impl<'a, F: Fn(usize) -> (f64, &'a RigidBody)> Assembly<'a, F> {
 
     /// Principal moments and axes from second moments in the axes W that the tensor has, found before they are rounded to
     /// body axes: `S = Σ ± (V s Vᵀ + m d dᵀ)`, with the parts' axes V and their distances d in W.
-    fn refined(&self, first: &PrincipalAxes) -> PrincipalAxes {
+    fn refine_principal(&self, first: &PrincipalAxes) -> PrincipalAxes {
         let turn = first.axes.transpose();
         let [x, y, z, xx, xy, xz, yy, yz, zz] = sum_terms(self.count, |i| {
             let (sign, body) = (self.part)(i);

@@ -126,7 +126,7 @@ impl RigidBody {
         let scale = |x: f64| x * mass * length * length;
         // What moments below the normal numbers lack is seen when they are larger.
         let faint = faint(trace(&self.inertia));
-        let scaled = units.told(&Self {
+        let scaled = units.in_user_units(&Self {
             mass: self.mass * mass,
             center_of_mass: self.center_of_mass * length,
             inertia: self.inertia.map(scale),

@@ -1,4 +1,4 @@
-//! Numbers that move along a line: value, slope and bend.
+//! Numbers that move along a line: value, slope and curvature.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -6,25 +6,25 @@ use num_traits::{One, Zero};
 
 use super::number::Real;
 
-/// `value + slope ε + bend ε²`, what follows cut off: a number as one steps from where its variables are along one line.
+/// `value + slope ε + curvature ε²`, what follows cut off: a number as one steps from where its variables are along one line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Parabola {
+pub(crate) struct SecondOrderDual {
     /// Where it starts.
     pub value: f64,
     /// The first derivative along the line.
     pub slope: f64,
     /// Half of the second derivative.
-    pub bend: f64,
+    pub curvature: f64,
 }
 
-impl Parabola {
+impl SecondOrderDual {
     /// A number that stays as it is.
     #[must_use]
     pub(crate) const fn constant(value: f64) -> Self {
         Self {
             value,
             slope: 0.0,
-            bend: 0.0,
+            curvature: 0.0,
         }
     }
 
@@ -34,7 +34,7 @@ impl Parabola {
         Self {
             value,
             slope,
-            bend: 0.0,
+            curvature: 0.0,
         }
     }
 
@@ -44,24 +44,24 @@ impl Parabola {
         Self {
             value,
             slope: first * self.slope,
-            bend: first * self.bend + 0.5 * second * (self.slope * self.slope),
+            curvature: first * self.curvature + 0.5 * second * (self.slope * self.slope),
         }
     }
 }
 
-impl Add for Parabola {
+impl Add for SecondOrderDual {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
         Self {
             value: self.value + other.value,
             slope: self.slope + other.slope,
-            bend: self.bend + other.bend,
+            curvature: self.curvature + other.curvature,
         }
     }
 }
 
-impl Neg for Parabola {
+impl Neg for SecondOrderDual {
     type Output = Self;
 
     fn neg(self) -> Self {
@@ -69,7 +69,7 @@ impl Neg for Parabola {
     }
 }
 
-impl Sub for Parabola {
+impl Sub for SecondOrderDual {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -77,31 +77,33 @@ impl Sub for Parabola {
     }
 }
 
-impl Mul for Parabola {
+impl Mul for SecondOrderDual {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
         Self {
             value: self.value * other.value,
             slope: self.value * other.slope + self.slope * other.value,
-            bend: self.value * other.bend + self.slope * other.slope + self.bend * other.value,
+            curvature: self.value * other.curvature
+                + self.slope * other.slope
+                + self.curvature * other.value,
         }
     }
 }
 
-impl Mul<f64> for Parabola {
+impl Mul<f64> for SecondOrderDual {
     type Output = Self;
 
     fn mul(self, factor: f64) -> Self {
         Self {
             value: self.value * factor,
             slope: self.slope * factor,
-            bend: self.bend * factor,
+            curvature: self.curvature * factor,
         }
     }
 }
 
-impl Div for Parabola {
+impl Div for SecondOrderDual {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {
@@ -110,26 +112,27 @@ impl Div for Parabola {
         Self {
             value,
             slope,
-            bend: (self.bend - value * other.bend - slope * other.slope) / other.value,
+            curvature: (self.curvature - value * other.curvature - slope * other.slope)
+                / other.value,
         }
     }
 }
 
-impl Div<f64> for Parabola {
+impl Div<f64> for SecondOrderDual {
     type Output = Self;
 
     fn div(self, divisor: f64) -> Self {
         Self {
             value: self.value / divisor,
             slope: self.slope / divisor,
-            bend: self.bend / divisor,
+            curvature: self.curvature / divisor,
         }
     }
 }
 
-super::assign::assign_operators!([] Parabola);
+super::assign::assign_operators!([] SecondOrderDual);
 
-impl Zero for Parabola {
+impl Zero for SecondOrderDual {
     fn zero() -> Self {
         Self::default()
     }
@@ -139,19 +142,19 @@ impl Zero for Parabola {
     }
 }
 
-impl One for Parabola {
+impl One for SecondOrderDual {
     fn one() -> Self {
         Self::constant(1.0)
     }
 }
 
-impl From<f64> for Parabola {
+impl From<f64> for SecondOrderDual {
     fn from(value: f64) -> Self {
         Self::constant(value)
     }
 }
 
-impl Real for Parabola {
+impl Real for SecondOrderDual {
     fn pair(high: f64, low: f64) -> Self {
         Self::constant(high + low)
     }
@@ -172,13 +175,13 @@ mod tests {
 
     #[test]
     fn powers_of_a_line() {
-        let x = Parabola::line(3.0, 2.0);
+        let x = SecondOrderDual::line(3.0, 2.0);
         assert_eq!(
             x * x,
-            Parabola {
+            SecondOrderDual {
                 value: 9.0,
                 slope: 12.0,
-                bend: 4.0
+                curvature: 4.0
             }
         );
         assert_eq!((x * x) / x, x);
@@ -186,9 +189,10 @@ mod tests {
         assert_eq!(-(x - x * 2.0), x);
         assert_eq!((x / 2.0) * 2.0, x);
         // 1/x = 1/3 − (2/9) ε + (4/27) ε²
-        let inverse = Parabola::one() / x;
+        let inverse = SecondOrderDual::one() / x;
         assert!(
-            (inverse.slope + 2.0 / 9.0).abs() < 1e-16 && (inverse.bend - 4.0 / 27.0).abs() < 1e-16
+            (inverse.slope + 2.0 / 9.0).abs() < 1e-16
+                && (inverse.curvature - 4.0 / 27.0).abs() < 1e-16
         );
         let mut sum = x;
         sum += x;

@@ -1,7 +1,7 @@
-//! Planes: a batch of rows turned on its side, so that one loop over a formula fills the lanes.
+//! Structure of arrays: a batch of rows, transposed, so that one loop over a formula fills the lanes.
 //!
 //! Rows come and go as arrays of a few numbers each. Plane k holds number k of every row of a batch, in the first-level
-//! cache while [`Planes::map`] and [`Planes::update`] run over it.
+//! cache while [`StructureOfArrays::map`] and [`StructureOfArrays::update`] run over it.
 
 use super::lane::Lane;
 
@@ -13,7 +13,7 @@ pub(crate) const ROWS: usize = 32;
 ///
 /// A trait rather than a closure: a closure's body is compiled apart, without the instructions of the level, whenever it
 /// is too long to be inlined.
-pub(crate) trait Formula<const K: usize, const M: usize> {
+pub(crate) trait RowFormula<const K: usize, const M: usize> {
     /// The formula. Mark the implementation `#[inline(always)]`.
     fn apply<L: Lane>(numbers: [L; K]) -> [L; M];
 }
@@ -21,9 +21,9 @@ pub(crate) trait Formula<const K: usize, const M: usize> {
 /// `K` numbers for each of up to [`ROWS`] rows.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
-pub(crate) struct Planes<const K: usize>([[f64; ROWS]; K]);
+pub(crate) struct StructureOfArrays<const K: usize>([[f64; ROWS]; K]);
 
-impl<const K: usize> Planes<K> {
+impl<const K: usize> StructureOfArrays<K> {
     /// All zero.
     pub(crate) const ZERO: Self = Self([[0.0; ROWS]; K]);
 
@@ -75,10 +75,10 @@ impl<const K: usize> Planes<K> {
 
     /// Writes the formula's results for the first `rows` rows to `target`.
     #[inline(always)]
-    pub(crate) fn map<L: Lane, F: Formula<K, M>, const M: usize>(
+    pub(crate) fn map<L: Lane, F: RowFormula<K, M>, const M: usize>(
         &self,
         rows: usize,
-        target: &mut Planes<M>,
+        target: &mut StructureOfArrays<M>,
     ) {
         for row in 0..rows.min(ROWS) {
             target.set_lanes(row, F::apply(self.lanes::<L>(row)));
@@ -87,7 +87,7 @@ impl<const K: usize> Planes<K> {
 
     /// Replaces the numbers of the first `rows` rows by the formula's results.
     #[inline(always)]
-    pub(crate) fn update<L: Lane, F: Formula<K, K>>(&mut self, rows: usize) {
+    pub(crate) fn update<L: Lane, F: RowFormula<K, K>>(&mut self, rows: usize) {
         for row in 0..rows.min(ROWS) {
             self.set_lanes(row, F::apply(self.lanes::<L>(row)));
         }

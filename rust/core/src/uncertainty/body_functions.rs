@@ -4,44 +4,44 @@
 //!
 //! ```
 //! use polhode::Error;
-//! use polhode::mass::ten::{Size, Ten};
+//! use polhode::mass::inertial_parameters::{Size, InertialParameters};
 //! use polhode::mass::{Amount, solids};
 //! use polhode::nalgebra::Matrix3;
-//! use polhode::uncertainty::changes::TensorAbout;
+//! use polhode::uncertainty::body_functions::TensorAbout;
 //! use polhode::uncertainty::{
-//!     Change, Follow, FromPositiveProducts, FromTensor, FromTensorAboutOrigin, Given, OfPolygon, OfShape, Rotated, Scaled,
-//!     Shape, Source, follow,
+//!     BodyFunction, Inputs, FromPositiveProducts, FromTensor, FromTensorAboutOrigin, LinearForms, OfPolygon, OfShape, Rotated, Scaled,
+//!     Shape, Source, propagate,
 //! };
 //!
 //! // The deviations of all ten numbers, where each of a body's has one.
 //! let sigmas = [0.01, 1e-3, 1e-3, 1e-3, 0.02, 0.02, 0.02, 0.001, 0.001, 0.001];
-//! let given = Given::independent(&sigmas, Source::fresh())?;
+//! let given = LinearForms::independent(&sigmas, Source::fresh())?;
 //! let values = [2.0, 0.5, 0.0, 0.0, 1.0, 1.2, 1.4, 0.1, 0.0, 0.0];
 //! let numbers: Vec<_> = values.into_iter().zip(given.forms.iter().map(Vec::as_slice)).collect();
-//! let deviation = |change: &dyn Fn() -> Result<polhode::uncertainty::Doubt, Error>, k: usize| -> Result<f64, Error> {
-//!     let doubt = change()?;
-//!     Ok(doubt.covariance_with(&doubt)[(k, k)].sqrt())
+//! let deviation = |change: &dyn Fn() -> Result<polhode::uncertainty::LinearUncertainty, Error>, k: usize| -> Result<f64, Error> {
+//!     let uncertainty = change()?;
+//!     Ok(uncertainty.covariance_with(&uncertainty)[(k, k)].sqrt())
 //! };
-//! let from = Follow { bodies: &[], numbers: &numbers };
-//! assert!((deviation(&|| follow(&FromTensor, from), 7)? - 0.001).abs() < 1e-17);
-//! assert!((deviation(&|| follow(&FromPositiveProducts, from), 7)? - 0.001).abs() < 1e-17);
-//! // I_C = I_O − m d²: the moment about y has the doubts of mass and place too.
+//! let from = Inputs { bodies: &[], numbers: &numbers };
+//! assert!((deviation(&|| propagate(&FromTensor, from), 7)? - 0.001).abs() < 1e-17);
+//! assert!((deviation(&|| propagate(&FromPositiveProducts, from), 7)? - 0.001).abs() < 1e-17);
+//! // I_C = I_O − m d²: the moment about y has the uncertainties of mass and place too.
 //! let expected = (0.02_f64.powi(2) + (0.01 * 0.25_f64).powi(2) + (2.0 * 2.0 * 0.5 * 1e-3_f64).powi(2)).sqrt();
-//! assert!((deviation(&|| follow(&FromTensorAboutOrigin, from), 5)? - expected).abs() < 1e-12);
+//! assert!((deviation(&|| propagate(&FromTensorAboutOrigin, from), 5)? - expected).abs() < 1e-12);
 //!
 //! // From body to body: a mass scaled by 2 ± 0.1, a turn by a small angle, a tensor about another point.
-//! let exact = polhode::uncertainty::Doubt::default();
-//! let brick = Ten::of(&solids::cuboid(&[2.0, 1.0, 1.0], Amount::Mass(12.0))?);
+//! let exact = polhode::uncertainty::LinearUncertainty::default();
+//! let brick = InertialParameters::of(&solids::cuboid(&[2.0, 1.0, 1.0], Amount::Mass(12.0))?);
 //! let bodies = [(brick, &exact)];
-//! let doubt = Given::independent(&[0.1], Source::fresh())?;
-//! let scale = [(1.0, [].as_slice()), (2.0, &doubt.forms[0])];
-//! let from = Follow { bodies: &bodies, numbers: &scale };
-//! assert!((deviation(&|| follow(&Scaled, from), 0)? - 1.2).abs() < 1e-15);
-//! let turn = [(0.0, [].as_slice()), (0.0, &[]), (0.0, &doubt.forms[0])];
-//! let from = Follow { bodies: &bodies, numbers: &turn };
-//! assert!((deviation(&|| follow(&Rotated(Matrix3::identity()), from), 7)? - 0.1 * 3.0).abs() < 1e-12); // (I_y − I_x) θ
-//! let from = Follow { bodies: &bodies, numbers: &[] };
-//! assert_eq!(deviation(&|| follow(&TensorAbout([1.0, 0.0, 0.0]), from), 5)?, 0.0);
+//! let uncertainty = LinearForms::independent(&[0.1], Source::fresh())?;
+//! let scale = [(1.0, [].as_slice()), (2.0, &uncertainty.forms[0])];
+//! let from = Inputs { bodies: &bodies, numbers: &scale };
+//! assert!((deviation(&|| propagate(&Scaled, from), 0)? - 1.2).abs() < 1e-15);
+//! let turn = [(0.0, [].as_slice()), (0.0, &[]), (0.0, &uncertainty.forms[0])];
+//! let from = Inputs { bodies: &bodies, numbers: &turn };
+//! assert!((deviation(&|| propagate(&Rotated(Matrix3::identity()), from), 7)? - 0.1 * 3.0).abs() < 1e-12); // (I_y − I_x) θ
+//! let from = Inputs { bodies: &bodies, numbers: &[] };
+//! assert_eq!(deviation(&|| propagate(&TensorAbout([1.0, 0.0, 0.0]), from), 5)?, 0.0);
 //!
 //! // From a shape's lengths, then the factor of its mass: a ball with a radius of 1 m ± 1 mm.
 //! struct Ball;
@@ -50,34 +50,40 @@
 //!         solids::sphere(*radius, amount)
 //!     }
 //! }
-//! let radius = Given::independent(&[1e-3], Source::fresh())?;
+//! let radius = LinearForms::independent(&[1e-3], Source::fresh())?;
 //! let lengths = [(1.0, radius.forms[0].as_slice()), (1.0, &[])];
-//! let from = Follow { bodies: &[], numbers: &lengths };
+//! let from = Inputs { bodies: &[], numbers: &lengths };
 //! let change = OfShape(&Ball, Amount::Mass(5.0));
-//! assert!((deviation(&|| follow(&change, from), 4)? - 2.0 * 2e-3).abs() < 1e-12); // 2/5 m r², so 2 I σ/r
+//! assert!((deviation(&|| propagate(&change, from), 4)? - 2.0 * 2e-3).abs() < 1e-12); // 2/5 m r², so 2 I σ/r
 //!
 //! // From the corners of a triangle, one of which is known to a millimetre.
 //! let corners = [(0.0, [].as_slice()), (0.0, &[]), (1.0, &radius.forms[0]), (0.0, &[]), (0.0, &[]), (1.0, &[]), (1.0, &[])];
-//! let from = Follow { bodies: &[], numbers: &corners };
+//! let from = Inputs { bodies: &[], numbers: &corners };
 //! let change = OfPolygon(Amount::Density(2.0));
-//! assert!((deviation(&|| follow(&change, from), 0)? - 1e-3).abs() < 1e-15); // ρ h σ/2
+//! assert!((deviation(&|| propagate(&change, from), 0)? - 1e-3).abs() < 1e-15); // ρ h σ/2
 //! # Ok::<(), polhode::Error>(())
 //! ```
 
 use nalgebra::Matrix3;
 
-use super::follow::Change;
+use super::propagate::BodyFunction;
 use crate::error::Error;
 use crate::mass::amount::Amount;
-use crate::mass::ten::{ELEMENTS, Size, Ten};
+use crate::mass::inertial_parameters::{ELEMENTS, InertialParameters, Size};
 
 /// A body from its ten numbers: m, C, the [`ELEMENTS`] of the tensor about C.
 #[derive(Clone, Copy, Debug)]
 pub struct FromTensor;
 
-impl Change for FromTensor {
-    fn of<X: Size<Body = Ten<X>>>(&self, _: &[Ten<X>], numbers: &[X]) -> Result<Ten<X>, Error> {
-        Ok(Ten::from_array(&std::array::from_fn(|k| numbers[k])))
+impl BodyFunction for FromTensor {
+    fn of<X: Size<Body = InertialParameters<X>>>(
+        &self,
+        _: &[InertialParameters<X>],
+        numbers: &[X],
+    ) -> Result<InertialParameters<X>, Error> {
+        Ok(InertialParameters::from_array(&std::array::from_fn(|k| {
+            numbers[k]
+        })))
     }
 }
 
@@ -85,9 +91,13 @@ impl Change for FromTensor {
 #[derive(Clone, Copy, Debug)]
 pub struct FromPositiveProducts;
 
-impl Change for FromPositiveProducts {
-    fn of<X: Size<Body = Ten<X>>>(&self, _: &[Ten<X>], numbers: &[X]) -> Result<Ten<X>, Error> {
-        Ok(Ten::from_array(&std::array::from_fn(|k| {
+impl BodyFunction for FromPositiveProducts {
+    fn of<X: Size<Body = InertialParameters<X>>>(
+        &self,
+        _: &[InertialParameters<X>],
+        numbers: &[X],
+    ) -> Result<InertialParameters<X>, Error> {
+        Ok(InertialParameters::from_array(&std::array::from_fn(|k| {
             if k < 7 { numbers[k] } else { -numbers[k] }
         })))
     }
@@ -97,15 +107,19 @@ impl Change for FromPositiveProducts {
 #[derive(Clone, Copy, Debug)]
 pub struct FromTensorAboutOrigin;
 
-impl Change for FromTensorAboutOrigin {
-    fn of<X: Size<Body = Ten<X>>>(&self, _: &[Ten<X>], numbers: &[X]) -> Result<Ten<X>, Error> {
-        let given = Ten::from_array(&std::array::from_fn(|k| numbers[k]));
-        let point = Ten {
+impl BodyFunction for FromTensorAboutOrigin {
+    fn of<X: Size<Body = InertialParameters<X>>>(
+        &self,
+        _: &[InertialParameters<X>],
+        numbers: &[X],
+    ) -> Result<InertialParameters<X>, Error> {
+        let given = InertialParameters::from_array(&std::array::from_fn(|k| numbers[k]));
+        let point = InertialParameters {
             inertia: [X::zero(); 6],
             ..given
         };
         let shift = point.about([X::zero(); 3]);
-        Ok(Ten {
+        Ok(InertialParameters {
             inertia: std::array::from_fn(|k| given.inertia[k] - shift[k]),
             ..given
         })
@@ -116,8 +130,12 @@ impl Change for FromTensorAboutOrigin {
 #[derive(Clone, Copy, Debug)]
 pub struct FromPrincipal(pub Matrix3<f64>);
 
-impl Change for FromPrincipal {
-    fn of<X: Size<Body = Ten<X>>>(&self, _: &[Ten<X>], numbers: &[X]) -> Result<Ten<X>, Error> {
+impl BodyFunction for FromPrincipal {
+    fn of<X: Size<Body = InertialParameters<X>>>(
+        &self,
+        _: &[InertialParameters<X>],
+        numbers: &[X],
+    ) -> Result<InertialParameters<X>, Error> {
         let [mass, cx, cy, cz, moments @ ..] = numbers else {
             return Err(Error::Empty { what: "moments" });
         };
@@ -126,7 +144,7 @@ impl Change for FromPrincipal {
                 sum + moment * (self.0[(i, k)] * self.0[(j, k)])
             })
         };
-        Ok(Ten {
+        Ok(InertialParameters {
             mass: *mass,
             center: [*cx, *cy, *cz],
             inertia: ELEMENTS.map(element),
@@ -138,12 +156,12 @@ impl Change for FromPrincipal {
 #[derive(Clone, Copy, Debug)]
 pub struct Translated;
 
-impl Change for Translated {
-    fn of<X: Size<Body = Ten<X>>>(
+impl BodyFunction for Translated {
+    fn of<X: Size<Body = InertialParameters<X>>>(
         &self,
-        bodies: &[Ten<X>],
+        bodies: &[InertialParameters<X>],
         numbers: &[X],
-    ) -> Result<Ten<X>, Error> {
+    ) -> Result<InertialParameters<X>, Error> {
         Ok(bodies[0].translated(std::array::from_fn(|k| numbers[k])))
     }
 }
@@ -152,12 +170,12 @@ impl Change for Translated {
 #[derive(Clone, Copy, Debug)]
 pub struct Rotated(pub Matrix3<f64>);
 
-impl Change for Rotated {
-    fn of<X: Size<Body = Ten<X>>>(
+impl BodyFunction for Rotated {
+    fn of<X: Size<Body = InertialParameters<X>>>(
         &self,
-        bodies: &[Ten<X>],
+        bodies: &[InertialParameters<X>],
         numbers: &[X],
-    ) -> Result<Ten<X>, Error> {
+    ) -> Result<InertialParameters<X>, Error> {
         let (zero, one) = (X::zero(), X::one());
         let [x, y, z] = [numbers[0], numbers[1], numbers[2]];
         let cross = [[zero, -z, y], [z, zero, -x], [-y, x, zero]];
@@ -181,12 +199,12 @@ impl Change for Rotated {
 #[derive(Clone, Copy, Debug)]
 pub struct Scaled;
 
-impl Change for Scaled {
-    fn of<X: Size<Body = Ten<X>>>(
+impl BodyFunction for Scaled {
+    fn of<X: Size<Body = InertialParameters<X>>>(
         &self,
-        bodies: &[Ten<X>],
+        bodies: &[InertialParameters<X>],
         numbers: &[X],
-    ) -> Result<Ten<X>, Error> {
+    ) -> Result<InertialParameters<X>, Error> {
         Ok(bodies[0].scaled(numbers[0], numbers[1]))
     }
 }
@@ -195,9 +213,13 @@ impl Change for Scaled {
 #[derive(Clone, Copy, Debug)]
 pub struct TensorAbout(pub [f64; 3]);
 
-impl Change for TensorAbout {
-    fn of<X: Size<Body = Ten<X>>>(&self, bodies: &[Ten<X>], _: &[X]) -> Result<Ten<X>, Error> {
-        Ok(Ten {
+impl BodyFunction for TensorAbout {
+    fn of<X: Size<Body = InertialParameters<X>>>(
+        &self,
+        bodies: &[InertialParameters<X>],
+        _: &[X],
+    ) -> Result<InertialParameters<X>, Error> {
+        Ok(InertialParameters {
             inertia: bodies[0].about(self.0.map(X::from)),
             ..bodies[0]
         })
@@ -217,9 +239,70 @@ pub trait Shape<const N: usize> {
 #[derive(Clone, Copy, Debug)]
 pub struct OfShape<'a, S, const N: usize>(pub &'a S, pub Amount);
 
-impl<S: Shape<N>, const N: usize> Change for OfShape<'_, S, N> {
-    fn of<X: Size<Body = Ten<X>>>(&self, _: &[Ten<X>], numbers: &[X]) -> Result<Ten<X>, Error> {
+impl<S: Shape<N>, const N: usize> BodyFunction for OfShape<'_, S, N> {
+    fn of<X: Size<Body = InertialParameters<X>>>(
+        &self,
+        _: &[InertialParameters<X>],
+        numbers: &[X],
+    ) -> Result<InertialParameters<X>, Error> {
         let lengths = std::array::from_fn(|k| numbers[k]);
         Ok(self.0.of(&lengths, self.1)?.scaled(X::one(), numbers[N]))
+    }
+}
+
+// A lamina with corners, for coordinates with derivatives.
+
+/// A polygon in the x-y plane from x, y of its corners in order, and the factor by which its mass or density is another than
+/// this.
+///
+/// By Green's theorem, from the triangles that a first corner makes with each edge:
+/// `∫ dA = Σ Δ`, `∫ r dA = Σ Δ (a + b)/3`, `∫ r rᵀ dA = Σ Δ (2 a aᵀ + a bᵀ + b aᵀ + 2 b bᵀ)/12`, with `Δ = ½ a × b`.
+#[derive(Clone, Copy, Debug)]
+pub struct OfPolygon(pub Amount);
+
+impl BodyFunction for OfPolygon {
+    fn of<X: Size<Body = InertialParameters<X>>>(
+        &self,
+        _: &[InertialParameters<X>],
+        numbers: &[X],
+    ) -> Result<InertialParameters<X>, Error> {
+        let [corners @ .., factor] = numbers else {
+            return Err(Error::Empty { what: "vertices" });
+        };
+        let start = [corners[0], corners[1]];
+        let (mut area, mut first, mut second) = (X::zero(), [X::zero(); 2], [X::zero(); 3]);
+        for edge in corners[2..]
+            .chunks_exact(2)
+            .zip(corners[4..].chunks_exact(2))
+        {
+            let [a, b] = [edge.0, edge.1].map(|r| [r[0] - start[0], r[1] - start[1]]);
+            let triangle = (a[0] * b[1] - a[1] * b[0]) * 0.5;
+            area += triangle;
+            for k in 0..2 {
+                first[k] += triangle * (a[k] + b[k]) / 3.0;
+            }
+            for (k, (i, j)) in [(0, 0), (1, 1), (0, 1)].into_iter().enumerate() {
+                let products = (a[i] * a[j] + b[i] * b[j]) * 2.0 + a[i] * b[j] + b[i] * a[j];
+                second[k] += triangle * products / 12.0;
+            }
+        }
+        let per_area = match self.0 {
+            Amount::Mass(mass) => X::from(mass) / area,
+            // Corners may go round either way.
+            Amount::Density(density) => X::from(density * area.rounded().signum()),
+        } * *factor;
+        let [x, y] = first.map(|sum| sum / area);
+        let [xx, yy, xy] = [
+            second[0] - area * x * x,
+            second[1] - area * y * y,
+            second[2] - area * x * y,
+        ]
+        .map(|moment| moment * per_area);
+        let zero = X::zero();
+        Ok(InertialParameters {
+            mass: area * per_area,
+            center: [start[0] + x, start[1] + y, zero],
+            inertia: [yy, xx, xx + yy, -xy, zero, zero],
+        })
     }
 }

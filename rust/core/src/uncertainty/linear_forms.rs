@@ -7,22 +7,22 @@ use crate::numerics::covariance::factor;
 /// A linear form: what one standard deviation of each variable does to a number, in the order of the variables.
 pub type Form = Vec<(Variable, f64)>;
 
-/// The doubts of several numbers, a form for each.
+/// The uncertainties of several numbers, a form for each.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Given {
+pub struct LinearForms {
     /// The forms.
     pub forms: Vec<Form>,
 }
 
-impl Given {
+impl LinearForms {
     /// Independent numbers with these standard deviations; one without has no variable.
     ///
     /// # Examples
     ///
     /// ```
-    /// use polhode::uncertainty::{Given, Source};
+    /// use polhode::uncertainty::{LinearForms, Source};
     ///
-    /// let masses = Given::independent(&[0.1, 0.2], Source::named("scales"))?;
+    /// let masses = LinearForms::independent(&[0.1, 0.2], Source::named("scales"))?;
     /// assert!((masses.covariance(1, 1) - 0.04).abs() < 1e-17);
     /// assert_eq!(masses.covariance(0, 1), 0.0);
     /// # Ok::<(), polhode::Error>(())
@@ -60,12 +60,12 @@ impl Given {
     /// # Examples
     ///
     /// ```
-    /// use polhode::uncertainty::{Given, Source};
+    /// use polhode::uncertainty::{LinearForms, Source};
     ///
     /// // Two lengths from one ruler, their correlation ½.
-    /// let lengths = Given::correlated(&[0.04, 0.03, 0.03, 0.09], Source::named("ruler"))?;
+    /// let lengths = LinearForms::correlated(&[0.04, 0.03, 0.03, 0.09], Source::named("ruler"))?;
     /// assert!((lengths.covariance(0, 1) - 0.03).abs() < 1e-15);
-    /// assert!(Given::correlated(&[0.04, 0.07, 0.07, 0.09], Source::fresh()).is_err()); // correlation 7/6
+    /// assert!(LinearForms::correlated(&[0.04, 0.07, 0.07, 0.09], Source::fresh()).is_err()); // correlation 7/6
     /// # Ok::<(), polhode::Error>(())
     /// ```
     ///
@@ -113,22 +113,23 @@ mod tests {
     fn a_covariance_comes_back() {
         let source = Source::fresh();
         let p = [4.0, 1.0, -2.0, 1.0, 9.0, 0.5, -2.0, 0.5, 16.0];
-        let given = Given::correlated(&p, source).expect("positive");
+        let given = LinearForms::correlated(&p, source).expect("positive");
         for i in 0..3 {
             for j in 0..3 {
                 assert!((given.covariance(i, j) - p[3 * i + j]).abs() < 1e-14);
             }
         }
-        let one = Given::correlated(&[1e-40, 1e-40, 1e-40, 1e-40], source).expect("one variable");
+        let one =
+            LinearForms::correlated(&[1e-40, 1e-40, 1e-40, 1e-40], source).expect("one variable");
         assert_eq!(one.forms[1].len(), 1);
-        let known = Given::correlated(&[0.0, 0.0, 0.0, 4.0], source).expect("one known");
+        let known = LinearForms::correlated(&[0.0, 0.0, 0.0, 4.0], source).expect("one known");
         assert!(known.forms[0].is_empty() && known.forms[1].len() == 1);
     }
 
     #[test]
     fn what_is_no_covariance_is_told() {
         let source = Source::fresh();
-        let fault = |p: &[f64]| Given::correlated(p, source).expect_err("no covariance");
+        let fault = |p: &[f64]| LinearForms::correlated(p, source).expect_err("no covariance");
         let weak = [1.0, 1.0, 0.0, 1.0, 1.0, 1e-6, 0.0, 1e-6, 1.0];
         assert!(matches!(
             fault(&weak),
@@ -152,7 +153,7 @@ mod tests {
             fault(&[-1.0]),
             Error::Uncertainty(UncertaintyFault::NegativeVariance { index: 0, .. })
         ));
-        assert!(Given::independent(&[-1.0], source).is_err());
-        assert!(Given::independent(&[f64::NAN], source).is_err());
+        assert!(LinearForms::independent(&[-1.0], source).is_err());
+        assert!(LinearForms::independent(&[f64::NAN], source).is_err());
     }
 }

@@ -1,58 +1,58 @@
-//! What a body carries of its doubts.
+//! What a body carries of its uncertainties.
 
 use nalgebra::SMatrix;
 
 use super::variable::{PROBES, Variable};
-use crate::mass::ten::Ten;
-use crate::numerics::parabola::Parabola;
+use crate::mass::inertial_parameters::InertialParameters;
+use crate::numerics::second_order_dual::SecondOrderDual;
 
 /// A change of the ten numbers.
-pub type Tangent = Ten<f64>;
+pub type Tangent = InertialParameters<f64>;
 
 /// The covariance of ten numbers with ten.
 pub type Covariance = SMatrix<f64, 10, 10>;
 
-/// The doubts of one body.
+/// The uncertainties of one body.
 ///
 /// # Examples
 ///
 /// ```
-/// use polhode::uncertainty::doubt::{Covariance, slopes};
-/// use polhode::uncertainty::{Doubt, PROBES, Source, Tangent};
+/// use polhode::uncertainty::linear_uncertainty::{Covariance, slopes};
+/// use polhode::uncertainty::{LinearUncertainty, PROBES, Source, Tangent};
 ///
 /// // A body whose mass is known to 2 g, and nothing else of it is uncertain.
 /// let scales = Source::named("scales").variable(0);
 /// let tangent = Tangent { mass: 0.002, ..Tangent::default() };
-/// let doubt = Doubt::of(vec![(scales, tangent)], [Tangent::default(); PROBES]);
-/// let covariance: Covariance = doubt.covariance_with(&doubt);
+/// let uncertainty = LinearUncertainty::of(vec![(scales, tangent)], [Tangent::default(); PROBES]);
+/// let covariance: Covariance = uncertainty.covariance_with(&uncertainty);
 /// assert!((covariance[(0, 0)] - 4e-6).abs() < 1e-20);
 /// // Along the probes the mass goes up and down: on average by its deviation.
-/// assert_eq!(doubt.slopes(), slopes(&doubt.tangents));
-/// let square: f64 = doubt.slopes().iter().map(|slope| slope.mass.powi(2)).sum();
+/// assert_eq!(uncertainty.slopes(), slopes(&uncertainty.tangents));
+/// let square: f64 = uncertainty.slopes().iter().map(|slope| slope.mass.powi(2)).sum();
 /// assert!((square / PROBES as f64 - 4e-6).abs() < 1e-18);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Doubt {
+pub struct LinearUncertainty {
     /// What one standard deviation of each variable does to the body's ten numbers, to first order; in the order of the
     /// variables.
     pub tangents: Vec<(Variable, Tangent)>,
     /// The second-order term along each of the probes.
-    pub bends: [Tangent; PROBES],
+    pub second_order: [Tangent; PROBES],
 }
 
-impl Default for Doubt {
+impl Default for LinearUncertainty {
     fn default() -> Self {
         Self {
             tangents: Vec::new(),
-            bends: [Tangent::default(); PROBES],
+            second_order: [Tangent::default(); PROBES],
         }
     }
 }
 
-impl Doubt {
+impl LinearUncertainty {
     /// From tangents in any order, of which those of one variable add up.
     #[must_use]
-    pub fn of(mut tangents: Vec<(Variable, Tangent)>, bends: [Tangent; PROBES]) -> Self {
+    pub fn of(mut tangents: Vec<(Variable, Tangent)>, second_order: [Tangent; PROBES]) -> Self {
         tangents.sort_by_key(|(variable, _)| *variable);
         tangents.dedup_by(|(next, more), (variable, sum)| {
             if next != variable {
@@ -61,7 +61,10 @@ impl Doubt {
             *sum = plus(sum, more);
             true
         });
-        Self { tangents, bends }
+        Self {
+            tangents,
+            second_order,
+        }
     }
 
     /// Covariance of the numbers of one body with those of another: of what both depend on.
@@ -91,26 +94,32 @@ impl Doubt {
 
     /// The ten numbers along each probe, to second order.
     #[must_use]
-    pub(crate) fn probes(&self, numbers: &Ten<f64>) -> [Ten<Parabola>; PROBES] {
+    pub(crate) fn probes(
+        &self,
+        numbers: &InertialParameters<f64>,
+    ) -> [InertialParameters<SecondOrderDual>; PROBES] {
         let (slopes, numbers) = (self.slopes(), numbers.to_array());
         std::array::from_fn(|probe| {
-            let (slopes, bends) = (slopes[probe].to_array(), self.bends[probe].to_array());
-            Ten::from_array(&std::array::from_fn(|k| Parabola {
+            let (slopes, second_order) = (
+                slopes[probe].to_array(),
+                self.second_order[probe].to_array(),
+            );
+            InertialParameters::from_array(&std::array::from_fn(|k| SecondOrderDual {
                 value: numbers[k],
                 slope: slopes[k],
-                bend: bends[k],
+                curvature: second_order[k],
             }))
         })
     }
 
-    /// The doubts after a linear map of the ten numbers.
+    /// The uncertainties after a linear map of the ten numbers.
     #[must_use]
     pub fn map(&self, linear: impl Fn(&Tangent) -> Tangent) -> Self {
         Self {
             tangents: (self.tangents.iter())
                 .map(|(variable, change)| (*variable, linear(change)))
                 .collect(),
-            bends: self.bends.map(|bend| linear(&bend)),
+            second_order: self.second_order.map(|curvature| linear(&curvature)),
         }
     }
 }

@@ -1,28 +1,31 @@
-//! How doubts follow through a function of bodies and numbers.
+//! How uncertainties follow through a function of bodies and numbers.
 
-use super::doubt::{Doubt, Tangent};
-use super::given::Form;
+use super::linear_forms::Form;
+use super::linear_uncertainty::{LinearUncertainty, Tangent};
 use super::variable::{PROBES, Variable};
 use crate::error::Error;
-use crate::mass::ten::{Size, Ten};
+use crate::mass::inertial_parameters::{InertialParameters, Size};
 use crate::numerics::jet::Jet;
-use crate::numerics::parabola::Parabola;
+use crate::numerics::second_order_dual::SecondOrderDual;
 
 /// A function of bodies and numbers whose value is a body, written once for plain numbers and for numbers with derivatives.
-pub trait Change {
+pub trait BodyFunction {
     /// Its value.
     ///
     /// # Errors
     /// When a number is outside its domain.
-    fn of<X: Size<Body = Ten<X>>>(&self, bodies: &[Ten<X>], numbers: &[X])
-    -> Result<Ten<X>, Error>;
+    fn of<X: Size<Body = InertialParameters<X>>>(
+        &self,
+        bodies: &[InertialParameters<X>],
+        numbers: &[X],
+    ) -> Result<InertialParameters<X>, Error>;
 }
 
-/// What goes into such a function: bodies and numbers, each with its doubts.
+/// What goes into such a function: bodies and numbers, each with its uncertainties.
 #[derive(Clone, Copy, Debug)]
-pub struct Follow<'a> {
+pub struct Inputs<'a> {
     /// Bodies.
-    pub bodies: &'a [(Ten<f64>, &'a Doubt)],
+    pub bodies: &'a [(InertialParameters<f64>, &'a LinearUncertainty)],
     /// Numbers.
     pub numbers: &'a [(f64, &'a [(Variable, f64)])],
 }
@@ -30,50 +33,53 @@ pub struct Follow<'a> {
 /// Variables whose derivatives are found at a time.
 const ABREAST: usize = 8;
 
-/// The doubts of the body that `change` makes.
+/// The uncertainties of the body that `change` makes.
 ///
 /// # Errors
 /// Those of `change`.
-pub fn follow(change: &impl Change, from: Follow<'_>) -> Result<Doubt, Error> {
-    follow_any(change, &from)
+pub fn propagate(change: &impl BodyFunction, from: Inputs<'_>) -> Result<LinearUncertainty, Error> {
+    propagate_any(change, &from)
 }
 
-/// A [`Change`] of the two kinds of numbers that doubts need: what is done with them is compiled once for all changes.
-trait AnyChange {
+/// A [`BodyFunction`] of the two kinds of numbers that uncertainties need: what is done with them is compiled once for all changes.
+trait AnyBodyFunction {
     fn of_jets(
         &self,
-        bodies: &[Ten<Jet<ABREAST>>],
+        bodies: &[InertialParameters<Jet<ABREAST>>],
         numbers: &[Jet<ABREAST>],
-    ) -> Result<Ten<Jet<ABREAST>>, Error>;
+    ) -> Result<InertialParameters<Jet<ABREAST>>, Error>;
 
-    fn of_parabolas(
+    fn of_duals(
         &self,
-        bodies: &[Ten<Parabola>],
-        numbers: &[Parabola],
-    ) -> Result<Ten<Parabola>, Error>;
+        bodies: &[InertialParameters<SecondOrderDual>],
+        numbers: &[SecondOrderDual],
+    ) -> Result<InertialParameters<SecondOrderDual>, Error>;
 }
 
-impl<C: Change> AnyChange for C {
+impl<C: BodyFunction> AnyBodyFunction for C {
     fn of_jets(
         &self,
-        bodies: &[Ten<Jet<ABREAST>>],
+        bodies: &[InertialParameters<Jet<ABREAST>>],
         numbers: &[Jet<ABREAST>],
-    ) -> Result<Ten<Jet<ABREAST>>, Error> {
+    ) -> Result<InertialParameters<Jet<ABREAST>>, Error> {
         self.of(bodies, numbers)
     }
 
-    fn of_parabolas(
+    fn of_duals(
         &self,
-        bodies: &[Ten<Parabola>],
-        numbers: &[Parabola],
-    ) -> Result<Ten<Parabola>, Error> {
+        bodies: &[InertialParameters<SecondOrderDual>],
+        numbers: &[SecondOrderDual],
+    ) -> Result<InertialParameters<SecondOrderDual>, Error> {
         self.of(bodies, numbers)
     }
 }
 
-fn follow_any(change: &dyn AnyChange, from: &Follow<'_>) -> Result<Doubt, Error> {
+fn propagate_any(
+    change: &dyn AnyBodyFunction,
+    from: &Inputs<'_>,
+) -> Result<LinearUncertainty, Error> {
     let mut variables: Vec<Variable> = (from.bodies.iter())
-        .flat_map(|(_, doubt)| doubt.tangents.iter().map(|(variable, _)| *variable))
+        .flat_map(|(_, uncertainty)| uncertainty.tangents.iter().map(|(variable, _)| *variable))
         .chain(
             from.numbers
                 .iter()
@@ -89,30 +95,30 @@ fn follow_any(change: &dyn AnyChange, from: &Follow<'_>) -> Result<Doubt, Error>
             tangents.push((*variable, found.map(|number| number.slopes[k])));
         }
     }
-    Ok(Doubt {
+    Ok(LinearUncertainty {
         tangents,
-        bends: bends(change, from)?,
+        second_order: second_order_terms(change, from)?,
     })
 }
 
 /// The bodies with their derivatives by some of the variables.
-fn bodies_along(from: &Follow<'_>, some: &[Variable]) -> Vec<Ten<Jet<ABREAST>>> {
-    let along = |(numbers, doubt): &(Ten<f64>, &Doubt)| {
+fn bodies_along(from: &Inputs<'_>, some: &[Variable]) -> Vec<InertialParameters<Jet<ABREAST>>> {
+    let along = |(numbers, uncertainty): &(InertialParameters<f64>, &LinearUncertainty)| {
         let mut jets = numbers.map(Jet::constant).to_array();
-        for (variable, tangent) in &doubt.tangents {
+        for (variable, tangent) in &uncertainty.tangents {
             if let Ok(k) = some.binary_search(variable) {
                 for (jet, slope) in jets.iter_mut().zip(tangent.to_array()) {
                     jet.slopes[k] = slope;
                 }
             }
         }
-        Ten::from_array(&jets)
+        InertialParameters::from_array(&jets)
     };
     from.bodies.iter().map(along).collect()
 }
 
 /// The numbers with theirs.
-fn numbers_along(from: &Follow<'_>, some: &[Variable]) -> Vec<Jet<ABREAST>> {
+fn numbers_along(from: &Inputs<'_>, some: &[Variable]) -> Vec<Jet<ABREAST>> {
     let along = |(value, form): &(f64, &[(Variable, f64)])| {
         let mut jet = Jet::constant(*value);
         for (variable, step) in *form {
@@ -126,32 +132,35 @@ fn numbers_along(from: &Follow<'_>, some: &[Variable]) -> Vec<Jet<ABREAST>> {
 }
 
 /// The second-order terms along the probes.
-fn bends(change: &dyn AnyChange, from: &Follow<'_>) -> Result<[Tangent; PROBES], Error> {
+fn second_order_terms(
+    change: &dyn AnyBodyFunction,
+    from: &Inputs<'_>,
+) -> Result<[Tangent; PROBES], Error> {
     let bodies: Vec<_> = from
         .bodies
         .iter()
-        .map(|(numbers, doubt)| doubt.probes(numbers))
+        .map(|(numbers, uncertainty)| uncertainty.probes(numbers))
         .collect();
     let numbers: Vec<_> = from
         .numbers
         .iter()
         .map(|&(value, form)| line(value, form))
         .collect();
-    let mut bends = [Tangent::default(); PROBES];
-    for (probe, bend) in bends.iter_mut().enumerate() {
+    let mut second_order = [Tangent::default(); PROBES];
+    for (probe, curvature) in second_order.iter_mut().enumerate() {
         let bodies: Vec<_> = bodies.iter().map(|body| body[probe]).collect();
         let numbers: Vec<_> = numbers.iter().map(|number| number[probe]).collect();
-        *bend = change
-            .of_parabolas(&bodies, &numbers)?
-            .map(|number| number.bend);
+        *curvature = change
+            .of_duals(&bodies, &numbers)?
+            .map(|number| number.curvature);
     }
-    Ok(bends)
+    Ok(second_order)
 }
 
-/// A number with doubts along each probe: they are linear in the variables.
+/// A number with uncertainties along each probe: they are linear in the variables.
 #[must_use]
-pub(crate) fn line(value: f64, form: &[(Variable, f64)]) -> [Parabola; PROBES] {
-    let mut along = [Parabola::constant(value); PROBES];
+pub(crate) fn line(value: f64, form: &[(Variable, f64)]) -> [SecondOrderDual; PROBES] {
+    let mut along = [SecondOrderDual::constant(value); PROBES];
     for (variable, step) in form {
         for (number, length) in along.iter_mut().zip(variable.steps()) {
             number.slope += step * length;
@@ -160,23 +169,23 @@ pub(crate) fn line(value: f64, form: &[(Variable, f64)]) -> [Parabola; PROBES] {
     along
 }
 
-/// A form as doubts of a single one of the ten numbers, or of several by one form each: of a body that is given by them.
+/// A form as uncertainties of a single one of the ten numbers, or of several by one form each: of a body that is given by them.
 ///
 /// # Examples
 ///
 /// ```
-/// use polhode::uncertainty::follow::directly;
+/// use polhode::uncertainty::propagate::directly;
 /// use polhode::uncertainty::{Form, Source};
 ///
 /// // The mass alone has a deviation, of 1 %.
 /// let scales = Source::named("scales").variable(0);
 /// let mut forms: [Form; 10] = Default::default();
 /// forms[0] = vec![(scales, 0.01)];
-/// let doubt = directly(&forms);
-/// assert_eq!(doubt.tangents[0].1.mass, 0.01);
+/// let uncertainty = directly(&forms);
+/// assert_eq!(uncertainty.tangents[0].1.mass, 0.01);
 /// ```
 #[must_use]
-pub fn directly(forms: &[Form; 10]) -> Doubt {
+pub fn directly(forms: &[Form; 10]) -> LinearUncertainty {
     let tangents = (forms.iter().enumerate())
         .flat_map(|(place, form)| {
             form.iter().map(move |&(variable, step)| {
@@ -186,5 +195,5 @@ pub fn directly(forms: &[Form; 10]) -> Doubt {
             })
         })
         .collect();
-    Doubt::of(tangents, [Tangent::default(); PROBES])
+    LinearUncertainty::of(tangents, [Tangent::default(); PROBES])
 }

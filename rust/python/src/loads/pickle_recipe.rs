@@ -16,7 +16,7 @@ pub(super) fn recipe<'py>(
 }
 
 /// A recipe of recipes, innermost first. There may be very many: no function here calls itself for each.
-pub(super) fn unfolded<'py>(
+pub(super) fn unfold<'py>(
     recipe: &Bound<'py, PyTuple>,
 ) -> PyResult<Vec<(String, Bound<'py, PyTuple>)>> {
     let mut steps: Vec<(String, Bound<'py, PyTuple>)> = vec![recipe.extract()?];
@@ -32,9 +32,9 @@ pub(super) fn unfolded<'py>(
 }
 
 /// A recipe in words: the function that made the term, and what was done to it.
-pub(super) fn described(recipe: &Bound<'_, PyTuple>) -> PyResult<String> {
+pub(super) fn describe(recipe: &Bound<'_, PyTuple>) -> PyResult<String> {
     let (mut before, mut after) = (Vec::new(), 0);
-    let steps = unfolded(recipe)?;
+    let steps = unfold(recipe)?;
     for (name, arguments) in steps[1..].iter().rev() {
         match name.as_str() {
             "_scaled" => {

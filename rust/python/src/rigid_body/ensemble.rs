@@ -11,7 +11,7 @@ use crate::body::PyRigidBody;
 use crate::errors::{at_row, to_py};
 use crate::events::{Functions, States};
 use crate::interrupt::{Beat, Interrupt};
-use crate::loads::{Acting, Fault, PyLoad, reported};
+use crate::loads::{Acting, Fault, PyLoad, report_states};
 use crate::memory;
 use crate::stack::{BLOCK, Broadcast, Stack};
 
@@ -142,7 +142,7 @@ impl Ensemble<'_> {
             let found = run.crossings.iter_mut().map(|crossing| &mut crossing.phase);
             for phase in run.samples.iter_mut().chain(found).chain([&mut run.phase]) {
                 if !phase.own.is_empty() {
-                    phase.own = reported(terms, phase).into();
+                    phase.own = report_states(terms, phase).into();
                 }
             }
         }
@@ -218,7 +218,7 @@ impl Rows for Ensemble<'_> {
                     slots: self.load.slots(),
                     terms,
                 };
-                row.under(&mut load, &mut self.events.calling(py, states))
+                row.under(&mut load, &mut self.events.with_callbacks(py, states))
             }),
         }
     }

@@ -1,7 +1,7 @@
 //! Where a body's numbers come from, and how well they are known.
 
 use polhode::RigidBody;
-use polhode::mass::provenance::Source;
+use polhode::mass::provenance::BodySource;
 use polhode::mass::{ErrorBound, Provenance};
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyValueError;
@@ -89,9 +89,9 @@ impl PyRigidBody {
         #[pyo3(from_py_with = read_scalar)] rounding: f64,
     ) -> PyResult<Self> {
         let source = match masses {
-            "most_common" => Source::CommonIsotopes,
-            "average" => Source::AverageAtoms,
-            "own" => Source::OwnAtoms,
+            "most_common" => BodySource::CommonIsotopes,
+            "average" => BodySource::AverageAtoms,
+            "own" => BodySource::OwnAtoms,
             other => {
                 return Err(PyValueError::new_err(format!(
                     "masses: expected \"most_common\", \"average\" or \"own\", got \"{other}\""
@@ -107,8 +107,8 @@ impl PyRigidBody {
             body.with_provenance(provenance)
         };
         Ok(
-            Self::doubtful(self.bodies.map(py, of_atoms)?, self.doubts.clone())
-                .looking(self.figures.clone()),
+            Self::with_uncertainty(self.bodies.map(py, of_atoms)?, self.uncertainties.clone())
+                .with_shapes(self.figures.clone()),
         )
     }
 
@@ -126,8 +126,8 @@ impl PyRigidBody {
             body.with_provenance(provenance)
         };
         Ok(
-            Self::doubtful(self.bodies.map(py, welded)?, self.doubts.clone())
-                .looking(self.figures.clone()),
+            Self::with_uncertainty(self.bodies.map(py, welded)?, self.uncertainties.clone())
+                .with_shapes(self.figures.clone()),
         )
     }
 }

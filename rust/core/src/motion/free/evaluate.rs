@@ -5,7 +5,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use crate::motion::state::State;
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
-use crate::numerics::planes::{Planes, ROWS};
+use crate::numerics::structure_of_arrays::{ROWS, StructureOfArrays};
 
 /// A motion whose formula is chosen once for all times, so that loops over times have no branches.
 pub(in crate::motion) trait Motion: Copy {
@@ -131,8 +131,8 @@ impl<L: Lane> Use for All<'_, L> {
 
     #[inline(always)]
     fn with(self, formula: &impl Formula) {
-        let mut states = Planes::<7>::ZERO;
-        let mut times = Planes::<1>::ZERO;
+        let mut states = StructureOfArrays::<7>::ZERO;
+        let mut times = StructureOfArrays::<1>::ZERO;
         let rows = (self.times.chunks(ROWS))
             .zip(self.attitudes.chunks_mut(ROWS))
             .zip(self.omegas.chunks_mut(ROWS));
@@ -151,7 +151,7 @@ impl<L: Lane> Use for All<'_, L> {
 
 /// From planes to rows; outside the kernel, where the compiler would scatter.
 #[inline(never)]
-fn write(states: &Planes<7>, attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
+fn write(states: &StructureOfArrays<7>, attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
     for (row, (attitude, omega)) in attitudes.iter_mut().zip(omegas).enumerate().take(ROWS) {
         *attitude = states.get(row, 0);
         *omega = states.get(row, 4);

@@ -6,7 +6,7 @@
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lane::Lane;
-use crate::numerics::planes::{Planes, ROWS};
+use crate::numerics::structure_of_arrays::{ROWS, StructureOfArrays};
 use crate::numerics::theta::quotients::{Circular, Hyperbolic, Values};
 use crate::numerics::theta::{circular, hyperbolic};
 use crate::numerics::turns::{exp_minus, sin_cos_turns, turns, whole_off};
@@ -246,7 +246,7 @@ impl<F: Functions> Kernel for Many<'_, F> {
     fn run<L: Lane>(self) {
         // Copies, which no output can overlap.
         let (course, functions) = (*self.course.0, *self.course.1);
-        let (mut before, mut after) = (Planes::<1>::ZERO, Planes::<7>::ZERO);
+        let (mut before, mut after) = (StructureOfArrays::<1>::ZERO, StructureOfArrays::<7>::ZERO);
         let blocks = (self.times.chunks(ROWS))
             .zip(self.attitudes.chunks_mut(ROWS))
             .zip(self.omegas.chunks_mut(ROWS));

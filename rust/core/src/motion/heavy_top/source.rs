@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::scaled::{near_one, sum_of_squares, times};
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::elliptic::Real;
+use crate::numerics::elliptic::MultiPrecision;
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
 
 /// The data of a top as the body has them.
@@ -32,7 +32,7 @@ pub(super) struct Sizes<T> {
     pub(super) exponent: i32,
 }
 
-impl<T: Real> Source<T> {
+impl<T: MultiPrecision> Source<T> {
     /// The moments and the arm to twice the precision, in units of the top itself.
     pub(super) fn sizes(&self) -> Sizes<T> {
         let Source {
@@ -70,6 +70,6 @@ impl<T: Real> Source<T> {
     }
 }
 
-fn not_negative<T: Real>(x: T) -> T {
+fn not_negative<T: MultiPrecision>(x: T) -> T {
     if x.rounded() > 0.0 { x } else { T::from(0.0) }
 }

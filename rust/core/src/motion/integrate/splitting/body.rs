@@ -116,7 +116,7 @@ impl Body {
             mass,
             euler: *euler,
             moments,
-            principal: RefinedPrincipal::given(&moments, &Matrix3::identity()),
+            principal: RefinedPrincipal::from_principal(&moments, &Matrix3::identity()),
             q_bp: from_axes(euler.axes()),
             massless,
             symmetry: Symmetry::of(&moments, &massless),

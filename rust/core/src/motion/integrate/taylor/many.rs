@@ -13,7 +13,7 @@ use crate::motion::loads::variables::Fixed;
 use crate::motion::loads::{Parts, Term};
 use crate::motion::problem::{Run, Task};
 use crate::numerics::dispatch::dispatch;
-use crate::numerics::threads::{fill_blocks, locked, thread_count};
+use crate::numerics::threads::{fill_blocks, lock, thread_count};
 
 /// The most motions that a thread takes at a time.
 const MOST: usize = 1024;
@@ -141,7 +141,7 @@ impl Tasks<'_, '_> {
                     see: None,
                 })
             } else {
-                let mut almanac = locked(self.almanacs).pop().unwrap_or_default();
+                let mut almanac = lock(self.almanacs).pop().unwrap_or_default();
                 let side_by_side = SideBySide {
                     settings,
                     jobs,
@@ -149,7 +149,7 @@ impl Tasks<'_, '_> {
                     almanac: &mut almanac,
                 };
                 let flow = side_by_side.run();
-                locked(self.almanacs).push(almanac);
+                lock(self.almanacs).push(almanac);
                 flow
             }
         };
