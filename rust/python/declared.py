@@ -25,7 +25,7 @@ WIDTH = 110
 #: Modules of the package, and where their functions are declared in Rust.
 MODULES = {
     "loads": ["loads"],
-    "solids": ["solids/flat_faced.rs", "solids/round.rs", "solids/turned.rs"],
+    "solids": ["solids.rs"],
     "laminae": ["laminae.rs"],
     "rods": ["rods.rs"],
 }

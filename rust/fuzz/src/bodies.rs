@@ -5,9 +5,8 @@ use nalgebra::{Matrix3, Matrix4, Matrix6};
 use polhode::error::Error;
 use polhode::mass::density::{Effort, from_density, from_radial_density};
 use polhode::mass::forms::SpatialOrder;
-use polhode::mass::particles::labelled_particles;
-use polhode::mass::particles::particles;
-use polhode::mass::polyhedron::closure::{capped, hulled};
+use polhode::mass::particles::{labelled_particles, particles};
+use polhode::mass::polyhedron::closure::{close_with_caps, close_with_hull};
 use polhode::mass::polyhedron::{Options, polyhedron_watched};
 use polhode::mass::regions::Region;
 use polhode::mass::surface::{area, surface};
@@ -66,7 +65,7 @@ pub fn any(draw: &mut Draw<'_>) -> Result<(Option<RigidBody>, f64)> {
         _ => {
             let parts = draw.list(3, solid)?;
             let parts: Vec<RigidBody> = parts.into_iter().flatten().collect();
-            polhode::mass::composites::combined(&parts).ok()
+            polhode::mass::assemblies::combined(&parts).ok()
         }
     };
     Ok((body, admitted))
@@ -173,10 +172,10 @@ fn of_mesh(draw: &mut Draw<'_>) -> Result<Option<RigidBody>> {
     let kind = draw.up_to(5)?;
     let body = match kind {
         0 => surface(vertices, faces, amount, watch).ok(),
-        1 => capped(vertices, faces, amount, options, watch).ok(),
+        1 => close_with_caps(vertices, faces, amount, options, watch).ok(),
         2 => {
             let hull = mesh.faces.iter().rev().copied().collect::<Vec<_>>();
-            hulled(vertices, faces, &hull, amount, watch).ok()
+            close_with_hull(vertices, faces, &hull, amount, watch).ok()
         }
         3 => thick_shell(vertices, faces, draw.positive()?, amount, watch).ok(),
         _ => polyhedron_watched(vertices, faces, amount, options, watch).ok(),
@@ -332,9 +331,8 @@ fn of_density(draw: &mut Draw<'_>) -> Result<Made> {
                 .for_each(|(out, &r)| *out = law(r));
             Ok::<(), Error>(())
         };
-        return Ok(
-            from_radial_density(&boundaries, density, effort).and_then(|found| found.converged())
-        );
+        return Ok(from_radial_density(&boundaries, density, effort)
+            .and_then(|found| found.require_converged()));
     }
     let region = match draw.up_to(4)? {
         0 => Region::cuboid(&draw.vector()?, &draw.vector()?),
@@ -359,5 +357,5 @@ fn of_density(draw: &mut Draw<'_>) -> Result<Made> {
     };
     Ok(region
         .and_then(|region| from_density(&region, density, effort))
-        .and_then(|found| found.converged()))
+        .and_then(|found| found.require_converged()))
 }

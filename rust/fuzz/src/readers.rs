@@ -9,7 +9,7 @@ use polhode::io::ply::PlyStream;
 use polhode::io::stl::{self, StlStream};
 use polhode::io::{TriangleMesh, plates};
 use polhode::mass::polyhedron::stream::{StreamError, Triangle, TriangleStream};
-use polhode::mass::polyhedron::streamed::streamed;
+use polhode::mass::polyhedron::streaming::stream_solid;
 use polhode::mass::polyhedron::{Options, polyhedron_watched};
 use polhode::mass::provenance::{Checks, MomentsFrom};
 use polhode::mass::{Amount, MassAccumulator, Provenance};
@@ -112,7 +112,7 @@ fn both_ways(stream: &mut dyn TriangleStream, mesh: &TriangleMesh) {
         orient: false,
         check: true,
     };
-    let of_stream = streamed(stream, 1.0, amount, options, &mut patience(1000));
+    let of_stream = stream_solid(stream, 1.0, amount, options, &mut patience(1000));
     let (vertices, faces) = (&mesh.vertices, &mesh.faces);
     let in_memory = polyhedron_watched(vertices, faces, amount, options, &mut patience(1000));
     assert_eq!(

@@ -10,9 +10,9 @@ use pyo3::types::{PyBytes, PyTuple};
 
 use crate::arrays::{read_scalar, write};
 use crate::body::PyRigidBody;
-use crate::elsewhere::{handed_over, is_any};
 use crate::errors::to_py;
 use crate::interrupt::watched;
+use crate::lazy_arrays::{handed_over, is_any};
 use crate::particles::ParticleArrays;
 use crate::stack::Stack;
 

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyList, PyTuple};
 
 use crate::arrays::{as_array, read, try_rows};
-use crate::depth::Deeper;
+use crate::depth::RecursionGuard;
 use crate::stack::Stack;
 
 /// Attitudes: quaternions (..., 4) as (x, y, z, w), or whatever has `as_quat()`; nothing is the identity.
@@ -69,7 +69,7 @@ fn as_quaternion<'py>(object: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, 
     if has_none {
         return Ok(None);
     }
-    let _deeper = Deeper::argument("as_quat")?;
+    let _guard = RecursionGuard::argument("as_quat")?;
     object
         .getattr_opt("as_quat")?
         .map(|method| method.call0())

@@ -3,14 +3,14 @@
 use std::sync::Arc;
 
 use polhode::RigidBody;
-use polhode::uncertainty::Doubt;
+use polhode::uncertainty::LinearUncertainty;
 use pyo3::prelude::*;
 
 use crate::figure::Figures;
 use crate::stack::Stack;
 
-/// The doubts of each body of a stack, or none where all is taken as known.
-pub(crate) type Doubts = Option<Arc<Vec<Doubt>>>;
+/// The uncertainties of each body of a stack, or none where all is taken as known.
+pub(crate) type Uncertainties = Option<Arc<Vec<LinearUncertainty>>>;
 
 /// A rigid body, or a stack of bodies: mass, centre of mass C, inertia tensor about C.
 ///
@@ -65,7 +65,7 @@ pub(crate) type Doubts = Option<Arc<Vec<Doubt>>>;
 pub(crate) struct PyRigidBody {
     pub(crate) bodies: Stack<RigidBody>,
     /// What is not known of them.
-    pub(crate) doubts: Doubts,
+    pub(crate) uncertainties: Uncertainties,
     /// What they look like.
     pub(crate) figures: Figures,
 }
@@ -74,7 +74,7 @@ impl From<Stack<RigidBody>> for PyRigidBody {
     fn from(bodies: Stack<RigidBody>) -> Self {
         Self {
             bodies,
-            doubts: None,
+            uncertainties: None,
             figures: None,
         }
     }

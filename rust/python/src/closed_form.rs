@@ -73,7 +73,7 @@ pub(crate) fn trajectory<'py, M: ClosedForm>(
     let (uncertain, motion) = uncertain;
     if starts_at_zero {
         fields.set_item("uncertain_start", uncertain.to_python(py)?)?;
-    } else if body.get().doubts.is_some() || uncertain.is_any() {
+    } else if body.get().uncertainties.is_some() || uncertain.is_any() {
         // How uncertain the first of these states is the motion knows, which began at t = 0.
         fields.set_item("uncertain_start", motion)?;
     }

@@ -22,9 +22,9 @@ thread_local! {
 }
 
 /// One call of the package that calls functions of Python, as long as it is under way.
-pub(crate) struct Deeper(&'static LocalKey<Cell<usize>>);
+pub(crate) struct RecursionGuard(&'static LocalKey<Cell<usize>>);
 
-impl Deeper {
+impl RecursionGuard {
     /// A run, deeper by one than the one whose function began it.
     ///
     /// # Errors
@@ -60,7 +60,7 @@ impl Deeper {
     }
 }
 
-impl Drop for Deeper {
+impl Drop for RecursionGuard {
     fn drop(&mut self) {
         self.0.set(self.0.get() - 1);
     }

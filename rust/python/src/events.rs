@@ -94,7 +94,7 @@ impl Functions {
                 reason = "checked above to be a count"
             )]
             last: terminal as u64,
-            watched: watched(function, load, terms)?,
+            watched: read_event(function, load, terms)?,
         });
         Ok(())
     }
@@ -104,7 +104,7 @@ impl Functions {
     }
 
     /// The functions with the GIL to call them.
-    pub(crate) fn calling<'a, 'py>(
+    pub(crate) fn with_callbacks<'a, 'py>(
         &'a self,
         py: Python<'py>,
         states: States<'a>,
@@ -118,7 +118,11 @@ impl Functions {
 }
 
 /// What an event looks for: its function, or what becomes of a wheel of the load.
-fn watched(event: &Bound<'_, PyAny>, load: &PyLoad, terms: &Stack<Vec<Term>>) -> PyResult<Watched> {
+fn read_event(
+    event: &Bound<'_, PyAny>,
+    load: &PyLoad,
+    terms: &Stack<Vec<Term>>,
+) -> PyResult<Watched> {
     let Some(of) = event
         .getattr_opt("_of_wheel")?
         .filter(|given| !given.is_none())

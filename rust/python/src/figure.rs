@@ -82,10 +82,10 @@ impl Outline {
     }
 
     /// That of a body, where it is.
-    pub(crate) fn placed(self) -> Figure {
+    pub(crate) fn place(self) -> Figure {
         Arc::new([Part {
             outline: Arc::new(self),
-            place: Place::default(),
+            place: Placement::default(),
             is_taken_out: false,
         }])
     }
@@ -95,18 +95,18 @@ impl Outline {
 #[derive(Clone)]
 pub(crate) struct Part {
     pub(crate) outline: Arc<Outline>,
-    pub(crate) place: Place,
+    pub(crate) place: Placement,
     pub(crate) is_taken_out: bool,
 }
 
 /// Where a shape goes: x → turn x + shift; the turn scales, too.
 #[derive(Clone, Copy)]
-pub(crate) struct Place {
+pub(crate) struct Placement {
     pub(crate) turn: Matrix3<f64>,
     pub(crate) shift: Vector3<f64>,
 }
 
-impl Default for Place {
+impl Default for Placement {
     fn default() -> Self {
         Self {
             turn: Matrix3::identity(),
@@ -115,7 +115,7 @@ impl Default for Place {
     }
 }
 
-impl Place {
+impl Placement {
     pub(crate) fn after(&self, before: &Self) -> Self {
         Self {
             turn: self.turn * before.turn,
@@ -131,7 +131,7 @@ pub(crate) fn figures(rows: usize, of: impl FnMut(usize) -> Figure) -> Figures {
 
 /// The shape of one body, if it is known.
 pub(crate) fn alone(outline: Option<Outline>) -> Figures {
-    outline.map(|outline| Arc::new(vec![outline.placed()]))
+    outline.map(|outline| Arc::new(vec![outline.place()]))
 }
 
 /// The shapes of homogeneous bodies by the lengths of each.
@@ -140,7 +140,7 @@ pub(crate) fn figures_of_lengths(
     rows: usize,
     mut lengths: impl FnMut(usize) -> Vec<f64>,
 ) -> Figures {
-    figures(rows, |row| Outline::of(kind, lengths(row)).placed())
+    figures(rows, |row| Outline::of(kind, lengths(row)).place())
 }
 
 /// Bodies put together: each with whether it is taken out.
@@ -149,7 +149,7 @@ pub(crate) fn together(bodies: impl IntoIterator<Item = (Figure, bool)>) -> Figu
     for (figure, is_out) in bodies {
         let is_whole = figure.iter().any(|part| part.outline.kind == WHOLE);
         if is_whole || parts.len() + figure.len() > MOST_PARTS {
-            return Outline::of(WHOLE, Vec::new()).placed();
+            return Outline::of(WHOLE, Vec::new()).place();
         }
         parts.extend(figure.iter().map(|part| Part {
             is_taken_out: part.is_taken_out != is_out,

@@ -11,7 +11,7 @@ use polhode::io::stl::{self, StlStream};
 use polhode::io::{TriangleMesh, plates};
 use polhode::mass::polyhedron::Options;
 use polhode::mass::polyhedron::stream::{StreamError, TriangleStream};
-use polhode::mass::polyhedron::streamed::streamed;
+use polhode::mass::polyhedron::streaming;
 use polhode::mass::surface;
 use polhode::parallel::Halt;
 use pyo3::exceptions::{PyOSError, PyValueError};
@@ -19,10 +19,9 @@ use pyo3::prelude::*;
 
 use crate::arrays::read_scalar;
 use crate::body::PyRigidBody;
-use crate::depth::Deeper;
+use crate::depth::RecursionGuard;
 use crate::errors::{to_py, with_prefix};
-use crate::interrupt::Interrupt;
-use crate::interrupt::watched;
+use crate::interrupt::{Interrupt, watched};
 use crate::meshes::{read_mesh, with_mesh};
 use crate::shapes::amount;
 use crate::stack::Stack;
@@ -64,7 +63,7 @@ pub(crate) fn stream_solid(
     orient: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(PyRigidBody, usize, f64, f64)> {
-    let _deeper = Deeper::run("from_file")?;
+    let _guard = RecursionGuard::run("from_file")?;
     let of = |weight: Option<&Weight>| weight.map(|weight| weight.value);
     let amount = amount(of(mass.as_ref()), of(density.as_ref()))?;
     let options = Options {
@@ -86,14 +85,14 @@ pub(crate) fn stream_solid(
             &mut stl
         };
         let watch = &mut |fraction| interrupt.poll(Some(fraction));
-        streamed(stream, scale, amount, options, watch)
+        streaming::stream_solid(stream, scale, amount, options, watch)
     });
     interrupt.finish(py, outcome.is_ok())?;
     let solid = outcome.map_err(|error| match error {
         StreamError::Failed(error) => to_py(py, &error), // the caller names the file
         other => stream_error(py, &path, other),
     })?;
-    let body = PyRigidBody::from(Stack::one(solid.body)).weighed([density, mass, None])?;
+    let body = PyRigidBody::from(Stack::one(solid.body)).weigh([density, mass, None])?;
     Ok((body, solid.triangles, solid.volume, solid.area))
 }
 

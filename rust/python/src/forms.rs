@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use crate::arrays::{Argument, read, read_scalar, try_rows, write, write_of};
 use crate::body::PyRigidBody;
 use crate::stack::{Broadcast, Stack};
-use crate::uncertain::{Quantity, carried, of_numbers, quantity, quantity_or};
+use crate::uncertain::{Quantity, of_numbers, propagate_rows, quantity, quantity_or};
 
 type Floats<'py> = Bound<'py, PyArrayDyn<f64>>;
 type Array<'py> = PyResult<Floats<'py>>;
@@ -78,11 +78,11 @@ impl PyRigidBody {
             || moments.is_uncertain()
             || products.is_uncertain()
             || center.is_uncertain();
-        let doubts = carried(py, &grid, is_uncertain, |[m, i, p, c]| {
+        let uncertainties = propagate_rows(py, &grid, is_uncertain, |[m, i, p, c]| {
             let numbers = [mass.row(m), center.row(c), moments.row(i), products.row(p)].concat();
             of_numbers(&FromPositiveProducts, &numbers)
         })?;
-        PyRigidBody::doubtful(bodies, doubts).possible(py)
+        PyRigidBody::with_uncertainty(bodies, uncertainties).possible(py)
     }
 }
 
@@ -103,8 +103,8 @@ impl PyRigidBody {
 ///
 /// Examples
 /// --------
-/// >>> from polhode import forms, solids
-/// >>> forms.to_positive_products(solids.wedge((6, 2, 6), mass=36.0))
+/// >>> from polhode import interop, solids
+/// >>> interop.to_positive_products(solids.wedge((6, 2, 6), mass=36.0))
 /// (array([ 84., 144.,  84.]), array([  0., -36.,   0.]))
 #[pyfunction]
 pub(crate) fn to_positive_products<'py>(
@@ -132,8 +132,8 @@ pub(crate) fn to_positive_products<'py>(
 ///
 /// Examples
 /// --------
-/// >>> from polhode import forms, solids
-/// >>> forms.to_pseudo_inertia(solids.box((1, 2, 3), mass=12.0).translated((0, 0, 1)))
+/// >>> from polhode import interop, solids
+/// >>> interop.to_pseudo_inertia(solids.box((1, 2, 3), mass=12.0).translated((0, 0, 1)))
 /// array([[ 1.,  0.,  0.,  0.],
 ///        [ 0.,  4.,  0.,  0.],
 ///        [ 0.,  0., 21., 12.],
@@ -159,8 +159,8 @@ pub(crate) fn to_pseudo_inertia<'py>(py: Python<'py>, body: &PyRigidBody) -> Arr
 /// Examples
 /// --------
 /// >>> import numpy as np
-/// >>> from polhode import forms
-/// >>> forms.from_pseudo_inertia(np.diag([1.0, 4.0, 9.0, 12.0])).principal_moments
+/// >>> from polhode import interop
+/// >>> interop.from_pseudo_inertia(np.diag([1.0, 4.0, 9.0, 12.0])).principal_moments
 /// array([ 5., 10., 13.])
 #[pyfunction]
 #[pyo3(signature = (pseudo_inertia, *, rtol=None))]
@@ -188,8 +188,8 @@ pub(crate) fn from_pseudo_inertia(
 ///
 /// Examples
 /// --------
-/// >>> from polhode import forms, solids
-/// >>> forms.to_spatial_inertia(solids.cube(1.0, mass=6.0)).diagonal()
+/// >>> from polhode import interop, solids
+/// >>> interop.to_spatial_inertia(solids.cube(1.0, mass=6.0)).diagonal()
 /// array([1., 1., 1., 6., 6., 6.])
 #[pyfunction]
 #[pyo3(signature = (body, order="angular-linear"))]
@@ -220,8 +220,8 @@ pub(crate) fn to_spatial_inertia<'py>(
 /// Examples
 /// --------
 /// >>> import numpy as np
-/// >>> from polhode import forms
-/// >>> forms.from_spatial_inertia(np.diag([1.0, 2.0, 2.5, 3.0, 3.0, 3.0])).mass
+/// >>> from polhode import interop
+/// >>> interop.from_spatial_inertia(np.diag([1.0, 2.0, 2.5, 3.0, 3.0, 3.0])).mass
 /// 3.0
 #[pyfunction]
 #[pyo3(signature = (spatial_inertia, order="angular-linear", *, rtol=None))]
@@ -251,8 +251,8 @@ pub(crate) fn from_spatial_inertia(
 ///
 /// Examples
 /// --------
-/// >>> from polhode import forms, solids
-/// >>> forms.to_parameters(solids.box((1, 2, 3), mass=12.0).translated((0, 0, 1)))
+/// >>> from polhode import interop, solids
+/// >>> interop.to_parameters(solids.box((1, 2, 3), mass=12.0).translated((0, 0, 1)))
 /// array([12.,  0.,  0., 12., 25.,  0., 22.,  0.,  0.,  5.])
 #[pyfunction]
 pub(crate) fn to_parameters<'py>(py: Python<'py>, body: &PyRigidBody) -> Array<'py> {
@@ -274,8 +274,8 @@ pub(crate) fn to_parameters<'py>(py: Python<'py>, body: &PyRigidBody) -> Array<'
 ///
 /// Examples
 /// --------
-/// >>> from polhode import forms
-/// >>> forms.from_parameters([12, 0, 0, 12, 25, 0, 22, 0, 0, 5]).principal_moments
+/// >>> from polhode import interop
+/// >>> interop.from_parameters([12, 0, 0, 12, 25, 0, 22, 0, 0, 5]).principal_moments
 /// array([ 5., 10., 13.])
 #[pyfunction]
 #[pyo3(signature = (parameters, *, rtol=None))]
@@ -312,8 +312,8 @@ pub(crate) fn from_parameters(
 ///
 /// Examples
 /// --------
-/// >>> from polhode import forms, solids
-/// >>> forms.to_log_cholesky(solids.box((12**0.5,) * 3, mass=1.0)).round(12) + 0.0
+/// >>> from polhode import interop, solids
+/// >>> interop.to_log_cholesky(solids.box((12**0.5,) * 3, mass=1.0)).round(12) + 0.0
 /// array([0., 0., 0., 0., 0., 0., 0., 0., 0., 0.])
 #[pyfunction]
 pub(crate) fn to_log_cholesky<'py>(py: Python<'py>, body: &PyRigidBody) -> Array<'py> {
@@ -333,8 +333,8 @@ pub(crate) fn to_log_cholesky<'py>(py: Python<'py>, body: &PyRigidBody) -> Array
 ///
 /// Examples
 /// --------
-/// >>> from polhode import forms
-/// >>> body = forms.from_log_cholesky([0, 0, 0, 0, 0, 0, 0, 1, 2, 3])
+/// >>> from polhode import interop
+/// >>> body = interop.from_log_cholesky([0, 0, 0, 0, 0, 0, 0, 1, 2, 3])
 /// >>> body.principal_moments, body.center_of_mass
 /// (array([2., 2., 2.]), array([1., 2., 3.]))
 #[pyfunction]

@@ -6,9 +6,9 @@ use pyo3::prelude::*;
 
 use crate::body::PyRigidBody;
 use crate::figure::{Outline, alone, figures_of_lengths};
-use crate::shapes::{Amounts, Given, shape_function};
+use crate::shapes::{Amounts, Optional, shape_function};
 use crate::stack::Broadcast;
-use crate::uncertain::{Quantity, carried, quantity, quantity_list};
+use crate::uncertain::{Quantity, propagate_rows, quantity, quantity_list};
 
 shape_function! {
     /// Disk about z: I_z = ½ m R², I_x = ¼ m R².
@@ -124,8 +124,8 @@ shape_function! {
 #[pyo3(signature = (vertices, *, mass=None, density=None))]
 pub(crate) fn triangle(
     vertices: &Bound<'_, PyAny>,
-    mass: Given<'_, '_>,
-    density: Given<'_, '_>,
+    mass: Optional<'_, '_>,
+    density: Optional<'_, '_>,
 ) -> PyResult<PyRigidBody> {
     let corners: Quantity<[[f64; 2]; 3]> = quantity(vertices, "vertices")?;
     let amounts = Amounts::read((mass, density))?;
@@ -135,7 +135,7 @@ pub(crate) fn triangle(
         laminae::triangle(&corners.values[v], amounts.values[a])
     })?;
     let is_uncertain = corners.is_uncertain() || amounts.given.is_uncertain();
-    let doubts = carried(vertices.py(), &grid, is_uncertain, |[v, a]| {
+    let uncertainties = propagate_rows(vertices.py(), &grid, is_uncertain, |[v, a]| {
         amounts.doubt_of_polygon(a, corners.row(v))
     })?;
     let figures = figures_of_lengths("laminae::polygon", grid.len(), |row| {
@@ -143,7 +143,7 @@ pub(crate) fn triangle(
             .as_flattened()
             .to_vec()
     });
-    Ok(PyRigidBody::doubtful(bodies, doubts).looking(figures))
+    Ok(PyRigidBody::with_uncertainty(bodies, uncertainties).with_shapes(figures))
 }
 
 /// Simple polygon in the x-y plane, where its corners are.
@@ -177,8 +177,8 @@ pub(crate) fn triangle(
 #[pyo3(signature = (vertices, *, mass=None, density=None))]
 pub(crate) fn polygon(
     vertices: &Bound<'_, PyAny>,
-    mass: Given<'_, '_>,
-    density: Given<'_, '_>,
+    mass: Optional<'_, '_>,
+    density: Optional<'_, '_>,
 ) -> PyResult<PyRigidBody> {
     let py = vertices.py();
     let corners: Quantity<[f64; 2]> = quantity_list(vertices, "vertices", "..., n")?;
@@ -198,7 +198,7 @@ pub(crate) fn polygon(
         )
     })?;
     let is_uncertain = corners.is_uncertain() || amounts.given.is_uncertain();
-    let doubts = carried(py, &grid, is_uncertain, |[v, a]| {
+    let uncertainties = propagate_rows(py, &grid, is_uncertain, |[v, a]| {
         let numbers = (v * n..(v + 1) * n)
             .flat_map(|row| corners.row(row))
             .collect();
@@ -208,5 +208,5 @@ pub(crate) fn polygon(
     let outline = is_alone
         .then(|| Outline::of_points("laminae::polygon", &corners.values.rows))
         .flatten();
-    Ok(PyRigidBody::doubtful(bodies, doubts).looking(alone(outline)))
+    Ok(PyRigidBody::with_uncertainty(bodies, uncertainties).with_shapes(alone(outline)))
 }

@@ -3,8 +3,8 @@
 //! | file | what it knows |
 //! |---|---|
 //! | `arrays`, `items`, `meshes` | NumPy layout |
-//! | `elsewhere` | arrays that are not in memory |
-//! | `foreign` | what other objects become as arrays, and what would be lost on the way |
+//! | `lazy_arrays` | arrays that are not in memory |
+//! | `array_conversion` | what other objects become as arrays, and what would be lost on the way |
 //! | `memory` | whether there is room for a result |
 //! | `shape`, `stack`, `indexing` | shape arithmetic |
 //! | `errors`, `advice` | which exception an error of the core becomes, and the keyword that mends it |
@@ -12,7 +12,7 @@
 //! | `interrupt` | Ctrl-C and progress |
 //! | `depth` | functions of Python that call the package anew |
 //! | `closed_form` | exact motions at many times |
-//! | `drawn` | pictures of exact motions, which Python draws |
+//! | `pictures` | pictures of exact motions, which Python draws |
 //! | `uncertain` | numbers with a sigma, and the covariances of bodies |
 //! | `environment` | the variables that limit threads and name the instruction set |
 //! | the others | one each for a class or module of the Python package |
@@ -23,13 +23,12 @@
 mod about;
 mod accumulator;
 mod advice;
+mod array_conversion;
 mod arrays;
 mod attitudes;
 mod body;
 mod closed_form;
 mod depth;
-mod drawn;
-mod elsewhere;
 mod environment;
 mod equimomental;
 mod errors;
@@ -37,7 +36,6 @@ mod euler_rates;
 mod events;
 mod figure;
 mod files;
-mod foreign;
 mod forms;
 mod free_motion;
 mod gyrostat;
@@ -48,12 +46,14 @@ mod interrupt;
 mod items;
 mod kinematics;
 mod laminae;
+mod lazy_arrays;
 mod loads;
 mod memory;
 mod meshes;
 mod orbits;
 mod parallel_axis;
 mod particles;
+mod pictures;
 mod principal;
 mod random;
 mod realizable;
@@ -104,7 +104,7 @@ mod _core {
     #[pymodule_export]
     use crate::gyrostat::PyGyrostat;
     #[pymodule_export]
-    use crate::gyrostat::motion::PyGyrostatMotion;
+    use crate::gyrostat::PyGyrostatMotion;
     #[pymodule_export]
     use crate::heavy_top::PyHeavyTop;
     #[pymodule_export]

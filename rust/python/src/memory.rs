@@ -41,7 +41,7 @@ pub(crate) fn room(what: impl Display, shape: &[usize], bytes: usize) -> PyResul
     let needed = items.and_then(|items| Some((items, items.checked_mul(bytes)? as u64)));
     match needed {
         Some((items, needed)) if needed <= LITTLE => Ok(items),
-        Some((items, needed)) => match left() {
+        Some((items, needed)) => match memory_left() {
             Some(left) if needed > left => {
                 let law = format!("but {} are left", human(left as f64));
                 Err(refusal(what, shape, bytes, &law))
@@ -111,8 +111,8 @@ fn human(bytes: f64) -> String {
 }
 
 /// What is left for this process in bytes, where the system tells: of the machine and of its group.
-fn left() -> Option<u64> {
-    let machine = machine().or_else(|| Python::attach(|py| installed(py).ok()));
+fn memory_left() -> Option<u64> {
+    let machine = machine().or_else(|| Python::attach(|py| installed_memory(py).ok()));
     [machine, group()].into_iter().flatten().min()
 }
 
@@ -124,7 +124,7 @@ fn machine() -> Option<u64> {
 }
 
 /// Of a machine that does not tell what is free: all that is installed.
-fn installed(py: Python<'_>) -> PyResult<u64> {
+fn installed_memory(py: Python<'_>) -> PyResult<u64> {
     let os = py.import("os")?;
     let ask = |name: &str| os.call_method1("sysconf", (name,))?.extract::<u64>();
     Ok(ask("SC_PHYS_PAGES")?.saturating_mul(ask("SC_PAGE_SIZE")?))

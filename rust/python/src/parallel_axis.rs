@@ -58,7 +58,7 @@ pub(crate) fn inertia_from_center_of_mass<'py>(
     mass: &Bound<'py, PyAny>,
     displacement: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    shifted(py, inertia, mass, displacement, from_center_of_mass)
+    shift(py, inertia, mass, displacement, from_center_of_mass)
 }
 
 /// Parallel-axis theorem to the centre of mass: ``I_C = I_P − m (d² 1 − d dᵀ)``.
@@ -103,10 +103,10 @@ pub(crate) fn inertia_to_center_of_mass<'py>(
     mass: &Bound<'py, PyAny>,
     displacement: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    shifted(py, inertia, mass, displacement, to_center_of_mass)
+    shift(py, inertia, mass, displacement, to_center_of_mass)
 }
 
-fn shifted<'py>(
+fn shift<'py>(
     py: Python<'py>,
     inertia: &Bound<'py, PyAny>,
     mass: &Bound<'py, PyAny>,

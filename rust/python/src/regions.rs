@@ -51,7 +51,7 @@ pub(crate) fn cuboid(low: &Bound<'_, PyAny>, high: &Bound<'_, PyAny>) -> PyResul
         single(read(low, "low")?, "low")?,
         single(read(high, "high")?, "high")?,
     );
-    made(
+    make_region(
         py,
         Region::cuboid(&low.into(), &high.into()),
         format!("regions.box(low={low:?}, high={high:?})"),
@@ -90,7 +90,7 @@ pub(crate) fn ball(
     #[pyo3(from_py_with = read_scalar)] inner_radius: f64,
 ) -> PyResult<PyRegion> {
     let center: [f64; 3] = single(read_or(&center, "center", [0.0; 3])?, "center")?;
-    made(
+    make_region(
         py,
         Region::ball(radius, &center.into(), inner_radius),
         format!(
@@ -126,7 +126,7 @@ pub(crate) fn ellipsoid(semi_axes: &Bound<'_, PyAny>, center: Argument<'_>) -> P
     let py = semi_axes.py();
     let semi_axes: [f64; 3] = single(read(semi_axes, "semi_axes")?, "semi_axes")?;
     let center: [f64; 3] = single(read_or(&center, "center", [0.0; 3])?, "center")?;
-    made(
+    make_region(
         py,
         Region::ellipsoid(&semi_axes.into(), &center.into()),
         format!("regions.ellipsoid(semi_axes={semi_axes:?}, center={center:?})"),
@@ -167,7 +167,7 @@ pub(crate) fn cylinder(
     #[pyo3(from_py_with = read_scalar)] inner_radius: f64,
 ) -> PyResult<PyRegion> {
     let center: [f64; 3] = single(read_or(&center, "center", [0.0; 3])?, "center")?;
-    made(
+    make_region(
         py,
         Region::cylinder(radius, height, &Vector3::from(center), inner_radius),
         format!(
@@ -176,7 +176,7 @@ pub(crate) fn cylinder(
     )
 }
 
-/// Inside of a closed triangle mesh.
+/// InternalMomentum of a closed triangle mesh.
 ///
 /// If the mesh is not star-shaped about its centroid, the density is also evaluated at points outside the
 /// mesh, whose contributions cancel. Each face takes 343 evaluations or more.
@@ -211,11 +211,15 @@ pub(crate) fn mesh(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyR
     with_mesh!(mesh, |vertices, faces| {
         let told = format!("<Region inside a mesh of {} faces>", faces.len());
         let region = watched(py, |watch| Region::mesh(vertices, faces, watch))?;
-        made(py, region, told)
+        make_region(py, region, told)
     })
 }
 
-fn made(py: Python<'_>, region: Result<Region, Error>, made_by: String) -> PyResult<PyRegion> {
+fn make_region(
+    py: Python<'_>,
+    region: Result<Region, Error>,
+    made_by: String,
+) -> PyResult<PyRegion> {
     let region = region.map_err(|error| to_py(py, &error))?;
     Ok(PyRegion { region, made_by })
 }

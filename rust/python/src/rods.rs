@@ -4,7 +4,7 @@ use polhode::mass::rods;
 use pyo3::prelude::*;
 
 use crate::body::PyRigidBody;
-use crate::shapes::{Given, lengths, shape, shape_function};
+use crate::shapes::{Optional, lengths, shape, shape_function};
 
 shape_function! {
     /// Thin rod along z: I_x = I_y = m L²/12, I_z = 0.
@@ -82,8 +82,8 @@ shape_function! {
 pub(crate) fn arc(
     radius: &Bound<'_, PyAny>,
     angle: &Bound<'_, PyAny>,
-    mass: Given<'_, '_>,
-    density: Given<'_, '_>,
+    mass: Optional<'_, '_>,
+    density: Optional<'_, '_>,
     degrees: bool,
 ) -> PyResult<PyRigidBody> {
     let (names, sizes) = (["radius", "angle"], [radius, angle]);

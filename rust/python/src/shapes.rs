@@ -2,7 +2,7 @@
 
 use polhode::Error;
 use polhode::mass::{Amount, RigidBody};
-use polhode::uncertainty::{Doubt, Follow, OfPolygon, OfShape, Shape, follow};
+use polhode::uncertainty::{Inputs, LinearUncertainty, OfPolygon, OfShape, Shape, propagate};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
@@ -10,10 +10,10 @@ use crate::arrays::Item;
 use crate::body::PyRigidBody;
 use crate::figure::figures_of_lengths;
 use crate::stack::{Broadcast, Stack};
-use crate::uncertain::{Number, Quantity, carried, factor, quantity};
+use crate::uncertain::{Number, Quantity, factor, propagate_rows, quantity};
 
 /// An optional argument of any array-like kind.
-pub(crate) type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
+pub(crate) type Optional<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 /// Exactly one of mass and density.
 pub(crate) fn amount(mass: Option<f64>, density: Option<f64>) -> PyResult<Amount> {
@@ -34,7 +34,7 @@ macro_rules! shape {
     ($name:expr, |$lengths:pat_param| $n:expr, $function:path, $($argument:expr),+) => {{
         struct Shape;
         impl polhode::uncertainty::Shape<{ $n }> for Shape {
-            fn of<X: polhode::mass::ten::Size>(
+            fn of<X: polhode::mass::inertial_parameters::Size>(
                 &self,
                 $lengths: &[X; $n],
                 amount: polhode::mass::Amount,
@@ -57,8 +57,8 @@ macro_rules! shape_function {
         #[pyo3(signature = ($($length,)+ *, mass=None, density=None))]
         pub(crate) fn $name(
             $($length: &pyo3::Bound<'_, pyo3::PyAny>,)+
-            mass: $crate::shapes::Given<'_, '_>,
-            density: $crate::shapes::Given<'_, '_>,
+            mass: $crate::shapes::Optional<'_, '_>,
+            density: $crate::shapes::Optional<'_, '_>,
         ) -> pyo3::PyResult<$crate::body::PyRigidBody> {
             const NAMES: &[&str] = &[$(stringify!($length)),+];
             $crate::shapes::lengths(
@@ -80,8 +80,8 @@ macro_rules! shape_function {
         #[pyo3(signature = ($size, *, mass=None, density=None))]
         pub(crate) fn $name(
             $size: &pyo3::Bound<'_, pyo3::PyAny>,
-            mass: $crate::shapes::Given<'_, '_>,
-            density: $crate::shapes::Given<'_, '_>,
+            mass: $crate::shapes::Optional<'_, '_>,
+            density: $crate::shapes::Optional<'_, '_>,
         ) -> pyo3::PyResult<$crate::body::PyRigidBody> {
             $crate::shapes::one(
                 $size,
@@ -98,7 +98,7 @@ pub(crate) use shape_function;
 pub(crate) trait AnyShape<const N: usize>: Sync {
     fn body(&self, lengths: &[f64; N], amount: Amount) -> Result<RigidBody, Error>;
 
-    fn doubt(&self, amount: Amount, from: Follow<'_>) -> Result<Doubt, Error>;
+    fn uncertainty(&self, amount: Amount, from: Inputs<'_>) -> Result<LinearUncertainty, Error>;
 }
 
 impl<const N: usize, S: Shape<N> + Sync> AnyShape<N> for S {
@@ -106,8 +106,8 @@ impl<const N: usize, S: Shape<N> + Sync> AnyShape<N> for S {
         self.of(lengths, amount)
     }
 
-    fn doubt(&self, amount: Amount, from: Follow<'_>) -> Result<Doubt, Error> {
-        follow(&OfShape(self, amount), from)
+    fn uncertainty(&self, amount: Amount, from: Inputs<'_>) -> Result<LinearUncertainty, Error> {
+        propagate(&OfShape(self, amount), from)
     }
 }
 
@@ -115,7 +115,7 @@ impl<const N: usize, S: Shape<N> + Sync> AnyShape<N> for S {
 pub(crate) fn one<const N: usize>(
     size: &Bound<'_, PyAny>,
     name: &str,
-    amounts: (Given<'_, '_>, Given<'_, '_>),
+    amounts: (Optional<'_, '_>, Optional<'_, '_>),
     (kind, shape): Named<'_, N>,
 ) -> PyResult<PyRigidBody>
 where
@@ -131,20 +131,20 @@ where
         shape.body(&sizes.values[s], amounts.values[a])
     })?;
     let is_uncertain = sizes.is_uncertain() || amounts.given.is_uncertain();
-    let doubts = carried(size.py(), &grid, is_uncertain, |[s, a]| {
-        amounts.doubt(a, sizes.row(s), shape)
+    let uncertainties = propagate_rows(size.py(), &grid, is_uncertain, |[s, a]| {
+        amounts.uncertainty(a, sizes.row(s), shape)
     })?;
     let figures = figures_of_lengths(kind, grid.len(), |row| {
         sizes.values[grid.operands(row)[0]].to_vec()
     });
-    Ok(PyRigidBody::doubtful(bodies, doubts).looking(figures))
+    Ok(PyRigidBody::with_uncertainty(bodies, uncertainties).with_shapes(figures))
 }
 
 /// A shape with several lengths.
 pub(crate) fn lengths<const N: usize>(
     names: [&str; N],
     lengths: [&Bound<'_, PyAny>; N],
-    amounts: (Given<'_, '_>, Given<'_, '_>),
+    amounts: (Optional<'_, '_>, Optional<'_, '_>),
     (kind, shape): Named<'_, N>,
 ) -> PyResult<PyRigidBody> {
     let py = lengths[0].py();
@@ -166,16 +166,16 @@ pub(crate) fn lengths<const N: usize>(
         shape.body(&of_row(&together[l]), amounts.values[a])
     })?;
     let is_uncertain = amounts.given.is_uncertain() || read_in.iter().any(Quantity::is_uncertain);
-    let doubts = carried(py, &grid, is_uncertain, |[l, a]| {
+    let uncertainties = propagate_rows(py, &grid, is_uncertain, |[l, a]| {
         let numbers = (0..N)
             .flat_map(|k| read_in[k].row(together[l][k]))
             .collect();
-        amounts.doubt(a, numbers, shape)
+        amounts.uncertainty(a, numbers, shape)
     })?;
     let figures = figures_of_lengths(kind, grid.len(), |row| {
         of_row(&together[grid.operands(row)[0]]).to_vec()
     });
-    Ok(PyRigidBody::doubtful(bodies, doubts).looking(figures))
+    Ok(PyRigidBody::with_uncertainty(bodies, uncertainties).with_shapes(figures))
 }
 
 /// Masses or densities, which may be uncertain.
@@ -186,7 +186,7 @@ pub(crate) struct Amounts {
 
 impl Amounts {
     /// Exactly one of masses and densities.
-    pub(crate) fn read((mass, density): (Given<'_, '_>, Given<'_, '_>)) -> PyResult<Self> {
+    pub(crate) fn read((mass, density): (Optional<'_, '_>, Optional<'_, '_>)) -> PyResult<Self> {
         let (of, given, name): (fn(f64) -> Amount, _, _) = match (mass, density) {
             (Some(mass), None) => (Amount::Mass, mass, "mass"),
             (None, Some(density)) => (Amount::Density, density, "density"),
@@ -203,36 +203,36 @@ impl Amounts {
         })
     }
 
-    /// The doubts of a polygon with these coordinates of its corners and the amount of a row.
+    /// The uncertainties of a polygon with these coordinates of its corners and the amount of a row.
     pub(crate) fn doubt_of_polygon(
         &self,
         row: usize,
         corners: Vec<Number<'_>>,
-    ) -> Result<Doubt, Error> {
+    ) -> Result<LinearUncertainty, Error> {
         let relative = factor(&self.given.row(row));
         let mut numbers = corners;
         numbers.push((1.0, &relative));
-        let from = Follow {
+        let from = Inputs {
             bodies: &[],
             numbers: &numbers,
         };
-        follow(&OfPolygon(self.values[row]), from)
+        propagate(&OfPolygon(self.values[row]), from)
     }
 
-    /// The doubts of the body that a shape makes of these lengths and the amount of a row.
-    pub(crate) fn doubt<const N: usize>(
+    /// The uncertainties of the body that a shape makes of these lengths and the amount of a row.
+    pub(crate) fn uncertainty<const N: usize>(
         &self,
         row: usize,
         lengths: Vec<Number<'_>>,
         shape: &dyn AnyShape<N>,
-    ) -> Result<Doubt, Error> {
+    ) -> Result<LinearUncertainty, Error> {
         let relative = factor(&self.given.row(row));
         let mut numbers = lengths;
         numbers.push((1.0, &relative));
-        let from = Follow {
+        let from = Inputs {
             bodies: &[],
             numbers: &numbers,
         };
-        shape.doubt(self.values[row], from)
+        shape.uncertainty(self.values[row], from)
     }
 }

@@ -269,7 +269,7 @@ impl<'a, const K: usize> Broadcast<'a, K> {
     ) -> PyResult<Stack<R>> {
         let count = self.len();
         let mut rows = memory::vector(Names(&self.names), &self.shape, 0)?;
-        self.detached(py, &mut |interrupt| {
+        self.run_detached(py, &mut |interrupt| {
             if count == 0 {
                 return Ok(());
             }
@@ -296,7 +296,7 @@ impl<'a, const K: usize> Broadcast<'a, K> {
     }
 
     /// Does the rows while other threads of Python go on.
-    fn detached(&self, py: Python<'_>, rows: &mut Rows<'_>) -> PyResult<()> {
+    fn run_detached(&self, py: Python<'_>, rows: &mut Rows<'_>) -> PyResult<()> {
         let interrupt = Interrupt::new(None);
         let outcome = py.detach(|| rows(&interrupt));
         interrupt.finish(py, outcome.is_ok())?;

@@ -65,7 +65,7 @@ pub(crate) fn free_precession<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let bodies = &body.get().bodies;
     let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
-    let about = points(py, bodies, about.given(), "about")?;
+    let about = points(py, bodies, about.value(), "about")?;
     let shapes = [&bodies.shape[..], &omega.shape, &about.shape];
     let grid = Broadcast::of(["body", "omega", "about"], shapes)?;
     let found = grid.try_map(py, |[b, w, p]| {
@@ -211,7 +211,7 @@ pub(crate) fn least_spin<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let bodies = &body.get().bodies;
     let gravity: Stack<Vector3<f64>> = read(gravity, "gravity")?;
-    let inclination = turned(read_or(&inclination, "inclination", 0.0)?, degrees);
+    let inclination = in_radians(read_or(&inclination, "inclination", 0.0)?, degrees);
     let shapes = [&bodies.shape[..], &gravity.shape, &inclination.shape];
     let grid = Broadcast::of(["body", "gravity", "inclination"], shapes)?;
     let spins = grid.try_map(py, |[b, g, i]| {
@@ -271,7 +271,7 @@ pub(crate) fn steady_precession<'py>(
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let bodies = &body.get().bodies;
     let spin: Stack<f64> = read(spin, "spin")?;
-    let inclination = turned(read(inclination, "inclination")?, degrees);
+    let inclination = in_radians(read(inclination, "inclination")?, degrees);
     let gravity: Stack<Vector3<f64>> = read(gravity, "gravity")?;
     let shapes = [
         &bodies.shape[..],
@@ -287,7 +287,7 @@ pub(crate) fn steady_precession<'py>(
 }
 
 /// Inclinations in radians, of which a caller may have given degrees.
-pub(crate) fn turned(mut inclination: Stack<f64>, degrees: bool) -> Stack<f64> {
+pub(crate) fn in_radians(mut inclination: Stack<f64>, degrees: bool) -> Stack<f64> {
     if degrees {
         for angle in &mut inclination.rows {
             *angle = angle.to_radians();

@@ -22,7 +22,7 @@
 //! use polhode::mass::{Amount, laminae, polyhedron::polyhedron};
 //! use polhode::motion::euler_angles::Sequence;
 //! use polhode::nalgebra::{Matrix3, Vector3};
-//! use polhode::uncertainty::{Given, Source};
+//! use polhode::uncertainty::{LinearForms, Source};
 //! use polhode::{Error, RigidBody};
 //!
 //! // What was refused is told as data: the numbers that break the triangle inequality,
@@ -52,7 +52,7 @@
 //! // So are the faults of angles, of covariances and of files.
 //! let unknown = "ZZX".parse::<Sequence>().unwrap_err();
 //! assert!(matches!(unknown, Error::Motion(MotionFault::EulerSequence { .. })));
-//! let negative = Given::correlated(&[-1.0], Source::fresh()).unwrap_err();
+//! let negative = LinearForms::correlated(&[-1.0], Source::fresh()).unwrap_err();
 //! assert!(matches!(negative, Error::Uncertainty(UncertaintyFault::NegativeVariance { index: 0, .. })));
 //! assert_eq!(Error::from(FileFault::NoFaces { vertices: 8 }).kind(), Kind::File);
 //! ```

@@ -16,7 +16,7 @@
 //! use polhode::io::TriangleMesh;
 //! use polhode::mass::Amount;
 //! use polhode::mass::polyhedron::stream::StreamError;
-//! use polhode::mass::polyhedron::{Options, polyhedron, streamed::{StreamedSolid, streamed}};
+//! use polhode::mass::polyhedron::{Options, polyhedron, streaming::{StreamedSolid, stream_solid}};
 //!
 //! // The corner of a cube in both binary formats: corners, and faces that count them.
 //! let corners: [[f32; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -45,14 +45,14 @@
 //! let go_on = &mut |_| ControlFlow::Continue(());
 //! let mut stream = StlStream::open(&path)?;
 //! let StreamedSolid { volume, .. } =
-//!     streamed(&mut stream, 1.0, Amount::Density(6000.0), Options::default(), go_on)?;
+//!     stream_solid(&mut stream, 1.0, Amount::Density(6000.0), Options::default(), go_on)?;
 //! assert!((volume - 1.0 / 6.0).abs() < 1e-15);
 //! fs::remove_file(&path)?;
 //!
 //! let held = ply.len() as u64;
 //! let mut stream = PlyStream::new(std::io::Cursor::new(ply), held)?;
 //! assert_eq!(stream.vertex_count(), 4);
-//! let solid = streamed(&mut stream, 1.0, Amount::Density(6000.0), Options::default(), go_on)?;
+//! let solid = stream_solid(&mut stream, 1.0, Amount::Density(6000.0), Options::default(), go_on)?;
 //! assert_eq!(solid.body.mass(), body.mass());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

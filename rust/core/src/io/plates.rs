@@ -30,9 +30,9 @@ pub fn read(
         line.split_whitespace()
             .all(|word| word.parse::<f64>().is_ok())
     }) {
-        counted(text, index_base, watch)?
+        read_plate_model(text, index_base, watch)?
     } else {
-        lettered(text, index_base, watch)?
+        read_obj(text, index_base, watch)?
     };
     if mesh.faces.is_empty() {
         return Err(Halt::Failed(FileFault::NoFaces {
@@ -67,7 +67,7 @@ fn ask(
     }
 }
 
-fn lettered(
+fn read_obj(
     text: &str,
     index_base: usize,
     watch: &mut Watch<'_>,
@@ -82,7 +82,7 @@ fn lettered(
             continue;
         }
         ask(text, number, first, watch)?;
-        let line = continued(first, lines.by_ref().map(|(_, line)| line));
+        let line = join_continuation(first, lines.by_ref().map(|(_, line)| line));
         let mut words = line.split_whitespace();
         match words.next() {
             Some("v") => mesh
@@ -93,7 +93,7 @@ fn lettered(
             _ => {
                 let why = format!(
                     "neither a vertex, a face nor another OBJ keyword: {:?}",
-                    shortened(&line)
+                    shorten(&line)
                 );
                 return Err(Halt::Failed(FileFault::BadLine { line: number, why }));
             }
@@ -103,7 +103,7 @@ fn lettered(
 }
 
 /// The line with those that follow it after a backslash at the end, which it takes from `rest`.
-fn continued<'a>(first: &'a str, mut rest: impl Iterator<Item = &'a str>) -> Cow<'a, str> {
+fn join_continuation<'a>(first: &'a str, mut rest: impl Iterator<Item = &'a str>) -> Cow<'a, str> {
     let more = |line: &'a str| line.trim_end().strip_suffix('\\');
     let Some(head) = more(first) else {
         return Cow::Borrowed(first);
@@ -126,7 +126,7 @@ fn is_keyword(word: &str) -> bool {
         && word.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
 }
 
-fn counted(
+fn read_plate_model(
     text: &str,
     index_base: usize,
     watch: &mut Watch<'_>,
@@ -140,7 +140,7 @@ fn counted(
     let [vertices, faces] = counts[..] else {
         let why = format!(
             "expected the numbers of vertices and of faces, got {:?}",
-            shortened(header)
+            shorten(header)
         );
         return Err(Halt::Failed(FileFault::BadLine { line: number, why }));
     };
@@ -174,7 +174,7 @@ fn vertex(line: usize, mut words: SplitWhitespace<'_>) -> Result<[f64; 3], FileF
         let word = words.next().unwrap_or_default();
         *x = word.parse().map_err(|_| FileFault::BadLine {
             line,
-            why: format!("expected three coordinates, got {:?}", shortened(word)),
+            why: format!("expected three coordinates, got {:?}", shorten(word)),
         })?;
     }
     Ok(point)
@@ -217,7 +217,7 @@ fn corner(line: usize, word: &str, index_base: usize, vertices: usize) -> Result
         .map_err(|_| {
             bad(format!(
                 "expected the number of a vertex, got {:?}",
-                shortened(word)
+                shorten(word)
             ))
         })?;
     match usize::try_from(number) {
@@ -235,7 +235,7 @@ fn corner(line: usize, word: &str, index_base: usize, vertices: usize) -> Result
 }
 
 /// Enough of a line to recognise it by.
-fn shortened(line: &str) -> String {
+fn shorten(line: &str) -> String {
     line.chars().take(40).collect()
 }
 

@@ -160,7 +160,7 @@ fn point(corner: &[u8]) -> [f32; 3] {
     [0, 4, 8].map(|k| f32::from_le_bytes([corner[k], corner[k + 1], corner[k + 2], corner[k + 3]]))
 }
 
-/// Gives equal corners the same number.
+/// Number the corners; equal corners have the same number.
 #[derive(Default)]
 struct Welder {
     numbers: HashMap<[u32; 3], usize>,

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::body::RigidBody;
 use super::error_bound::ErrorBound;
-use super::provenance::{Checks, Provenance, Source};
+use super::provenance::{BodySource, Checks, Provenance};
 use super::second_moment::SecondMoment;
 use super::units::Units;
 use crate::error::{BodyFault, Error, finite, finite_of_body};
@@ -25,7 +25,7 @@ impl Amount {
     /// The same as `mantissa·2^power` of a measure in some unit, so that neither a small volume times a large density nor the reverse leaves the range
     /// of float64.
     pub(super) fn mass_in_units(self, measure: f64) -> Result<(f64, i32), Error> {
-        let value = self.checked()?;
+        let value = self.check()?;
         let power = exponent(value);
         let own = times_power_of_two(value, -power);
         Ok(match self {
@@ -35,7 +35,7 @@ impl Amount {
     }
 
     /// Mass or density, positive and finite.
-    pub(crate) fn checked(self) -> Result<f64, Error> {
+    pub(crate) fn check(self) -> Result<f64, Error> {
         let (what, value) = match self {
             Self::Mass(mass) => ("mass", mass),
             Self::Density(density) => ("density", density),
@@ -157,9 +157,9 @@ pub(super) fn body_of_shape(
     per_mass: &Matrix3<f64>,
 ) -> Result<RigidBody, Error> {
     let source = match measure {
-        Measure::Volume(_) => Source::Solid,
-        Measure::Area(_) => Source::Lamina,
-        Measure::Length(_) => Source::Rod,
+        Measure::Volume(_) => BodySource::Solid,
+        Measure::Area(_) => BodySource::Lamina,
+        Measure::Length(_) => BodySource::Rod,
     };
     let of_mass = |mass: f64| SecondMoment {
         mass,
@@ -177,7 +177,7 @@ pub(super) fn of_matter(
     unit: Unit,
     measure: Measure<f64>,
     amount: Amount,
-    source: Source,
+    source: BodySource,
     of_mass: impl Fn(f64) -> SecondMoment,
 ) -> Result<RigidBody, Error> {
     let (own, power) = measure.mass(unit, amount)?;
@@ -192,7 +192,7 @@ pub(super) fn of_matter(
         place: 0,
     };
     let body = RigidBody::from_second_moment(&of_mass(own))?;
-    Ok(units.told(&body)?.with_provenance(provenance))
+    Ok(units.in_user_units(&body)?.with_provenance(provenance))
 }
 
 /// What a few operations can have done to mass and tensor; a mass that was given is exact.
@@ -219,7 +219,7 @@ pub(super) fn length<X: Real>(what: &'static str, value: X) -> Result<(), Error>
 }
 
 /// Two lengths of which the first must not exceed the second.
-pub(super) fn ordered<X: Real>(
+pub(super) fn check_order<X: Real>(
     (smaller, a): (&'static str, X),
     (larger, b): (&'static str, X),
 ) -> Result<(), Error> {

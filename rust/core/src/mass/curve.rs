@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::body::RigidBody;
 use super::error_bound::UNIT;
 use super::polyhedron::widen;
-use super::provenance::{Checks, Provenance, Source};
+use super::provenance::{BodySource, Checks, Provenance};
 use super::simplex::{Corners, LocalFrame, Wire};
 use super::solids::Amount;
 use super::surface::{finish, thin};
@@ -79,7 +79,7 @@ pub fn curve(
     let body = finish(&sums, length, 2.0 * error, amount)?;
     Ok(body.with_provenance(Provenance {
         moments,
-        ..Provenance::of_matter(Source::Curve, sums.count, checks)
+        ..Provenance::of_matter(BodySource::Curve, sums.count, checks)
     }))
 }
 

@@ -3,8 +3,8 @@
 //! | theorem or source | file |
 //! |---|---|
 //! | rigid body (m, C, `I_C`): tensors about any point | [`body`] |
-//! | bodies from bodies: change of frame, scaling | [`composition`] |
-//! | composites: sums, cavities | [`composites`] |
+//! | bodies from bodies: change of frame, scaling | [`transforms`] |
+//! | composites: sums, cavities | [`assemblies`] |
 //! | what makes a tensor possible: symmetry, positivity, triangle inequality | [`validity`] |
 //! | what rounding can have done | [`error_bound`] |
 //! | mass or density, and what homogeneous shapes share | [`amount`] |
@@ -25,7 +25,7 @@
 //! | density ρ(r) over a region, and ρ of the radius alone | [`density`] |
 //! | closed triangle mesh: divergence theorem | [`polyhedron`] |
 //! | simplices: what segments, triangles and tetrahedra add up to | `simplex` |
-//! | the ten numbers of a body, in numbers of any kind | [`ten`] |
+//! | the ten numbers of a body, in numbers of any kind | [`inertial_parameters`] |
 //! | thin shells | [`surface`] |
 //! | shells of finite thickness | [`thick_shell`] |
 //! | thin wires | [`curve`] |
@@ -63,30 +63,30 @@
 //! What a body knows of itself:
 //!
 //! ```
-//! use polhode::mass::provenance::{Checks, MomentsFrom, Provenance, Source};
+//! use polhode::mass::provenance::{Checks, MomentsFrom, Provenance, BodySource};
 //! use polhode::mass::{Amount, solids};
 //!
 //! let ball = solids::sphere(1.0, Amount::Density(3.0))?;
 //! assert!((ball.mass() - 4.0 * std::f64::consts::PI).abs() <= ball.error_bound().mass);
 //! let provenance = ball.provenance();
-//! assert_eq!((provenance.source, provenance.moments), (Source::Solid, MomentsFrom::SecondMoment));
+//! assert_eq!((provenance.source, provenance.moments), (BodySource::Solid, MomentsFrom::SecondMoment));
 //! assert!(!provenance.checks.contains(Checks::UNCHECKED.and(Checks::CLOSED)));
 //! // The same numbers, summed elsewhere from the atoms of a cluster.
 //! let summed = ball.with_provenance(Provenance::of_particles(60));
-//! assert_eq!((summed.provenance().source, summed.provenance().elements), (Source::Particles, 60));
+//! assert_eq!((summed.provenance().source, summed.provenance().elements), (BodySource::Particles, 60));
 //! # Ok::<(), polhode::Error>(())
 //! ```
 
 pub mod accumulator;
 pub mod amount;
+pub mod assemblies;
 pub mod body;
-pub mod composites;
-pub mod composition;
 pub mod curve;
 pub mod density;
 pub mod equimomental;
 pub mod error_bound;
 pub mod forms;
+pub mod inertial_parameters;
 pub mod laminae;
 pub mod parallel_axis;
 pub mod particles;
@@ -100,9 +100,9 @@ pub mod second_moment;
 mod simplex;
 pub mod solids;
 pub mod surface;
-pub mod ten;
 pub mod tetrahedra;
 pub mod thick_shell;
+pub mod transforms;
 mod units;
 pub mod validity;
 pub mod voxels;

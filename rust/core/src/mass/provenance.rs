@@ -5,7 +5,7 @@ use std::fmt;
 /// What a body was made from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Source {
+pub enum BodySource {
     /// An inertia tensor that was given.
     #[default]
     Tensor,
@@ -43,7 +43,7 @@ pub enum Source {
     OwnAtoms,
 }
 
-impl Source {
+impl BodySource {
     const ALL: [Self; 17] = [
         Self::Tensor,
         Self::PrincipalMoments,
@@ -65,7 +65,7 @@ impl Source {
     ];
 }
 
-impl fmt::Display for Source {
+impl fmt::Display for BodySource {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Tensor => "tensor",
@@ -205,7 +205,7 @@ impl Checks {
 
     /// The check of this name.
     #[cfg(feature = "serde")]
-    pub(crate) fn named(name: &str) -> Option<Self> {
+    pub(crate) fn from_name(name: &str) -> Option<Self> {
         let bit = Self::NAMES.iter().position(|known| *known == name)?;
         Some(Self(1 << bit))
     }
@@ -225,7 +225,7 @@ impl fmt::Display for Checks {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Provenance {
     /// What the body was made from.
-    pub source: Source,
+    pub source: BodySource,
     /// How many of them: particles, triangles, segments, cells, bodies; 1 for one tensor or solid.
     pub elements: usize,
     /// What the input has passed.
@@ -248,7 +248,7 @@ pub struct Provenance {
 impl Provenance {
     /// Of matter of a kind whose second moment was summed or is known.
     #[must_use]
-    pub(crate) fn of_matter(source: Source, elements: usize, checks: Checks) -> Self {
+    pub(crate) fn of_matter(source: BodySource, elements: usize, checks: Checks) -> Self {
         Self {
             source,
             elements,
@@ -261,7 +261,11 @@ impl Provenance {
     /// Of particles.
     #[must_use]
     pub fn of_particles(count: usize) -> Self {
-        Self::of_matter(Source::Particles, count, Checks::FINITE.and(Checks::MASSES))
+        Self::of_matter(
+            BodySource::Particles,
+            count,
+            Checks::FINITE.and(Checks::MASSES),
+        )
     }
 
     /// The same, the moments from sums in the body's own axes.
@@ -277,11 +281,11 @@ impl Provenance {
     #[must_use]
     pub(crate) fn of_both(&self, other: &Self) -> Self {
         let parts = |part: &Self| match part.source {
-            Source::Bodies => part.elements,
+            BodySource::Bodies => part.elements,
             _ => 1,
         };
         Self {
-            source: Source::Bodies,
+            source: BodySource::Bodies,
             elements: parts(self).saturating_add(parts(other)),
             checks: self.checks.and(other.checks),
             welded: self.welded.saturating_add(other.welded),
@@ -334,7 +338,7 @@ impl Provenance {
             rounding,
         ] = *numbers;
         Self {
-            source: Source::ALL
+            source: BodySource::ALL
                 .get(source as usize)
                 .copied()
                 .unwrap_or_default(),
@@ -363,7 +367,7 @@ mod tests {
 
     #[test]
     fn numbers_and_back() {
-        for source in Source::ALL {
+        for source in BodySource::ALL {
             for moments in MomentsFrom::ALL {
                 for closure in [None, Some(Closure::Caps), Some(Closure::Hull)] {
                     let provenance = Provenance {

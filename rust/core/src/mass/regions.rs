@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 
-use super::amount::{Amount, length, ordered};
+use super::amount::{Amount, check_order, length};
 use super::polyhedron::{Index, Options, View, find_components, polyhedron_watched};
 use crate::error::{Error, all_finite};
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
@@ -120,7 +120,7 @@ impl Region {
     ///     Ok::<_, Error>(())
     /// };
     /// let effort = Effort { rtol: 1e-10, max_evaluations: 1_000_000 };
-    /// let body = from_density(&drum, even, effort)?.converged()?;
+    /// let body = from_density(&drum, even, effort)?.require_converged()?;
     /// assert!((body.mass() - 6.0 * std::f64::consts::PI).abs() < 1e-9);
     /// # Ok::<(), polhode::Error>(())
     /// ```
@@ -245,15 +245,15 @@ impl Region {
             high,
         };
         match &self.0 {
-            Kind::Box { .. } => whole([0.0; 3], [1.0; 3]).divided([2, 2, 2]),
+            Kind::Box { .. } => whole([0.0; 3], [1.0; 3]).divide([2, 2, 2]),
             Kind::Ellipsoid { inner, .. } => {
-                whole([*inner, 0.0, 0.0], [1.0, PI, TAU]).divided([1, 2, 4])
+                whole([*inner, 0.0, 0.0], [1.0, PI, TAU]).divide([1, 2, 4])
             }
             Kind::Cylinder {
                 inner_radius,
                 radius,
                 ..
-            } => whole([*inner_radius, 0.0, 0.0], [*radius, TAU, 1.0]).divided([1, 4, 2]),
+            } => whole([*inner_radius, 0.0, 0.0], [*radius, TAU, 1.0]).divide([1, 4, 2]),
             Kind::Mesh { faces, .. } => (0..faces.len())
                 .map(|chart| Cell {
                     chart,
@@ -324,7 +324,7 @@ fn positive(what: &'static str, value: f64) -> Result<(), Error> {
 
 /// `0 ≤ inner radius < radius`.
 fn below(inner_radius: f64, radius: f64) -> Result<(), Error> {
-    ordered(("inner_radius", inner_radius), ("radius", radius))?;
+    check_order(("inner_radius", inner_radius), ("radius", radius))?;
     if inner_radius < radius {
         return Ok(());
     }

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::amount::{Amount, Measure, length};
-use super::ten::{Size, diagonal};
+use super::inertial_parameters::{Size, diagonal};
 use crate::error::{Error, finite};
 
 /// Thin rod of length L along z: `I_x = I_y = m L²/12`, `I_z = 0`.

@@ -108,8 +108,8 @@ impl SecondMoment {
     #[must_use]
     #[inline]
     pub(crate) fn principal_axes(&self, s: &Eigen3) -> PrincipalAxes {
-        // S is a sum of squares: a negative value is rounding, and zero is what it stands for. More than that is none, as of a
-        // mesh that nobody checked, and stays for all to see.
+        // S is a sum of squares. A negative value within rounding is set to zero. A larger negative value (an unchecked mesh)
+        // is kept.
         let rounding = 1e-12 * s.values[2].abs() + 4.0 * self.error_bound.inertia;
         let [s1, s2, s3] = (s.values).map(|value| {
             if value < -rounding {

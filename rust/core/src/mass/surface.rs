@@ -3,7 +3,7 @@
 use super::body::RigidBody;
 use super::error_bound::{ErrorBound, UNIT};
 use super::polyhedron::{Index, View, in_units, is_settled, matter};
-use super::provenance::{Checks, MomentsFrom, Provenance, Source};
+use super::provenance::{BodySource, Checks, MomentsFrom, Provenance};
 use super::simplex::{Corners, FaintShell, Kind, LocalFrame, Shell, Sums, sums};
 use super::solids::Amount;
 use super::units::QUANTUM;
@@ -73,7 +73,7 @@ pub fn surface<I: Index>(
         .map(|body| {
             body.with_provenance(Provenance {
                 moments,
-                ..Provenance::of_matter(Source::Surface, faces.len(), checks)
+                ..Provenance::of_matter(BodySource::Surface, faces.len(), checks)
             })
         })
         .map_err(Halt::Failed)

@@ -25,22 +25,22 @@ impl Units {
     ///
     /// # Errors
     /// [`BodyFault::OutOfRange`] when mass or moments are beyond the largest number, or so small that digits are lost.
-    pub(super) fn told(self, body: &RigidBody) -> Result<RigidBody, Error> {
+    pub(super) fn in_user_units(self, body: &RigidBody) -> Result<RigidBody, Error> {
         let moment = self.mass + 2 * self.length;
         let i3 = body.principal.moments[2];
-        let told = Self::number("mass", body.mass, self.mass)?;
+        let told = Self::convert_number("mass", body.mass, self.mass)?;
         // A mass that rounding has touched is refused, one that is stored as it is may be as small as it likes.
         if told < f64::MIN_POSITIVE && times_power_of_two(told, -self.mass) != body.mass {
-            return Err(Self::refused("mass", body.mass, self.mass));
+            return Err(Self::out_of_range("mass", body.mass, self.mass));
         }
-        let largest = Self::number("largest principal moment of inertia", i3, moment)?;
+        let largest = Self::convert_number("largest principal moment of inertia", i3, moment)?;
         if i3 > 0.0 && largest < f64::MIN_POSITIVE {
             let what = "largest principal moment of inertia";
-            return Err(Self::refused(what, i3, moment));
+            return Err(Self::out_of_range(what, i3, moment));
         }
         // Of what is no matter, as of surfaces that cross, other elements may be larger than the largest moment.
         let element = body.inertia.amax();
-        Self::number("largest element of the inertia tensor", element, moment)?;
+        Self::convert_number("largest element of the inertia tensor", element, moment)?;
         let mut principal = body.principal;
         principal.moments = principal.moments.map(|x| times_power_of_two(x, moment));
         let bound = body.error_bound;
@@ -60,15 +60,15 @@ impl Units {
         })
     }
 
-    fn number(what: &'static str, value: f64, power: i32) -> Result<f64, Error> {
+    fn convert_number(what: &'static str, value: f64, power: i32) -> Result<f64, Error> {
         let told = times_power_of_two(value, power);
         if told.is_finite() {
             return Ok(told);
         }
-        Err(Self::refused(what, value, power))
+        Err(Self::out_of_range(what, value, power))
     }
 
-    fn refused(what: &'static str, value: f64, power: i32) -> Error {
+    fn out_of_range(what: &'static str, value: f64, power: i32) -> Error {
         let own = exponent(value);
         Error::Body(BodyFault::OutOfRange {
             what,
@@ -92,7 +92,7 @@ mod tests {
 
     use super::*;
 
-    fn told(mass: i32, length: i32) -> Result<RigidBody, Error> {
+    fn convert(mass: i32, length: i32) -> Result<RigidBody, Error> {
         let moments = [1.0, 2.0, 2.5];
         let body =
             RigidBody::from_principal(1.0, &moments, &Matrix3::identity(), &Vector3::zeros(), 0.0);
@@ -102,7 +102,7 @@ mod tests {
             length,
             place,
         }
-        .told(&body.expect("body"))
+        .in_user_units(&body.expect("body"))
     }
 
     #[test]
@@ -115,23 +115,23 @@ mod tests {
         };
         // The largest moment is 1.25·2^(1 + mass + 2 length).
         assert_eq!(
-            told(0, 511).expect("in range").principal().moments[2],
+            convert(0, 511).expect("in range").principal().moments[2],
             2.5 * 2.0_f64.powi(1022)
         );
-        limit(told(1, 511), "moment");
-        let least = told(-1, -511).expect("in range");
+        limit(convert(1, 511), "moment");
+        let least = convert(-1, -511).expect("in range");
         assert_eq!(least.principal().moments[2], 1.25 * f64::MIN_POSITIVE);
         assert!(least.error_bound().inertia >= QUANTUM);
-        limit(told(-2, -511), "moment");
+        limit(convert(-2, -511), "moment");
         // 2^-1074 is the least mass, and exact.
-        assert_eq!(told(-1074, 100).expect("in range").mass(), QUANTUM);
-        limit(told(-1075, 100), "mass");
-        limit(told(1024, -100), "mass");
+        assert_eq!(convert(-1074, 100).expect("in range").mass(), QUANTUM);
+        limit(convert(-1075, 100), "mass");
+        limit(convert(1024, -100), "mass");
     }
 
     #[test]
     fn the_number_is_told_beyond_the_range_too() {
-        let message = told(-2000, 0).expect_err("too small").to_string();
+        let message = convert(-2000, 0).expect_err("too small").to_string();
         assert!(message.contains("8.71e-603"), "{message}");
     }
 }

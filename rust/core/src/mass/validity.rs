@@ -91,7 +91,7 @@ pub(super) fn check_moments(
 }
 
 /// The mean of a tensor and its transpose, when they differ by rounding or by `rtol` at most.
-pub(super) fn symmetrized(
+pub(super) fn symmetrize(
     what: &'static str,
     a: &Matrix3<f64>,
     rtol: f64,

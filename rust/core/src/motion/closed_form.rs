@@ -9,7 +9,7 @@ use super::state::State;
 use crate::error::{Error, MotionFault};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
-use crate::numerics::planes::{Planes, ROWS};
+use crate::numerics::structure_of_arrays::{ROWS, StructureOfArrays};
 use crate::numerics::threads::{Halt, fill_blocks};
 
 /// A motion in closed form: its state at any time costs the same.
@@ -234,8 +234,8 @@ impl<L: Lane> UseFormula for All<'_, L> {
 
     #[inline(always)]
     fn with(self, formula: &impl StateFormula) {
-        let mut states = Planes::<7>::ZERO;
-        let mut times = Planes::<1>::ZERO;
+        let mut states = StructureOfArrays::<7>::ZERO;
+        let mut times = StructureOfArrays::<1>::ZERO;
         let rows = (self.times.chunks(ROWS))
             .zip(self.attitudes.chunks_mut(ROWS))
             .zip(self.omegas.chunks_mut(ROWS));
@@ -254,7 +254,7 @@ impl<L: Lane> UseFormula for All<'_, L> {
 
 /// From planes to rows; outside the kernel, where the compiler would scatter.
 #[inline(never)]
-fn write(states: &Planes<7>, attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
+fn write(states: &StructureOfArrays<7>, attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
     for (row, (attitude, omega)) in attitudes.iter_mut().zip(omegas).enumerate().take(ROWS) {
         *attitude = states.get(row, 0);
         *omega = states.get(row, 4);

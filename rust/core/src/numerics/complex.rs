@@ -3,7 +3,7 @@
 use std::ops::{Add, Mul, Neg, Sub};
 
 use super::double_double::DoubleDouble;
-use super::elliptic::Real;
+use super::elliptic::MultiPrecision;
 
 /// `re + i im`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +18,7 @@ pub(crate) struct Complex<T> {
 const LEAST_SQUARE: f64 = 1e-270;
 const MOST_SQUARE: f64 = 1e300;
 
-impl<T: Real> Complex<T> {
+impl<T: MultiPrecision> Complex<T> {
     /// From real and imaginary part.
     #[inline]
     #[must_use]
@@ -150,7 +150,7 @@ impl Complex<DoubleDouble> {
     }
 }
 
-impl<T: Real> Add for Complex<T> {
+impl<T: MultiPrecision> Add for Complex<T> {
     type Output = Self;
 
     #[inline]
@@ -159,7 +159,7 @@ impl<T: Real> Add for Complex<T> {
     }
 }
 
-impl<T: Real> Sub for Complex<T> {
+impl<T: MultiPrecision> Sub for Complex<T> {
     type Output = Self;
 
     #[inline]
@@ -168,7 +168,7 @@ impl<T: Real> Sub for Complex<T> {
     }
 }
 
-impl<T: Real> Neg for Complex<T> {
+impl<T: MultiPrecision> Neg for Complex<T> {
     type Output = Self;
 
     #[inline]
@@ -177,7 +177,7 @@ impl<T: Real> Neg for Complex<T> {
     }
 }
 
-impl<T: Real> Mul for Complex<T> {
+impl<T: MultiPrecision> Mul for Complex<T> {
     type Output = Self;
 
     #[inline]

@@ -8,7 +8,7 @@ use super::double_double::DoubleDouble;
 use super::quad_double::QuadDouble;
 
 /// What the chain of means needs of a number: doubles, [`DoubleDouble`] and [`QuadDouble`].
-pub(crate) trait Real:
+pub(crate) trait MultiPrecision:
     Copy
     + From<f64>
     + Add<Output = Self>
@@ -39,7 +39,7 @@ pub(crate) trait Real:
     }
 }
 
-impl Real for f64 {
+impl MultiPrecision for f64 {
     const HALF_PI: Self = std::f64::consts::FRAC_PI_2;
     const CLOSE: f64 = 1e-8;
 
@@ -64,7 +64,7 @@ impl Real for f64 {
     }
 }
 
-impl Real for DoubleDouble {
+impl MultiPrecision for DoubleDouble {
     const HALF_PI: Self = Self {
         high: Self::PI.high / 2.0,
         low: Self::PI.low / 2.0,
@@ -92,7 +92,7 @@ impl Real for DoubleDouble {
     }
 }
 
-impl Real for QuadDouble {
+impl MultiPrecision for QuadDouble {
     const HALF_PI: Self = Self::HALF_PI;
     const CLOSE: f64 = 1e-32;
 
@@ -119,7 +119,7 @@ const STEPS: usize = 24;
 /// The complete elliptic integral of the first kind,
 /// `K = ∫₀^{π/2} dφ/√(cos²φ + k′² sin²φ)`, for k′ > 0 (infinite at zero).
 #[must_use]
-pub(crate) fn complete_first<T: Real>(k_prime: T) -> T {
+pub(crate) fn complete_first<T: MultiPrecision>(k_prime: T) -> T {
     let (mut arithmetic, mut geometric, mut doubled) = (T::from(1.0), k_prime, 1.0);
     for _ in 0..STEPS {
         let before = arithmetic;
@@ -139,7 +139,7 @@ pub(crate) fn complete_first<T: Real>(k_prime: T) -> T {
 /// With p = 1 and a = b = 1 it is K; with p = 1 − n and a = b = 1 it is Π(n, k). For a, b ≥ 0 all terms have one sign.
 /// Source: R. Bulirsch, Numerical calculation of elliptic integrals and elliptic functions III, Numer. Math. 13 (1969) 305.
 #[must_use]
-pub(crate) fn complete_third<T: Real>(k_prime: T, p: T, a: T, b: T) -> (T, T) {
+pub(crate) fn complete_third<T: MultiPrecision>(k_prime: T, p: T, a: T, b: T) -> (T, T) {
     let two = T::from(2.0);
     let (mut mean, mut geometric, mut product) = (T::from(1.0), k_prime, k_prime);
     let mut p = p.sqrt();
@@ -171,7 +171,7 @@ pub(crate) fn complete_third<T: Real>(k_prime: T, p: T, a: T, b: T) -> (T, T) {
 #[must_use]
 pub fn carlson_rf(x: f64, y: f64, z: f64) -> f64 {
     let mut arguments = [x, y, z];
-    // Each duplication divides the differences by four; what is not a number stays it.
+    // Each duplication divides the differences by four. NaN stays NaN.
     for _ in 0..STEPS {
         let mean = (arguments[0] + arguments[1] + arguments[2]) / 3.0;
         let [x, y, z] = arguments;

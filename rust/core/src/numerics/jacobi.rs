@@ -52,7 +52,7 @@ pub(crate) fn jacobi(u: f64, k_prime: f64) -> (f64, f64, f64) {
 pub(crate) fn carlson_rd(x: f64, y: f64, z: f64) -> f64 {
     let mut arguments = [x, y, z];
     let (mut sum, mut weight) = (0.0, 1.0);
-    // Each duplication divides the differences by four; what is not a number stays it.
+    // Each duplication divides the differences by four. NaN stays NaN.
     for _ in 0..2 * STEPS {
         let mean = (arguments[0] + arguments[1] + 3.0 * arguments[2]) / 5.0;
         let [x, y, z] = arguments;

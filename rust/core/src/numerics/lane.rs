@@ -1,7 +1,7 @@
 //! Lanes: each hot formula written once, for one number, and run on several side by side.
 //!
 //! A formula generic over [`Lane`] reads like scalar arithmetic. Called once it is scalar arithmetic; called in a loop
-//! over [`Planes`](super::planes::Planes) inside a [`Kernel`](super::dispatch::Kernel) it becomes vector instructions as
+//! over [`StructureOfArrays`](super::structure_of_arrays::StructureOfArrays) inside a [`Kernel`](super::dispatch::Kernel) it becomes vector instructions as
 //! wide as the machine has, one lane for each row. Every operation rounds as IEEE 754 says, so a row's bits depend on its
 //! own numbers only: not on its neighbours, and not on the width. Whether a product and a sum round once or twice is part
 //! of the type, so all machines with fused multiply-add agree to the last bit.
@@ -46,7 +46,7 @@ pub trait Lane:
     /// The magnitude of `self` with the sign bit of `sign`.
     #[must_use]
     fn copysign(self, sign: Self) -> Self;
-    /// The nearest integer, the even one of two; a number past 2⁵² is one.
+    /// Round to the nearest integer, ties to even. Numbers above 2⁵² are integers already and are returned unchanged.
     #[must_use]
     fn round(self) -> Self;
     /// 2 to the power of `self`, an integer from −1022 to 1023.

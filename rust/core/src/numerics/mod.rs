@@ -3,7 +3,7 @@
 //! | module | what it gives |
 //! |---|---|
 //! | [`lane`] | one formula for one number or several side by side |
-//! | [`planes`] | one formula over a stack, a block of rows at a time |
+//! | [`structure_of_arrays`] | one formula over a stack, a block of rows at a time |
 //! | [`dispatch`] | the widest lanes of the machine at hand, chosen at run time |
 //! | [`reduce`] | sums whose bits do not depend on how the work is cut |
 //! | [`double_double`] | error-free sums and products |
@@ -20,7 +20,7 @@
 //! | [`jacobi`] | Jacobi's functions of one number, Carlson's integral of the second kind |
 //! | [`jet`] | numbers with their derivatives |
 //! | `assign` | `+=` and its like, by `+` and its like |
-//! | [`parabola`] | numbers to second order along a line |
+//! | [`second_order_dual`] | numbers to second order along a line |
 //! | [`covariance`] | factors of covariances, also of semidefinite ones |
 //! | [`quadrature`] | adaptive integrals over boxes, with their errors |
 //! | [`sign_changes`] | all places in an interval at which a polynomial changes its sign |
@@ -43,17 +43,17 @@ pub(crate) mod jacobi;
 pub(crate) mod jet;
 pub(crate) mod lane;
 pub(crate) mod number;
-pub(crate) mod parabola;
-pub(crate) mod planes;
 pub(crate) mod power_of_two;
 pub(crate) mod quad_double;
 pub(crate) mod quadrature;
 pub(crate) mod quaternion;
 pub(crate) mod reduce;
+pub(crate) mod second_order_dual;
 pub(crate) mod sign_changes;
 pub(crate) mod split_vector;
 #[cfg(feature = "serde")]
 pub(crate) mod stored_form;
+pub(crate) mod structure_of_arrays;
 pub(crate) mod theta;
 pub(crate) mod threads;
 pub(crate) mod turns;

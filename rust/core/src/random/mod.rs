@@ -2,8 +2,7 @@
 //!
 //! | file | what it gives |
 //! |---|---|
-//! | [`philox`](fn@philox) | four words from a counter and a key |
-//! | [`stream`] | the words of each member of an ensemble |
+//! | [`stream`] | four words from a counter and a key; the words of each member of an ensemble |
 //! | [`factor`] | a factor of a covariance, by which normal numbers get it |
 //! | [`laws`] | words as uniform and normal numbers and as rotations |
 //!
@@ -12,10 +11,7 @@
 //! sums, products, quotients and square roots alone, which IEEE 754 rounds alike everywhere.
 
 pub mod laws;
-mod logarithm;
-mod philox;
 pub mod stream;
 
 pub use crate::numerics::covariance::factor;
-pub use philox::philox;
-pub use stream::Stream;
+pub use stream::{Stream, philox};

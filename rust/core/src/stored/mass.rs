@@ -1,10 +1,11 @@
-//! Bodies, and what is told of them.
+//! Bodies, and what is cached of them.
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{BodyFault, Error, all_finite};
+use super::form::named;
+use crate::error::{BodyFault, Error, all_finite, finite};
 use crate::io::TriangleMesh;
-use crate::mass::provenance::{Checks, MomentsFrom, Provenance};
+use crate::mass::provenance::{BodySource, Checks, Closure, MomentsFrom, Provenance};
 use crate::mass::validity::{check_rotation, check_symmetry};
 use crate::mass::{Amount, ErrorBound, RigidBody};
 use crate::numerics::stored_form::{Rows, matrix, rows, stored, vector};
@@ -12,9 +13,9 @@ use crate::principal::PrincipalAxes;
 
 stored!(
     RigidBody as Body,
-    PrincipalAxes as Axes,
+    PrincipalAxes as StoredAxes,
     ErrorBound as Bound,
-    Amount as Matter,
+    Amount as StoredAmount,
     TriangleMesh as Triangles,
 );
 
@@ -28,13 +29,13 @@ struct Body {
     #[serde(default, skip_serializing_if = "is_zero")]
     rtol: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    told: Option<Told>,
+    cached: Option<Cached>,
 }
 
 /// What a body knows besides its mass, centre and tensor.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Told {
+struct Cached {
     principal: PrincipalAxes,
     error_bound: ErrorBound,
     provenance: Provenance,
@@ -46,12 +47,12 @@ fn is_zero(x: &f64) -> bool {
 }
 
 /// Its own moments and axes as those of a body that is given by them: an admitted table breaks a law by up to `rtol`.
-fn admitted(body: &RigidBody, rtol: f64) -> Result<RigidBody, Error> {
+fn admit(body: &RigidBody, rtol: f64) -> Result<RigidBody, Error> {
     let PrincipalAxes { moments, axes } = body.principal();
     RigidBody::from_principal(body.mass(), &moments, &axes, &body.center_of_mass(), rtol)
 }
 
-/// Whether its law was not asked for, or held but for the rounding that its bound tells.
+/// True if the triangle inequality was not checked, or holds within the error bound.
 fn is_summed(provenance: &Provenance) -> bool {
     let sums = [MomentsFrom::SecondMoment, MomentsFrom::OwnAxes];
     sums.contains(&provenance.moments) || provenance.checks.contains(Checks::UNCHECKED)
@@ -59,7 +60,7 @@ fn is_summed(provenance: &Provenance) -> bool {
 
 impl From<&RigidBody> for Body {
     fn from(body: &RigidBody) -> Self {
-        let rtol = match admitted(body, 0.0) {
+        let rtol = match admit(body, 0.0) {
             Err(Error::Body(BodyFault::TriangleInequality { relative, .. }))
                 if !is_summed(&body.provenance()) =>
             {
@@ -72,7 +73,7 @@ impl From<&RigidBody> for Body {
             center_of_mass: body.center_of_mass().into(),
             inertia: rows(&body.inertia()),
             rtol,
-            told: Some(Told {
+            cached: Some(Cached {
                 principal: body.principal(),
                 error_bound: body.error_bound(),
                 provenance: body.provenance(),
@@ -87,7 +88,7 @@ impl TryFrom<Body> for RigidBody {
     fn try_from(stored: Body) -> Result<Self, Error> {
         let center = vector("center_of_mass", stored.center_of_mass)?;
         let inertia = matrix(&stored.inertia);
-        let Some(told) = stored.told else {
+        let Some(cached) = stored.cached else {
             return Self::new(stored.mass, &inertia, &center, stored.rtol);
         };
         all_finite("inertia", &inertia)?;
@@ -97,14 +98,14 @@ impl TryFrom<Body> for RigidBody {
         numbers[1..4].copy_from_slice(center.as_slice());
         let i = &inertia;
         numbers[4..10].copy_from_slice(&[i.m11, i.m12, i.m13, i.m22, i.m23, i.m33]);
-        numbers[10..13].copy_from_slice(&told.principal.moments);
-        numbers[13..22].copy_from_slice(told.principal.axes.transpose().as_slice());
-        let bound = &told.error_bound;
+        numbers[10..13].copy_from_slice(&cached.principal.moments);
+        numbers[13..22].copy_from_slice(cached.principal.axes.transpose().as_slice());
+        let bound = &cached.error_bound;
         numbers[22..25].copy_from_slice(&[bound.mass, bound.center_of_mass, bound.inertia]);
-        numbers[25..].copy_from_slice(&told.provenance.to_array());
+        numbers[25..].copy_from_slice(&cached.provenance.to_array());
         let body = Self::from_array(&numbers)?;
-        if !is_summed(&told.provenance) {
-            admitted(&body, stored.rtol)?;
+        if !is_summed(&cached.provenance) {
+            admit(&body, stored.rtol)?;
         }
         Ok(body)
     }
@@ -113,12 +114,12 @@ impl TryFrom<Body> for RigidBody {
 /// Rows, of which the columns are the axes.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Axes {
+struct StoredAxes {
     moments: [f64; 3],
     axes: Rows,
 }
 
-impl From<&PrincipalAxes> for Axes {
+impl From<&PrincipalAxes> for StoredAxes {
     fn from(principal: &PrincipalAxes) -> Self {
         Self {
             moments: principal.moments,
@@ -127,10 +128,10 @@ impl From<&PrincipalAxes> for Axes {
     }
 }
 
-impl TryFrom<Axes> for PrincipalAxes {
+impl TryFrom<StoredAxes> for PrincipalAxes {
     type Error = Error;
 
-    fn try_from(Axes { moments, axes }: Axes) -> Result<Self, Error> {
+    fn try_from(StoredAxes { moments, axes }: StoredAxes) -> Result<Self, Error> {
         all_finite("moments", &moments)?;
         for pair in moments.windows(2) {
             let (a, b) = (pair[0], pair[1]);
@@ -192,12 +193,12 @@ impl TryFrom<Bound> for ErrorBound {
 
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-enum Matter {
+enum StoredAmount {
     Mass(f64),
     Density(f64),
 }
 
-impl From<&Amount> for Matter {
+impl From<&Amount> for StoredAmount {
     fn from(amount: &Amount) -> Self {
         match *amount {
             Amount::Mass(mass) => Self::Mass(mass),
@@ -206,15 +207,15 @@ impl From<&Amount> for Matter {
     }
 }
 
-impl TryFrom<Matter> for Amount {
+impl TryFrom<StoredAmount> for Amount {
     type Error = Error;
 
-    fn try_from(matter: Matter) -> Result<Self, Error> {
+    fn try_from(matter: StoredAmount) -> Result<Self, Error> {
         let amount = match matter {
-            Matter::Mass(mass) => Self::Mass(mass),
-            Matter::Density(density) => Self::Density(density),
+            StoredAmount::Mass(mass) => Self::Mass(mass),
+            StoredAmount::Density(density) => Self::Density(density),
         };
-        amount.checked().map(|_| amount)
+        amount.check().map(|_| amount)
     }
 }
 
@@ -237,5 +238,112 @@ impl From<&TriangleMesh> for Triangles {
 impl From<Triangles> for TriangleMesh {
     fn from(Triangles { vertices, faces }: Triangles) -> Self {
         Self { vertices, faces }
+    }
+}
+
+// Where the numbers of a body come from, in words.
+
+named! {
+    BodySource {
+        BodySource::Tensor => "tensor",
+        BodySource::PrincipalMoments => "principal moments",
+        BodySource::SecondMoment => "second moment",
+        BodySource::Particles => "particles",
+        BodySource::Mesh => "mesh",
+        BodySource::Surface => "surface",
+        BodySource::Curve => "curve",
+        BodySource::Tetrahedra => "tetrahedra",
+        BodySource::Voxels => "voxels",
+        BodySource::Density => "density",
+        BodySource::Solid => "solid",
+        BodySource::Lamina => "lamina",
+        BodySource::Rod => "rod",
+        BodySource::Bodies => "bodies",
+        BodySource::CommonIsotopes => "atoms, most common isotopes",
+        BodySource::AverageAtoms => "atoms, average masses",
+        BodySource::OwnAtoms => "atoms, masses of their own",
+    }
+    MomentsFrom {
+        MomentsFrom::Given => "given",
+        MomentsFrom::Tensor => "tensor",
+        MomentsFrom::SecondMoment => "second moment",
+        MomentsFrom::OwnAxes => "second moment in own axes",
+    }
+    Closure {
+        Closure::Caps => "caps",
+        Closure::Hull => "hull",
+    }
+}
+
+stored!(Checks as Vec<String>, Provenance as StoredProvenance);
+
+impl From<&Checks> for Vec<String> {
+    fn from(checks: &Checks) -> Self {
+        checks.names().map(str::to_owned).collect()
+    }
+}
+
+impl TryFrom<Vec<String>> for Checks {
+    type Error = String;
+
+    fn try_from(names: Vec<String>) -> Result<Self, String> {
+        names.iter().try_fold(Self::default(), |checks, name| {
+            let more =
+                Self::from_name(name).ok_or_else(|| format!("no check has the name {name:?}"))?;
+            Ok(checks.and(more))
+        })
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StoredProvenance {
+    source: BodySource,
+    elements: usize,
+    checks: Checks,
+    welded: usize,
+    closure: Option<Closure>,
+    volume_change: f64,
+    moments: MomentsFrom,
+    rounded_to_zero: u8,
+    rounding: f64,
+}
+
+impl From<&Provenance> for StoredProvenance {
+    fn from(from: &Provenance) -> Self {
+        Self {
+            source: from.source,
+            elements: from.elements,
+            checks: from.checks,
+            welded: from.welded,
+            closure: from.closure,
+            volume_change: from.volume_change,
+            moments: from.moments,
+            rounded_to_zero: from.rounded_to_zero,
+            rounding: from.rounding,
+        }
+    }
+}
+
+impl TryFrom<StoredProvenance> for Provenance {
+    type Error = Error;
+
+    fn try_from(parts: StoredProvenance) -> Result<Self, Error> {
+        let what = "provenance.rounding";
+        if finite(what, parts.rounding)? < 0.0 {
+            let (law, value) = ("zero or more", parts.rounding);
+            return Err(Error::OutOfDomain { what, law, value });
+        }
+        Ok(Self {
+            source: parts.source,
+            elements: parts.elements,
+            checks: parts.checks,
+            welded: parts.welded,
+            closure: parts.closure,
+            volume_change: finite("provenance.volume_change", parts.volume_change)?,
+            moments: parts.moments,
+            rounded_to_zero: parts.rounded_to_zero,
+            rounding: parts.rounding,
+        })
     }
 }

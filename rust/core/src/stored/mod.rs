@@ -3,8 +3,7 @@
 //! | what | file |
 //! |---|---|
 //! | from a value to its stored form and back | `form` |
-//! | bodies, and what is told of them | `mass` |
-//! | where the numbers of a body come from | `provenance` |
+//! | bodies, and where their numbers come from | `mass` |
 //! | states, methods, events | `motion` |
 //!
 //! Loads that are plain numbers have their forms in their own files.
@@ -12,4 +11,3 @@
 mod form;
 mod mass;
 mod motion;
-mod provenance;

@@ -1,17 +1,17 @@
-//! Doubts of the solid that a closed triangle mesh bounds, by those of its vertices.
+//! Uncertainties of the solid that a closed triangle mesh bounds, by those of its vertices.
 //!
 //! By the divergence theorem the volume, its first and its second moments about a fixed point are sums over the tetrahedra that
 //! it makes with each face: a face is asked for its nine derivatives alone, whatever the number of vertices.
 
-use super::doubt::{Doubt, Tangent};
-use super::given::Form;
+use super::linear_forms::Form;
+use super::linear_uncertainty::{LinearUncertainty, Tangent};
 use super::variable::PROBES;
 use crate::error::Error;
 use crate::mass::Index;
-use crate::mass::ten::Ten;
+use crate::mass::inertial_parameters::InertialParameters;
 use crate::numerics::jet::Jet;
 use crate::numerics::number::Real;
-use crate::numerics::parabola::Parabola;
+use crate::numerics::second_order_dual::SecondOrderDual;
 use crate::numerics::threads::Watch;
 
 /// Volume, `∫ r dV` and `∫ r rᵀ dV` (xx, yy, zz, xy, xz, yz).
@@ -23,7 +23,7 @@ const SECOND: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1,
 /// Faces between two looks at whether to go on.
 const BLOCK: usize = 4096;
 
-/// The doubts of a homogeneous solid with these numbers: three forms for each vertex. Of a solid whose mass was given the
+/// The uncertainties of a homogeneous solid with these numbers: three forms for each vertex. Of a solid whose mass was given the
 /// density changes with the volume.
 ///
 /// # Examples
@@ -31,8 +31,8 @@ const BLOCK: usize = 4096;
 /// ```
 /// use std::ops::ControlFlow;
 /// use polhode::mass::polyhedron::polyhedron;
-/// use polhode::mass::{Amount, ten::Ten};
-/// use polhode::uncertainty::{Given, Source, of_mesh};
+/// use polhode::mass::{Amount, inertial_parameters::InertialParameters};
+/// use polhode::uncertainty::{LinearForms, Source, of_mesh};
 ///
 /// // The corner of a cube, one vertex of which is known to 1 mm along x.
 /// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -40,10 +40,10 @@ const BLOCK: usize = 4096;
 /// let body = polyhedron(&vertices, &faces, Amount::Density(6.0), false)?;
 /// let mut sigmas = [0.0; 12];
 /// sigmas[3] = 1e-3;
-/// let given = Given::independent(&sigmas, Source::fresh())?;
+/// let given = LinearForms::independent(&sigmas, Source::fresh())?;
 /// let go_on = &mut |_| ControlFlow::Continue(());
-/// let doubt = of_mesh(&Ten::of(&body), &vertices, &faces, &given.forms, false, go_on)?;
-/// let sigma = doubt.covariance_with(&doubt)[(0, 0)].sqrt();
+/// let uncertainty = of_mesh(&InertialParameters::of(&body), &vertices, &faces, &given.forms, false, go_on)?;
+/// let sigma = uncertainty.covariance_with(&uncertainty)[(0, 0)].sqrt();
 /// assert!((sigma - 1e-3).abs() < 1e-15); // the volume is x/6
 /// # Ok::<(), polhode::Error>(())
 /// ```
@@ -51,13 +51,13 @@ const BLOCK: usize = 4096;
 /// # Errors
 /// [`Error::Stopped`] when `watch` asks for it.
 pub fn of_mesh<I: Index>(
-    solid: &Ten<f64>,
+    solid: &InertialParameters<f64>,
     vertices: &[[f64; 3]],
     faces: &[[I; 3]],
     forms: &[Form],
     mass_is_given: bool,
     watch: &mut Watch<'_>,
-) -> Result<Doubt, Error> {
+) -> Result<LinearUncertainty, Error> {
     let from = |corner: usize| -> [f64; 3] {
         std::array::from_fn(|k| vertices[corner][k] - solid.center[k])
     };
@@ -89,27 +89,27 @@ pub fn of_mesh<I: Index>(
         tangents
             .extend((form.iter()).map(|&(variable, step)| (variable, change.map(|x| x * step))));
     }
-    let mut bends = [Tangent::default(); PROBES];
-    for (probe, bend) in bends.iter_mut().enumerate() {
+    let mut second_order = [Tangent::default(); PROBES];
+    for (probe, curvature) in second_order.iter_mut().enumerate() {
         let slope = |form: &Form| -> f64 {
             form.iter()
                 .map(|(variable, step)| step * variable.steps()[probe])
                 .sum()
         };
         let slopes: Vec<f64> = forms.iter().map(slope).collect();
-        let mut along = [Parabola::default(); 10];
+        let mut along = [SecondOrderDual::default(); 10];
         each(faces, watch, |corners| {
             let found = tetrahedron(corners.map(|corner| {
                 let place = from(corner);
-                std::array::from_fn(|k| Parabola::line(place[k], slopes[3 * corner + k]))
+                std::array::from_fn(|k| SecondOrderDual::line(place[k], slopes[3 * corner + k]))
             }));
             for (sum, term) in along.iter_mut().zip(found) {
                 *sum += term;
             }
         })?;
-        *bend = body(solid, &along, mass_is_given).map(|number| number.bend);
+        *curvature = body(solid, &along, mass_is_given).map(|number| number.curvature);
     }
-    Ok(Doubt::of(tangents, bends))
+    Ok(LinearUncertainty::of(tangents, second_order))
 }
 
 /// Goes through the corners of all faces, and now and then asks whether to go on.
@@ -146,7 +146,11 @@ fn tetrahedron<X: Real>([a, b, c]: [[X; 3]; 3]) -> Moments<X> {
 }
 
 /// The body of these moments about the centre of mass that the solid is known to have.
-fn body<X: Real>(solid: &Ten<f64>, moments: &Moments<X>, mass_is_given: bool) -> Ten<X> {
+fn body<X: Real>(
+    solid: &InertialParameters<f64>,
+    moments: &Moments<X>,
+    mass_is_given: bool,
+) -> InertialParameters<X> {
     let [volume, first @ .., xx, yy, zz, xy, xz, yz] = moments;
     let first: &[X; 3] = first;
     let density = if mass_is_given {
@@ -161,7 +165,7 @@ fn body<X: Real>(solid: &Ten<f64>, moments: &Moments<X>, mass_is_given: bool) ->
         let second = [*xx, *yy, *zz, *xy, *xz, *yz];
         std::array::from_fn(|k| about(second[k], SECOND[k]))
     };
-    Ten {
+    InertialParameters {
         mass: *volume * density,
         center: std::array::from_fn(|k| X::from(solid.center[k]) + mean[k]),
         inertia: [yy + zz, xx + zz, xx + yy, -xy, -xz, -yz],

@@ -1,33 +1,28 @@
 //! Uncertainty: what is not known of a body's numbers, where it comes from, and what it makes of all that follows.
 //!
-//! Every doubt is a *source*: a draw of independent standard normal variables ([`Variable`]). A body carries what one standard
-//! deviation of each variable does to its ten numbers, to first order ([`Doubt`]); two bodies that depend on one variable are
-//! correlated by it, and stay so through every operation. Beside it go the second-order terms along a few probe directions:
+//! Every uncertainty comes from a *source*: a draw of independent standard normal variables ([`Variable`]). A body carries what
+//! one standard deviation of each variable does to its ten numbers, to first order ([`LinearUncertainty`]). Two bodies that
+//! depend on one variable are correlated by it, and stay so through every operation. Beside it go the second-order terms along a few probe directions:
 //! they tell where the first order is not enough.
 //!
 //! | what | file |
 //! |---|---|
 //! | sources and their variables, the probes | [`variable`] |
-//! | standard deviations and covariances as linear forms of variables | [`given`](mod@given) |
-//! | what a body carries | [`doubt`] |
-//! | how it follows through any function of bodies and numbers | [`follow`](mod@follow) |
-//! | through the ways to a body and from body to body | [`changes`] |
+//! | standard deviations and covariances as linear forms of variables | [`linear_forms`](mod@linear_forms) |
+//! | what a body carries | [`linear_uncertainty`] |
+//! | how it propagates through any function of bodies and numbers | [`propagate`](mod@propagate) |
+//! | through the ways to a body and from body to body; through the corners of a polygon | [`body_functions`] |
 //! | through the vertices of a mesh | [`mesh`] |
-//! | through particles | [`particles`] |
-//! | through the corners of a polygon | [`polygon`] |
-//! | through sums, where parts are many | [`composites`] |
+//! | through sums, where parts are many; through particles | [`assemblies`] |
 //! | which covariances no body can have | [`possible`] |
-//! | terms of higher order of moments and axes | `higher` |
-//! | moments, axes and radii of gyration after a step | `stepped` |
-//! | terms of all that deviations are told of | `terms` |
 //! | standard deviations of all that a body has, and where they are not to be trusted | [`deviations`](mod@deviations) |
 //!
 //! # Examples
 //!
 //! ```
-//! use polhode::mass::{Amount, solids, ten::Ten};
+//! use polhode::mass::{Amount, solids, inertial_parameters::InertialParameters};
 //! use polhode::uncertainty::{
-//!     Deviations, Doubt, Follow, FromPrincipal, Given, Source, Translated, deviations, deviations_about, follow, together,
+//!     Deviations, LinearUncertainty, Inputs, FromPrincipal, LinearForms, Source, Translated, deviations, deviations_about, propagate, together,
 //! };
 //! use polhode::nalgebra::{Matrix3, Vector3};
 //!
@@ -35,53 +30,46 @@
 //! let ball = solids::sphere(0.5, Amount::Mass(2.0))?;
 //! let values = [2.0, 0.0, 0.0, 0.0, 0.2, 0.2, 0.2];
 //! let sigmas = [0.01, 0.0, 0.0, 0.0, 0.002, 0.002, 0.002];
-//! let given = Given::independent(&sigmas, Source::named("the bench"))?;
+//! let given = LinearForms::independent(&sigmas, Source::named("the bench"))?;
 //! let numbers: Vec<_> = values.into_iter().zip(given.forms.iter().map(Vec::as_slice)).collect();
-//! let doubt = follow(&FromPrincipal(Matrix3::identity()), Follow { bodies: &[], numbers: &numbers })?;
-//! let own: Deviations = deviations(&ball, &doubt);
+//! let uncertainty = propagate(&FromPrincipal(Matrix3::identity()), Inputs { bodies: &[], numbers: &numbers })?;
+//! let own: Deviations = deviations(&ball, &uncertainty);
 //! assert!((own.numbers[0] - 0.01).abs() < 1e-17);
 //! assert!((own.numbers[4] - 0.002).abs() < 1e-17);
 //!
 //! // About a point 3 m away, I + m d²: the mass dominates.
-//! let far = deviations_about(&ball, &doubt, &Vector3::new(3.0, 0.0, 0.0))?;
+//! let far = deviations_about(&ball, &uncertainty, &Vector3::new(3.0, 0.0, 0.0))?;
 //! assert!((far.numbers[5] - 0.09_f64.hypot(0.002)).abs() < 1e-12);
 //!
 //! // Moved by 1 m ± 1 mm, and put together with itself: both parts depend on the same draws.
-//! let step = Given::independent(&[0.001], Source::fresh())?;
+//! let step = LinearForms::independent(&[0.001], Source::fresh())?;
 //! let shift = [(1.0, step.forms[0].as_slice()), (0.0, &[]), (0.0, &[])];
-//! let moved = follow(&Translated, Follow { bodies: &[(Ten::of(&ball), &doubt)], numbers: &shift })?;
-//! let there = Ten::of(&ball).translated([1.0, 0.0, 0.0]);
-//! let both: Doubt = together(&[(1.0, Ten::of(&ball), &doubt), (1.0, there, &moved)]);
+//! let moved = propagate(&Translated, Inputs { bodies: &[(InertialParameters::of(&ball), &uncertainty)], numbers: &shift })?;
+//! let there = InertialParameters::of(&ball).translated([1.0, 0.0, 0.0]);
+//! let both: LinearUncertainty = together(&[(1.0, InertialParameters::of(&ball), &uncertainty), (1.0, there, &moved)]);
 //! assert!((both.covariance_with(&both)[(0, 0)].sqrt() - 0.02).abs() < 1e-15);
 //! # Ok::<(), polhode::Error>(())
 //! ```
 
-pub mod changes;
-pub mod composites;
+pub mod assemblies;
+pub mod body_functions;
 pub mod deviations;
-pub mod doubt;
-pub mod follow;
-pub mod given;
-mod higher;
+pub mod linear_forms;
+pub mod linear_uncertainty;
 pub mod mesh;
-pub mod particles;
-pub mod polygon;
 pub mod possible;
-mod stepped;
-mod terms;
+pub mod propagate;
 pub mod variable;
 
-pub use changes::{
-    FromPositiveProducts, FromPrincipal, FromTensor, FromTensorAboutOrigin, OfShape, Rotated,
-    Scaled, Shape, Translated,
+pub use assemblies::{of_particles, together};
+pub use body_functions::{
+    FromPositiveProducts, FromPrincipal, FromTensor, FromTensorAboutOrigin, OfPolygon, OfShape,
+    Rotated, Scaled, Shape, Translated,
 };
-pub use composites::together;
 pub use deviations::{Deviations, deviations, deviations_about};
-pub use doubt::{Doubt, Tangent};
-pub use follow::{Change, Follow, follow};
-pub use given::{Form, Given};
+pub use linear_forms::{Form, LinearForms};
+pub use linear_uncertainty::{LinearUncertainty, Tangent};
 pub use mesh::of_mesh;
-pub use particles::of_particles;
-pub use polygon::OfPolygon;
 pub use possible::check_possible;
+pub use propagate::{BodyFunction, Inputs, propagate};
 pub use variable::{PROBES, Source, Variable};

@@ -4,22 +4,22 @@
 //! negative is zero always. So the thickness of a lamina or the width of a rod is exactly known where the tensor says that it
 //! is zero; what is uncertain of it has to be said otherwise, as a thin plate with a thickness and a sigma of that.
 
-use super::doubt::Doubt;
+use super::linear_uncertainty::LinearUncertainty;
 use crate::error::{Error, UncertaintyFault};
 use crate::mass::body::RigidBody;
-use crate::mass::ten::Ten;
+use crate::mass::inertial_parameters::InertialParameters;
 use crate::mass::validity::ROUNDING;
 
 /// Relative to the sum of all second moments: deviations below it are rounding.
 const KNOWN: f64 = 1e-9;
 
-/// Checks that a body can have these doubts.
+/// Checks that a body can have these uncertainties.
 ///
 /// # Examples
 ///
 /// ```
 /// use polhode::mass::{Amount, laminae};
-/// use polhode::uncertainty::{Form, Source, check_possible, follow::directly};
+/// use polhode::uncertainty::{Form, Source, check_possible, propagate::directly};
 ///
 /// // A disk without thickness: its moments are ½ I₃ each, and cannot have deviations of their own.
 /// let disk = laminae::disk(1.0, Amount::Mass(1.0))?;
@@ -37,7 +37,7 @@ const KNOWN: f64 = 1e-9;
 ///
 /// # Errors
 /// [`UncertaintyFault::NoBody`] when a second moment that is zero has a variance.
-pub fn check_possible(body: &RigidBody, doubt: &Doubt) -> Result<(), Error> {
+pub fn check_possible(body: &RigidBody, uncertainty: &LinearUncertainty) -> Result<(), Error> {
     let principal = body.principal();
     let [i1, i2, i3] = principal.moments;
     let sum = 0.5 * (i1 + i2 + i3);
@@ -46,16 +46,16 @@ pub fn check_possible(body: &RigidBody, doubt: &Doubt) -> Result<(), Error> {
             continue;
         }
         let axis = principal.axes.column(k).into_owned();
-        let along = |change: &Ten<f64>| {
+        let along = |change: &InertialParameters<f64>| {
             let tensor = change.tensor();
             0.5 * tensor.trace() - axis.dot(&(tensor * axis))
         };
-        let variance: f64 = doubt
+        let variance: f64 = uncertainty
             .tangents
             .iter()
             .map(|(_, change)| along(change).powi(2))
             .sum();
-        let (sigma, spread) = (variance.sqrt(), all(doubt));
+        let (sigma, spread) = (variance.sqrt(), all(uncertainty));
         // Noise of other elements reaches it by rounding.
         if sigma > KNOWN * spread.max(ROUNDING * sum) {
             return Err(UncertaintyFault::NoBody {
@@ -69,8 +69,8 @@ pub fn check_possible(body: &RigidBody, doubt: &Doubt) -> Result<(), Error> {
 }
 
 /// The deviation of the whole tensor.
-fn all(doubt: &Doubt) -> f64 {
-    let squares = doubt
+fn all(uncertainty: &LinearUncertainty) -> f64 {
+    let squares = uncertainty
         .tangents
         .iter()
         .flat_map(|(_, change)| change.inertia)

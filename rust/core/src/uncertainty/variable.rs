@@ -4,7 +4,7 @@ use std::collections::hash_map::RandomState;
 use std::hash::{BuildHasher, Hasher};
 use std::sync::Mutex;
 
-/// A draw: where a doubt comes from. What comes from one source stays one source, in pickles and files too.
+/// A draw: where a uncertainty comes from. What comes from one source stays one source, in pickles and files too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Source {
     /// Of the process that made it, or of its name.
@@ -44,7 +44,7 @@ impl Source {
             })
         };
         let origin = hash(0xcbf2_9ce4_8422_2325);
-        let [.., a, b, c, d] = mixed(hash(mixed(origin))).to_be_bytes();
+        let [.., a, b, c, d] = mix(hash(mix(origin))).to_be_bytes();
         Self {
             origin,
             number: u32::from_be_bytes([a, b, c, d]),
@@ -108,7 +108,7 @@ impl Variable {
             let place = probe % EIGHT;
             if place == 0 {
                 // Without the random part, so that the same program finds the same.
-                bits = mixed(self.place ^ mixed((probe / EIGHT) as u64));
+                bits = mix(self.place ^ mix((probe / EIGHT) as u64));
                 first = (bits & 7) as usize;
                 second = (first + 1 + (bits >> 3 & 0xffff) as usize % 7) % EIGHT;
             }
@@ -135,7 +135,7 @@ impl Variable {
 }
 
 /// All bits of a number spread over all (Stafford's 13th mix of `splitmix64`).
-fn mixed(x: u64) -> u64 {
+fn mix(x: u64) -> u64 {
     let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);

@@ -10,7 +10,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyCapsuleMethods, PyInt, PyTuple};
 
-use super::stateful::MOST_STATES;
+use super::callbacks::MOST_STATES;
 
 /// `void f(double t, const double state[13 + k], double out[6 + k], void *user_data)`, with k states of its own.
 type Function = unsafe extern "C" fn(f64, *const f64, *mut f64, *mut c_void);
@@ -69,7 +69,7 @@ impl Compiled {
         &self.owner
     }
 
-    pub(super) fn copied(&self, py: Python<'_>) -> Self {
+    pub(super) fn clone_ref(&self, py: Python<'_>) -> Self {
         Self {
             owner: self.owner.clone_ref(py),
             windows: self.windows.clone(),

@@ -17,7 +17,7 @@ use crate::about::is_pivot;
 use crate::arrays::{Numbers, read, read_scalar, write_of};
 use crate::attitudes::read_quaternion;
 use crate::body::PyRigidBody;
-use crate::depth::Deeper;
+use crate::depth::RecursionGuard;
 use crate::errors::{at_row, to_py};
 use crate::interrupt::Beat;
 use crate::memory;
@@ -39,7 +39,7 @@ impl PyLoad {
         start: Option<f64>,
         states: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Stack<Wrench>> {
-        let _deeper = Deeper::run("load")?;
+        let _guard = RecursionGuard::run("load")?;
         let terms = self.terms(py)?;
         let bodies = match body {
             Some(body) => &body.get().bodies,
@@ -291,7 +291,7 @@ impl PyLoad {
             .transpose()
     }
 
-    /// Tell which part of the angular momentum about the reference point is conserved under the load.
+    /// Find which part of the angular momentum about the reference point is conserved under the load.
     ///
     /// Parameters
     /// ----------

@@ -1,17 +1,25 @@
-//! The class `Load`: a sum of terms. What Python's operators do with it is in `operators`.
+//! The class `Load`: a sum of terms, and what Python's operators do with it.
 
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+use numpy::{PyUntypedArray, PyUntypedArrayMethods};
+use polhode::error::MotionFault;
 use polhode::motion::loads::{Term, Windows};
+use polhode::motion::state::Phase;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{PyDict, PyFloat, PyInt, PyNotImplemented, PyTuple};
+use pyo3::{PyTraverseError, PyVisit};
 
 use super::address::Compiled;
-use super::called::Callback;
-use super::part::{Acts, Part};
-use super::recipe::{recipe, unfolded};
-use super::stateful::WithStates;
-use crate::arrays::{numpy, read_list};
+use super::callbacks::{Callback, MOST_STATES, Slot, WithStates, report_states};
+use super::pickle_recipe::{describe, recipe, unfold};
+use crate::arrays::{floats, numpy, read_list, read_scalar, try_rows};
 use crate::errors::to_py;
+use crate::indexing::{picked_by, to_index};
 use crate::interrupt::Beat;
+use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
 
 /// Forces and torques on a body, as a sum of terms. Made by the functions of :mod:`polhode.loads`.
@@ -49,13 +57,13 @@ impl PyLoad {
         self
     }
 
-    pub(crate) fn copied(&self, py: Python<'_>) -> PyResult<Self> {
-        self.map(|part| part.copied(py))
+    pub(crate) fn clone_ref(&self, py: Python<'_>) -> PyResult<Self> {
+        self.map(|part| part.clone_ref(py))
     }
 
     pub(super) fn plus(&self, py: Python<'_>, other: &Self) -> PyResult<Self> {
-        let mut sum = self.copied(py)?;
-        sum.parts.append(&mut other.copied(py)?.parts);
+        let mut sum = self.clone_ref(py)?;
+        sum.parts.append(&mut other.clone_ref(py)?.parts);
         sum.stack_shape()?;
         Ok(sum)
     }
@@ -131,7 +139,7 @@ impl PyLoad {
     /// started at `t`.
     pub(super) fn copy_with_epoch(&self, py: Python<'_>, t: f64) -> PyResult<Self> {
         self.map(|part| {
-            let mut part = part.copied(py)?;
+            let mut part = part.clone_ref(py)?;
             if let Acts::Term(terms) = &part.acts
                 && terms.rows.iter().any(Term::needs_epoch)
             {
@@ -141,7 +149,7 @@ impl PyLoad {
             if let Acts::WithStates(one) = &mut part.acts
                 && one.needs_epoch()
             {
-                one.set_epoch(t);
+                one.start_at(t);
                 part.recipe = recipe(py, "_with_epoch", (&part.recipe, t))?;
             }
             Ok(part)
@@ -150,8 +158,8 @@ impl PyLoad {
 }
 
 /// The load of one recipe.
-pub(super) fn made(py: Python<'_>, recipe: &Bound<'_, PyTuple>) -> PyResult<PyLoad> {
-    let steps = unfolded(recipe)?;
+pub(super) fn rebuild(py: Python<'_>, recipe: &Bound<'_, PyTuple>) -> PyResult<PyLoad> {
+    let steps = unfold(recipe)?;
     let (name, arguments) = &steps[0];
     let function = py.import("polhode.loads")?.getattr(name.as_str())?;
     let made = match arguments.get_item(arguments.len().saturating_sub(1)) {
@@ -161,7 +169,7 @@ pub(super) fn made(py: Python<'_>, recipe: &Bound<'_, PyTuple>) -> PyResult<PyLo
         }
         _ => function.call(arguments, None)?,
     };
-    let mut load = made.cast::<PyLoad>()?.get().copied(py)?;
+    let mut load = made.cast::<PyLoad>()?.get().clone_ref(py)?;
     let mut beat = Beat::new(py);
     for (name, arguments) in &steps[1..] {
         beat.mark()?;
@@ -193,4 +201,506 @@ pub(super) fn schedule_load(
     let opened = Windows::new(&pairs).map_err(|error| to_py(py, &error))?;
     let kept = numpy(py)?.call_method1("array", (windows, "float64"))?;
     load.map(|part| part.scheduled(py, &opened, &kept))
+}
+
+// One term of a load: scaled, scheduled, picked from a stack.
+
+/// A term, and how it was made.
+pub(super) struct Part {
+    pub(super) acts: Acts,
+    /// The name of a function and its arguments, which make it anew; for pickle.
+    pub(super) recipe: Py<PyTuple>,
+    /// The name of its states.
+    pub(super) name: Option<Arc<str>>,
+}
+
+pub(super) enum Acts {
+    Term(Stack<Term>),
+    Callback(Callback),
+    Compiled(Compiled),
+    WithStates(WithStates),
+}
+
+impl Part {
+    /// The objects of Python that it holds.
+    pub(super) fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
+        visit.call(&self.recipe)?;
+        match &self.acts {
+            Acts::Term(_) => Ok(()),
+            Acts::Callback(callback) => visit.call(callback.function()),
+            Acts::Compiled(compiled) => visit.call(compiled.owner()),
+            Acts::WithStates(one) => one.traverse(visit),
+        }
+    }
+
+    pub(super) fn clone_ref(&self, py: Python<'_>) -> PyResult<Self> {
+        Ok(Self {
+            acts: match &self.acts {
+                Acts::Term(terms) => Acts::Term(terms.map(py, Term::clone)?),
+                Acts::Callback(callback) => Acts::Callback(callback.clone_ref(py)),
+                Acts::Compiled(compiled) => Acts::Compiled(compiled.clone_ref(py)),
+                Acts::WithStates(one) => Acts::WithStates(one.clone_ref(py)),
+            },
+            recipe: self.recipe.clone_ref(py),
+            name: self.name.clone(),
+        })
+    }
+
+    pub(super) fn shape(&self) -> &[usize] {
+        match &self.acts {
+            Acts::Term(terms) => &terms.shape,
+            _ => &[],
+        }
+    }
+
+    pub(super) fn scaled(&self, py: Python<'_>, factor: f64) -> PyResult<Self> {
+        self.check_changes(py, "scaled")?;
+        let mut scaled = self.clone_ref(py)?;
+        match &mut scaled.acts {
+            Acts::Term(terms) => *terms = try_rows(py, terms, |term| term.scaled(factor))?,
+            Acts::Callback(callback) => callback.factor *= factor,
+            Acts::Compiled(compiled) => compiled.factor *= factor,
+            Acts::WithStates(_) => (),
+        }
+        scaled.recipe = recipe(py, "_scaled", (&self.recipe, factor))?;
+        Ok(scaled)
+    }
+
+    /// That functions with states of their own are not scaled or scheduled.
+    fn check_changes(&self, py: Python<'_>, what: &'static str) -> PyResult<()> {
+        let has_states = match &self.acts {
+            Acts::WithStates(_) => true,
+            Acts::Compiled(compiled) => !compiled.initial.is_empty(),
+            Acts::Term(_) | Acts::Callback(_) => false,
+        };
+        if has_states {
+            return Err(to_py(py, &MotionFault::StatesStay { what }.into()));
+        }
+        Ok(())
+    }
+
+    /// The rows that NumPy's indexing picks, of the part broadcast to `shape`.
+    pub(super) fn picked(
+        &self,
+        py: Python<'_>,
+        shape: &[usize],
+        key: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let picked = picked_by(py, shape, key)?;
+        let rows = picked.as_slice()?;
+        let mut part = self.clone_ref(py)?;
+        if let Acts::Term(terms) = &part.acts {
+            let grid = Broadcast::of(["load", "load"], [shape, &terms.shape])?;
+            let taken = Broadcast::of(["key"], [picked.shape()])?;
+            part.acts = Acts::Term(taken.try_map(py, |[k]| {
+                Ok(terms[grid.operands(to_index(rows[k]))[1]].clone())
+            })?);
+        }
+        part.recipe = recipe(py, "_picked", (&self.recipe, shape.to_vec(), key))?;
+        Ok(part)
+    }
+
+    pub(super) fn scheduled(
+        &self,
+        py: Python<'_>,
+        windows: &Windows,
+        given: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        self.check_changes(py, "scheduled")?;
+        let mut part = self.clone_ref(py)?;
+        let within = |own: &Option<Windows>| {
+            Some(
+                own.as_ref()
+                    .map_or_else(|| windows.clone(), |own| own.within(windows)),
+            )
+        };
+        match &mut part.acts {
+            Acts::Term(terms) => {
+                *terms = try_rows(py, terms, |term| term.clone().scheduled(windows))?;
+            }
+            Acts::Callback(callback) => callback.windows = within(&callback.windows),
+            Acts::Compiled(compiled) => compiled.windows = within(&compiled.windows),
+            Acts::WithStates(_) => (),
+        }
+        part.recipe = recipe(py, "_scheduled", (&self.recipe, given))?;
+        Ok(part)
+    }
+}
+
+// What Python's operators and pickle do with a load.
+
+/// What scales a load: a real number of Python or NumPy, also one in an array without axes; `None` of anything else.
+fn real_number(factor: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    if factor.is_instance_of::<PyFloat>() || factor.is_instance_of::<PyInt>() {
+        return read_scalar(factor).map(Some);
+    }
+    let py = factor.py();
+    if let Ok(array) = factor.cast::<PyUntypedArray>() {
+        if array.ndim() == 0 && factor.is_exact_instance_of::<PyUntypedArray>() {
+            return real_number(&array.call_method0("item")?);
+        }
+        // NumPy's own answer would be about anything but loads.
+        return Err(PyTypeError::new_err(
+            "a load is scaled by one number, not by an array: for a stack of loads give the function that makes it a stack \
+             of arguments",
+        ));
+    }
+    let real = py.import("numbers")?.getattr("Real")?;
+    if factor.is_instance(&real)? {
+        return read_scalar(factor).map(Some);
+    }
+    Ok(None)
+}
+
+#[pymethods]
+impl PyLoad {
+    /// What the garbage collector may find a cycle through: a function that knows the load it is part of.
+    ///
+    /// Nothing is cleared here: a load never changes, so that every cycle passes through something else that does.
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
+        self.parts.iter().try_for_each(|part| part.traverse(&visit))
+    }
+
+    fn __getitem__(&self, py: Python<'_>, key: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let shape = self.stack_shape()?;
+        self.map(|part| part.picked(py, &shape, key))
+    }
+
+    /// Shape of the stack of loads; empty for one.
+    #[getter]
+    fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.stack_shape()?)
+    }
+
+    /// Return the same load for a motion that is continued and that had started at `t`. Orbits without an epoch
+    /// get `t` as their epoch.
+    fn with_epoch(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = read_scalar)] t: f64,
+    ) -> PyResult<Self> {
+        self.copy_with_epoch(py, t)
+    }
+
+    fn __add__<'py>(
+        &self,
+        py: Python<'py>,
+        other: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let Ok(other) = other.cast::<Self>() else {
+            return Ok(PyNotImplemented::get(py).to_owned().into_any());
+        };
+        Ok(self.plus(py, other.get())?.into_pyobject(py)?.into_any())
+    }
+
+    /// `sum(loads)` starts from the number 0.
+    fn __radd__<'py>(
+        &self,
+        py: Python<'py>,
+        other: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        if other.is_exact_instance_of::<PyInt>()
+            && other.extract::<i64>().is_ok_and(|zero| zero == 0)
+        {
+            return Ok(self.clone_ref(py)?.into_pyobject(py)?.into_any());
+        }
+        Ok(PyNotImplemented::get(py).to_owned().into_any())
+    }
+
+    fn __sub__<'py>(
+        &self,
+        py: Python<'py>,
+        other: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let Ok(other) = other.cast::<Self>() else {
+            return Ok(PyNotImplemented::get(py).to_owned().into_any());
+        };
+        let negative = other.get().__neg__(py)?;
+        Ok(self.plus(py, &negative)?.into_pyobject(py)?.into_any())
+    }
+
+    fn __neg__(&self, py: Python<'_>) -> PyResult<Self> {
+        self.map(|part| part.scaled(py, -1.0))
+    }
+
+    fn __mul__<'py>(
+        &self,
+        py: Python<'py>,
+        factor: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let Some(factor) = real_number(factor)? else {
+            return Ok(PyNotImplemented::get(py).to_owned().into_any());
+        };
+        let scaled = self.map(|part| part.scaled(py, factor))?;
+        Ok(scaled.into_pyobject(py)?.into_any())
+    }
+
+    fn __rmul__<'py>(
+        &self,
+        py: Python<'py>,
+        factor: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.__mul__(py, factor)
+    }
+
+    /// A load is no array: NumPy leaves ``2.0 * load`` to the load, also where the number is one of NumPy's.
+    #[classattr]
+    fn __array_ufunc__() -> Option<bool> {
+        None
+    }
+
+    fn __copy__(&self, py: Python<'_>) -> PyResult<Self> {
+        self.clone_ref(py)
+    }
+
+    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> PyResult<Self> {
+        self.clone_ref(py)
+    }
+
+    /// The terms as the functions that make them, with their arguments; for pickle.
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        if self.compiled().next().is_some() {
+            return Err(PyTypeError::new_err(
+                "a load with a compiled function cannot be pickled: its address holds in this process alone",
+            ));
+        }
+        let restore = py.get_type::<Self>().getattr("_from_parts")?;
+        let parts: Vec<_> = self.parts.iter().map(|part| part.recipe.bind(py)).collect();
+        Ok((restore, PyTuple::new(py, [parts])?))
+    }
+
+    /// The load that `__reduce__` took apart.
+    #[staticmethod]
+    fn _from_parts(py: Python<'_>, parts: Vec<Bound<'_, PyTuple>>) -> PyResult<Self> {
+        let mut sum = Self::default();
+        for recipe in parts {
+            sum.parts.extend(rebuild(py, &recipe)?.parts);
+        }
+        Ok(sum)
+    }
+
+    /// The functions that made its terms; a stack also by its shape.
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let shape = self.stack_shape()?;
+        let terms = (self.parts.iter())
+            .map(|part| describe(part.recipe.bind(py)))
+            .collect::<PyResult<Vec<_>>>()?
+            .join(" + ");
+        Ok(if shape.is_empty() {
+            format!("<Load: {terms}>")
+        } else {
+            format!("<Load stack of shape {}: {terms}>", tuple(&shape))
+        })
+    }
+}
+
+// The states that a load has of its own, by name.
+
+/// Relative to it or to what counts as large, states that differ less are the same: those at the end of a run, of a wheel whose
+/// speed is known.
+const SAME: f64 = 1e-9;
+
+impl PyLoad {
+    /// The states of its parts, in the order in which a run has them: first those of its analytic terms, then those of parts that call
+    /// Python, then those of compiled functions. Of parts with the same name the second is called `name_2`.
+    pub(crate) fn slots(&self) -> Vec<Slot> {
+        let mut slots: Vec<Slot> = Vec::new();
+        let mut first = 0;
+        for kind in 0..3 {
+            for part in &self.parts {
+                let (of_kind, count) = match &part.acts {
+                    Acts::Term(terms) => (0, terms.rows.first().map_or(0, Term::internal_states)),
+                    Acts::Callback(_) => (1, 0),
+                    Acts::WithStates(one) => (1, one.initial.len()),
+                    Acts::Compiled(one) => (2, one.initial.len()),
+                };
+                if of_kind != kind || count == 0 {
+                    continue;
+                }
+                slots.push(Slot {
+                    name: unused_message(part.name.as_deref().unwrap_or("states"), &slots),
+                    first,
+                    count,
+                });
+                first += count;
+            }
+        }
+        slots
+    }
+
+    /// The states with which a motion starts at time `t` with `omega`, from those reported that are given; what is not a number is
+    /// not given.
+    pub(crate) fn begun(
+        &self,
+        terms: &[Term],
+        t: f64,
+        omega: &Vector3<f64>,
+        given: &[f64],
+    ) -> Box<[f64]> {
+        let mut states = Vec::new();
+        for carried in terms.iter().filter_map(Term::carried) {
+            let mine = given.get(states.len()..states.len() + carried.count());
+            states.extend(match mine.filter(|mine| !mine.iter().any(|x| x.is_nan())) {
+                Some(mine) => carried.resumed(mine, t, omega),
+                None => carried.begin(t, omega),
+            });
+        }
+        for initial in self.initial_of_functions() {
+            for &value in initial {
+                let given = given.get(states.len()).filter(|x| !x.is_nan());
+                states.push(given.copied().unwrap_or(value));
+            }
+        }
+        states.into()
+    }
+
+    /// That states are given only where they can be: that of a wheel whose speed is known follows from it.
+    pub(crate) fn check_given(
+        &self,
+        terms: &[Term],
+        t: f64,
+        omega: &Vector3<f64>,
+        given: &[f64],
+    ) -> PyResult<()> {
+        let kept = self.begun(terms, t, omega, given);
+        let phase = Phase {
+            omega: *omega,
+            internal_state: kept,
+            ..Phase::nan()
+        };
+        let kept = report_states(terms, &phase);
+        let sizes = (terms.iter().filter_map(Term::carried))
+            .flat_map(|carried| vec![carried.size() * omega.norm(); carried.count()]);
+        for ((value, kept), size) in given.iter().zip(kept).zip(sizes) {
+            let large = value.abs().max(kept.abs()).max(size);
+            if (value - kept).abs() > SAME * large {
+                return Err(PyValueError::new_err(format!(
+                    "states: a wheel whose speed is known has the momentum {kept:?} at t = {t:?}, got {value:?}; leave it out, or give \
+                     the wheel another speed"
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// That a run from one time to another can be made.
+    pub(crate) fn check_run(&self, from: f64, to: f64) -> PyResult<()> {
+        let count: usize = self.slots().iter().map(|slot| slot.count).sum();
+        if count > MOST_STATES && !self.is_analytic() {
+            return Err(PyValueError::new_err(format!(
+                "load: {count} states of its own, more than the {MOST_STATES} of a load that calls functions"
+            )));
+        }
+        self.with_states().try_for_each(|one| one.check(from, to))
+    }
+
+    fn initial_of_functions(&self) -> impl Iterator<Item = &[f64]> {
+        let called = self.with_states().map(|one| &one.initial[..]);
+        called.chain(self.compiled().map(|one| &one.initial[..]))
+    }
+
+    /// The states given under their names, each of shape (..., k); what is not given is not a number.
+    pub(crate) fn read_states(
+        &self,
+        given: Option<&Bound<'_, PyAny>>,
+        all: bool,
+    ) -> PyResult<Stack<Vec<f64>>> {
+        let slots = self.slots();
+        let names = || {
+            let names: Vec<_> = slots
+                .iter()
+                .map(|slot| format!("{:?}", slot.name))
+                .collect();
+            names.join(", ")
+        };
+        let Some(given) = given.filter(|given| !given.is_none()) else {
+            if all && !slots.is_empty() {
+                return Err(PyTypeError::new_err(format!(
+                    "states: the load has states of its own: pass states= with {}, as `states` of a trajectory has them",
+                    names()
+                )));
+            }
+            return Ok(Stack::one(Vec::new()));
+        };
+        let given = given.cast::<PyDict>().map_err(|_| {
+            PyTypeError::new_err(format!(
+                "states: expected a dict of names and arrays, got {}",
+                given.get_type()
+            ))
+        })?;
+        for key in given.keys() {
+            let name: String = key.extract().map_err(|_| {
+                PyTypeError::new_err(format!("states: names are strings, got {key}"))
+            })?;
+            if !slots.iter().any(|slot| slot.name == name) {
+                let known = if slots.is_empty() {
+                    "the load has none".to_owned()
+                } else {
+                    format!("the load has {}", names())
+                };
+                return Err(PyValueError::new_err(format!(
+                    "states: no {name:?}; {known}"
+                )));
+            }
+        }
+        let mut found = Stack::one(Vec::new());
+        for slot in &slots {
+            let values = match given.get_item(&slot.name)? {
+                Some(values) => one(&values, slot, all)?,
+                None if all => {
+                    return Err(PyTypeError::new_err(format!(
+                        "states: {:?} is missing",
+                        slot.name
+                    )));
+                }
+                None => Stack::one(vec![f64::NAN; slot.count]),
+            };
+            let grid = Broadcast::of(["states", "states"], [&found.shape, &values.shape])?;
+            found = grid.try_map(
+                given.py(),
+                |[a, b]| Ok([&found[a][..], &values[b]].concat()),
+            )?;
+        }
+        Ok(found)
+    }
+}
+
+/// A name that no slot has yet: the one that is asked for, or with the first number that makes it one.
+fn unused_message(name: &str, slots: &[Slot]) -> String {
+    let is_taken = |name: &str| slots.iter().any(|slot| slot.name == name);
+    let mut found = name.to_owned();
+    let mut number = 2;
+    while is_taken(&found) {
+        found = format!("{name}_{number}");
+        number += 1;
+    }
+    found
+}
+
+/// The states of one part, shape (..., k); those after the end of a run are not numbers.
+fn one(values: &Bound<'_, PyAny>, slot: &Slot, with_holes: bool) -> PyResult<Stack<Vec<f64>>> {
+    let name = format!("states[{:?}]", slot.name);
+    let array = floats(values, &name)?;
+    let shape = array.shape();
+    if shape.last() != Some(&slot.count) {
+        return Err(PyValueError::new_err(format!(
+            "{name}: expected shape (..., {}), got {}",
+            slot.count,
+            tuple(shape)
+        )));
+    }
+    let numbers = array.as_slice()?;
+    let is_bad = |x: &&f64| !(x.is_finite() || with_holes && x.is_nan());
+    if let Some(bad) = numbers.iter().find(is_bad) {
+        return Err(PyValueError::new_err(format!(
+            "{name}: must be finite, got {bad}"
+        )));
+    }
+    Ok(Stack {
+        shape: shape[..shape.len() - 1].to_vec(),
+        rows: numbers.chunks(slot.count).map(<[f64]>::to_vec).collect(),
+    })
 }

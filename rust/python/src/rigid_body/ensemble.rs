@@ -13,7 +13,7 @@ use crate::body::PyRigidBody;
 use crate::errors::{at_row, to_py};
 use crate::events::{Functions, States};
 use crate::interrupt::{Beat, Interrupt};
-use crate::loads::{Acting, Fault, PyLoad, reported};
+use crate::loads::{Acting, Fault, PyLoad, report_states};
 use crate::memory;
 use crate::stack::{BLOCK, Broadcast, Stack};
 
@@ -144,7 +144,7 @@ impl Ensemble<'_> {
             let found = run.crossings.iter_mut().map(|crossing| &mut crossing.phase);
             for phase in run.samples.iter_mut().chain(found).chain([&mut run.phase]) {
                 if !phase.internal_state.is_empty() {
-                    phase.internal_state = reported(terms, phase).into();
+                    phase.internal_state = report_states(terms, phase).into();
                 }
             }
         }
@@ -197,7 +197,7 @@ impl Batch for Ensemble<'_> {
             omega,
             position: self.start.position[r],
             velocity: self.start.velocity[v],
-            internal_state: own,
+            own,
         };
         (b, initial)
     }
@@ -208,19 +208,19 @@ impl Batch for Ensemble<'_> {
     }
 
     fn run(&self, row: Member<'_>) -> Run<Fault> {
-        let (load, terms, body) = (self.load, self.terms(row.number), row.body());
+        let (load, terms, subject) = (self.load, self.terms(row.number), row.body());
         match self.callbacks() {
             CallbackPolicy::Nothing | CallbackPolicy::OnAnyThread => {
-                let mut load = Acting::new(load, terms, body, None);
+                let mut load = Acting::new(load, terms, subject, None);
                 row.integrate(&mut load, &mut NoEvents::new())
             }
             CallbackPolicy::OnThisThread => Python::attach(|py| {
-                let mut load = Acting::new(load, terms, body, Some(py));
+                let mut load = Acting::new(load, terms, subject, Some(py));
                 let states = States {
                     slots: self.load.slots(),
                     terms,
                 };
-                row.integrate(&mut load, &mut self.events.calling(py, states))
+                row.integrate(&mut load, &mut self.events.with_callbacks(py, states))
             }),
         }
     }

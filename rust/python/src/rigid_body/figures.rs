@@ -10,12 +10,12 @@ use pyo3::prelude::*;
 use pyo3::types::PyList;
 
 use crate::body::PyRigidBody;
-use crate::figure::{Figure, Figures, MOST_ROWS, Outline, Part, Place, figures, together};
+use crate::figure::{Figure, Figures, MOST_ROWS, Outline, Part, Placement, figures, together};
 use crate::stack::Broadcast;
 
 impl PyRigidBody {
     /// The same bodies, of these shapes.
-    pub(crate) fn looking(self, figures: Figures) -> Self {
+    pub(crate) fn with_shapes(self, figures: Figures) -> Self {
         Self { figures, ..self }
     }
 
@@ -23,7 +23,7 @@ impl PyRigidBody {
     fn figure(&self, row: usize) -> Figure {
         match &self.figures {
             Some(figures) => Arc::clone(&figures[row]),
-            None => Outline::of_inertia(&self.bodies[row]).placed(),
+            None => Outline::of_inertia(&self.bodies[row]).place(),
         }
     }
 
@@ -36,10 +36,10 @@ impl PyRigidBody {
     }
 
     /// The shapes in other places; this body is the first operand of the grid.
-    pub(crate) fn placed<const K: usize>(
+    pub(crate) fn place_figures<const K: usize>(
         &self,
         grid: &Broadcast<'_, K>,
-        place: impl Fn([usize; K]) -> Place,
+        place: impl Fn([usize; K]) -> Placement,
     ) -> Figures {
         let own = self.figures.as_ref()?;
         figures(grid.len(), |row| {
@@ -54,7 +54,7 @@ impl PyRigidBody {
     }
 
     /// The shapes with another body put to it or taken out of it.
-    pub(crate) fn joined(
+    pub(crate) fn join_figures(
         &self,
         grid: &Broadcast<'_, 2>,
         other: &Self,
@@ -70,7 +70,7 @@ impl PyRigidBody {
     }
 
     /// The shapes of so many rows, each of as many rows of this one after the other.
-    pub(crate) fn gathered(&self, count: usize, order: &[usize]) -> Figures {
+    pub(crate) fn gather(&self, count: usize, order: &[usize]) -> Figures {
         if self.figures.is_none() || count == 0 {
             return None;
         }
@@ -81,7 +81,7 @@ impl PyRigidBody {
     }
 
     /// The shapes of one stack after the other.
-    pub(crate) fn stacked<'a>(bodies: impl Iterator<Item = &'a Self> + Clone) -> Figures {
+    pub(crate) fn stack_figures<'a>(bodies: impl Iterator<Item = &'a Self> + Clone) -> Figures {
         let rows: usize = bodies.clone().map(|body| body.bodies.rows.len()).sum();
         if !bodies.clone().any(|body| body.figures.is_some()) {
             return None;
@@ -113,7 +113,7 @@ impl PyRigidBody {
             return Ok(None);
         };
         let part = |part: &Part| -> Stored<'py> {
-            let Place { turn, shift } = &part.place;
+            let Placement { turn, shift } = &part.place;
             (
                 part.outline.kind.to_string(),
                 PyArray1::from_slice(py, &part.outline.numbers),
@@ -136,21 +136,21 @@ impl PyRigidBody {
         let rows: Vec<Vec<Stored<'_>>> = stored.extract()?;
         let figures = rows
             .into_iter()
-            .map(|parts| parts.into_iter().map(restored).collect())
+            .map(|parts| parts.into_iter().map(restore_part).collect())
             .collect::<PyResult<Vec<Figure>>>()?;
         if figures.len() != self.bodies.rows.len() {
-            return Err(damaged());
+            return Err(damage_error());
         }
-        Ok(self.looking(Some(Arc::new(figures))))
+        Ok(self.with_shapes(Some(Arc::new(figures))))
     }
 }
 
-fn restored((kind, numbers, faces, place, is_taken_out): Stored<'_>) -> PyResult<Part> {
+fn restore_part((kind, numbers, faces, place, is_taken_out): Stored<'_>) -> PyResult<Part> {
     let faces = faces.to_vec()?;
     let (faces, rest) = faces.as_chunks::<3>();
-    let place: [f64; 12] = place.try_into().map_err(|_| damaged())?;
+    let place: [f64; 12] = place.try_into().map_err(|_| damage_error())?;
     if !rest.is_empty() {
-        return Err(damaged());
+        return Err(damage_error());
     }
     Ok(Part {
         outline: Arc::new(Outline {
@@ -158,7 +158,7 @@ fn restored((kind, numbers, faces, place, is_taken_out): Stored<'_>) -> PyResult
             numbers: numbers.to_vec()?,
             faces: faces.to_vec(),
         }),
-        place: Place {
+        place: Placement {
             turn: Matrix3::from_row_slice(&place[..9]),
             shift: Vector3::from_column_slice(&place[9..]),
         },
@@ -166,6 +166,6 @@ fn restored((kind, numbers, faces, place, is_taken_out): Stored<'_>) -> PyResult
     })
 }
 
-fn damaged() -> PyErr {
+fn damage_error() -> PyErr {
     PyValueError::new_err("figures: not what was stored")
 }

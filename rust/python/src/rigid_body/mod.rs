@@ -1,20 +1,23 @@
 //! The methods of the class `RigidBody`.
+//!
+//! | file | what it knows |
+//! |---|---|
+//! | `construct` | the ways to a body: from numbers, particles, meshes, curves, voxels, tetrahedra, densities |
+//! | `properties` | mass, centre, tensor; sums and changes of frame; a stack as a container; energy and momentum |
+//! | `uncertainty` | standard deviations in and out |
+//! | `provenance` | where the numbers come from, and how good they are |
+//! | `figures` | what a body looks like |
+//! | `interop` | what Python does for a body: files, other libraries' objects, pictures |
+//! | `motion` | motions in closed form |
+//! | `simulate`, `outcome`, `ensemble` | motions under loads |
 
-mod composites;
 mod construct;
-mod container;
-mod continuum;
-mod deviations;
-mod dynamics;
 mod ensemble;
 mod figures;
-mod from_shapes;
-mod matter;
+mod interop;
 mod motion;
 mod outcome;
-mod outside;
 mod properties;
-mod sigma;
+mod provenance;
 mod simulate;
-mod stored;
-mod trust;
+mod uncertainty;

@@ -61,7 +61,7 @@ impl PyRigidBody {
         let r = points(py, &self.bodies, Some(r), "r")?;
         let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
         let velocity = read_or(&velocity, "velocity", Vector3::zeros())?;
-        let about = points(py, &self.bodies, about.given(), "about")?;
+        let about = points(py, &self.bodies, about.value(), "about")?;
         let shapes = [
             &self.bodies.shape[..],
             &r.shape,
@@ -126,7 +126,7 @@ impl PyRigidBody {
         let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
         let angular = read_or(&angular_acceleration, "angular_acceleration", zero)?;
         let linear = read_or(&acceleration, "acceleration", zero)?;
-        let about = points(py, &self.bodies, about.given(), "about")?;
+        let about = points(py, &self.bodies, about.value(), "about")?;
         let names = [
             "body",
             "r",
@@ -209,7 +209,7 @@ impl PyRigidBody {
         )?;
         let gravity = read_or(&gravity, "gravity", zero)?;
         let force = read_or(&force, "force", zero)?;
-        let about = match about.given() {
+        let about = match about.value() {
             Some(about) => points(py, &self.bodies, Some(about), "about")?,
             None => Stack::one(zero),
         };
@@ -286,7 +286,7 @@ impl PyRigidBody {
         about: Argument<'py>,
     ) -> Array<'py> {
         let rate: Stack<f64> = read(rate, "rate")?;
-        let about = points(py, &self.bodies, about.given(), "about")?;
+        let about = points(py, &self.bodies, about.value(), "about")?;
         let shapes = [&self.bodies.shape[..], &rate.shape, &about.shape];
         let squares =
             Broadcast::of(["body", "rate", "about"], shapes)?.try_map(py, |[b, w, p]| {

@@ -216,7 +216,7 @@ impl Ensemble<'_> {
         if let ([], [run]) = (&self.grid.shape[..], &runs[..]) {
             return Ok(word(run).into_pyobject(py)?.into_any());
         }
-        let words = runs.iter().map(|run| fixed(word(run))).collect();
+        let words = runs.iter().map(|run| fixed_width(word(run))).collect();
         let words = PyArray1::from_vec(py, words).reshape(self.grid.shape.clone())?;
         Ok(words.into_any())
     }
@@ -331,7 +331,7 @@ fn of_run(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
 }
 
 /// A word of at most eight letters as NumPy's `<U8`.
-fn fixed(word: &str) -> PyFixedUnicode<8> {
+fn fixed_width(word: &str) -> PyFixedUnicode<8> {
     let mut letters = [0; 8];
     for (letter, code) in letters.iter_mut().zip(word.chars()) {
         *letter = u32::from(code);

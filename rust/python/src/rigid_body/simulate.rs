@@ -11,12 +11,12 @@ use crate::about::is_pivot;
 use crate::arrays::{read, read_scalar};
 use crate::attitudes::read_attitude_exactly;
 use crate::body::PyRigidBody;
-use crate::depth::Deeper;
-use crate::elsewhere::{handed_over, is_any};
+use crate::depth::RecursionGuard;
 use crate::errors::{at_row, to_py};
 use crate::events::Functions;
 use crate::hints;
 use crate::interrupt::Interrupt;
+use crate::lazy_arrays::{handed_over, is_any};
 use crate::loads::PyLoad;
 use crate::stack::Stack;
 use crate::times::read_times;
@@ -172,7 +172,7 @@ impl PyRigidBody {
                 return Ok(motion);
             }
         }
-        let _deeper = Deeper::run("simulate")?;
+        let _guard = RecursionGuard::run("simulate")?;
         let pivoted = is_pivot(about)?;
         if pivoted && velocity.is_some() {
             return Err(PyValueError::new_err(

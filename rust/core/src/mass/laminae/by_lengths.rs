@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use crate::error::Error;
-use crate::mass::amount::{Amount, Measure, length, ordered};
-use crate::mass::ten::{Size, diagonal};
+use crate::mass::amount::{Amount, Measure, check_order, length};
+use crate::mass::inertial_parameters::{Size, diagonal};
 
 /// Disk of radius R: `I_z = ½ m R²`, `I_x = I_y = ¼ m R²`.
 ///
@@ -50,7 +50,7 @@ pub fn annulus<X: Size>(
     outer_radius: X,
     amount: Amount,
 ) -> Result<X::Body, Error> {
-    ordered(
+    check_order(
         ("inner_radius", inner_radius),
         ("outer_radius", outer_radius),
     )?;

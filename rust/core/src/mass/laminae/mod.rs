@@ -5,12 +5,10 @@
 //! | what | file |
 //! |---|---|
 //! | disk, annulus, ellipse, rectangle | `by_lengths` |
-//! | triangles and polygons | `polygon` |
-//! | whether a boundary passes through itself | `simple` |
+//! | triangles and polygons, whether a boundary passes through itself | `polygon` |
 
 mod by_lengths;
 mod polygon;
-mod simple;
 
 pub use by_lengths::{annulus, disk, ellipse, rectangle};
 pub use polygon::{polygon, triangle};

@@ -97,7 +97,7 @@ fn add_eight<const K: usize, A: Addend<K>, L: Lane>(
     }
 }
 
-/// The sums of [`Central`] and [`Turned`]: m; m y (3); m y yᵀ (xx, xy, xz, yy, yz, zz); masses below zero.
+/// The sums of [`Central`] and [`CentralInAxes`]: m; m y (3); m y yᵀ (xx, xy, xz, yy, yz, zz); masses below zero.
 pub(crate) const MOMENTS: usize = 11;
 
 /// Moments about a point, in body axes: `y = r − reference`.
@@ -120,12 +120,12 @@ impl Addend<MOMENTS> for Central {
 /// products carried along. Across the thin direction large terms cancel, and what is left must be that of the stored
 /// coordinates.
 #[derive(Clone, Copy)]
-pub(crate) struct Turned {
+pub(crate) struct CentralInAxes {
     pub(crate) reference: Vector3<f64>,
     pub(crate) axes: Matrix3<f64>,
 }
 
-impl Addend<MOMENTS> for Turned {
+impl Addend<MOMENTS> for CentralInAxes {
     #[inline(always)]
     fn add<L: Lane>(&self, mass: L, r: [L; 3], sums: [L; MOMENTS]) -> [L; MOMENTS] {
         let c = &self.reference;

@@ -27,7 +27,7 @@ use crate::numerics::threads::{Halt, Watch};
 /// use std::ops::ControlFlow;
 /// use polhode::mass::Amount;
 /// use polhode::mass::polyhedron::Options;
-/// use polhode::mass::polyhedron::closure::{capped, hulled};
+/// use polhode::mass::polyhedron::closure::{close_with_caps, close_with_hull};
 /// use polhode::mass::provenance::Closure;
 ///
 /// // The corner of a cube without its slanted face, which either way is put in again.
@@ -35,18 +35,18 @@ use crate::numerics::threads::{Halt, Watch};
 /// let open = [[0_usize, 2, 1], [0, 1, 3], [0, 3, 2]];
 /// let go_on = &mut |_| ControlFlow::Continue(());
 /// let amount = Amount::Density(6.0);
-/// let body = capped(&vertices, &open, amount, Options::default(), go_on)?;
+/// let body = close_with_caps(&vertices, &open, amount, Options::default(), go_on)?;
 /// assert!((body.mass() - 1.0).abs() < 1e-15);
 /// assert_eq!(body.provenance().closure, Some(Closure::Caps));
 /// let hull = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-/// let body = hulled(&vertices, &open, &hull, amount, go_on)?;
+/// let body = close_with_hull(&vertices, &open, &hull, amount, go_on)?;
 /// assert_eq!(body.provenance().closure, Some(Closure::Hull));
 /// # Ok::<(), polhode::parallel::Halt<polhode::Error>>(())
 /// ```
 ///
 /// # Errors
 /// As [`polyhedron`](super::polyhedron) of the closed mesh; faces that are wound inconsistently.
-pub fn capped<I: Index>(
+pub fn close_with_caps<I: Index>(
     vertices: &[[f64; 3]],
     faces: &[[I; 3]],
     amount: Amount,
@@ -69,7 +69,7 @@ pub fn capped<I: Index>(
 /// Vertices and faces.
 pub type CappedMesh = (Vec<[f64; 3]>, Vec<[usize; 3]>);
 
-/// The mesh that [`capped`] sums: vertices and faces, the points in the middle of the holes and the caps last.
+/// The mesh that [`close_with_caps`] sums: vertices and faces, the points in the middle of the holes and the caps last.
 ///
 /// # Errors
 /// Faces that count vertices wrongly, or are wound inconsistently.
@@ -103,7 +103,7 @@ pub fn with_caps<I: Index>(
 ///
 /// # Errors
 /// As [`polyhedron`](super::polyhedron) of the hull.
-pub fn hulled<I: Index>(
+pub fn close_with_hull<I: Index>(
     vertices: &[[f64; 3]],
     faces: &[[I; 3]],
     hull: &[[i64; 3]],
@@ -294,7 +294,8 @@ mod tests {
         for missing in 0..4 {
             let mut open = FACES.to_vec();
             open.remove(missing);
-            let body = capped(&CORNERS, &open, amount, Options::default(), go_on).expect("capped");
+            let body = close_with_caps(&CORNERS, &open, amount, Options::default(), go_on)
+                .expect("capped");
             assert!((body.mass() - 1.0).abs() < 1e-15);
             let provenance = body.provenance();
             assert_eq!(provenance.closure, Some(Closure::Caps));
@@ -307,10 +308,11 @@ mod tests {
     fn a_closed_mesh_is_not_changed() {
         let go_on = &mut |_| ControlFlow::Continue(());
         let amount = Amount::Density(6.0);
-        let capped = capped(&CORNERS, &FACES, amount, Options::default(), go_on).expect("closed");
+        let capped =
+            close_with_caps(&CORNERS, &FACES, amount, Options::default(), go_on).expect("closed");
         assert_eq!(capped.provenance().volume_change, 0.0);
         assert_eq!(capped.provenance().elements, 4);
-        let hulled = hulled(&CORNERS, &FACES[..3], &FACES, amount, go_on).expect("hull");
+        let hulled = close_with_hull(&CORNERS, &FACES[..3], &FACES, amount, go_on).expect("hull");
         assert_eq!(hulled.inertia(), capped.inertia());
         assert_eq!(hulled.provenance().closure, Some(Closure::Hull));
     }

@@ -6,31 +6,25 @@
 //!
 //! | what | file |
 //! |---|---|
-//! | whether the mesh is closed, and the edge at which it is not | `boundary` |
-//! | faces that stand twice | `duplicates` |
+//! | whether the mesh is closed, the edge at which it is not, faces that stand twice | `boundary` |
 //! | which components lie in which | `nesting` |
 //! | the solid inside triangles, wherever they come from | `solid` |
-//! | the body of what was summed | `matter` |
-//! | meshes in memory | `in_memory`, `view`, `faces` |
-//! | meshes larger than memory | [`stream`], `passes`, [`streamed`] |
+//! | meshes in memory | `in_memory`, `view` |
+//! | meshes larger than memory | [`stream`], [`streaming`] |
 //! | open meshes closed on request | [`closure`] |
 
 mod boundary;
 pub mod closure;
-mod duplicates;
-mod faces;
 mod in_memory;
-mod matter;
 mod nesting;
-mod passes;
 mod solid;
 pub mod stream;
-pub mod streamed;
+pub mod streaming;
 mod view;
 
 pub use in_memory::{outward, polyhedron, polyhedron_watched};
-pub(super) use matter::{in_units, is_settled, matter};
 pub(super) use nesting::find_components;
 pub use solid::Options;
+pub(super) use solid::{in_units, is_settled, matter};
 pub use view::Index;
 pub(super) use view::{View, widen};

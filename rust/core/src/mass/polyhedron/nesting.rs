@@ -48,7 +48,7 @@ impl InsideOut {
     }
 
     /// The faces, those of these components turned over.
-    pub(super) fn turned<I: Index>(&self, faces: &[[I; 3]]) -> Vec<[I; 3]> {
+    pub(super) fn orient_faces<I: Index>(&self, faces: &[[I; 3]]) -> Vec<[I; 3]> {
         let components = self.of_faces.iter().map(|&k| &self.components[k]);
         faces
             .iter()
@@ -260,7 +260,7 @@ fn windings<I: Index>(
         let from = rays.partition_point(|ray| ray.from.z < low);
         for ray in rays[from..].iter_mut().take_while(|ray| ray.from.z <= high) {
             if ray.component != component {
-                ray.passed += passed(&ray.from, &corners);
+                ray.passed += signed_crossing(&ray.from, &corners);
             }
         }
         Ok(())
@@ -276,7 +276,7 @@ fn windings<I: Index>(
 ///
 /// Along x the triangle winds around q as often as its edges do, and an edge decides the same for both its faces: so no
 /// ray slips through between two triangles.
-fn passed(q: &Vector3<f64>, corners: &[Vector3<f64>; 3]) -> f64 {
+fn signed_crossing(q: &Vector3<f64>, corners: &[Vector3<f64>; 3]) -> f64 {
     let mut turns = 0.0;
     for (from, to) in [(0, 1), (1, 2), (2, 0)] {
         let (p, r) = (&corners[from], &corners[to]);
@@ -342,7 +342,7 @@ mod tests {
             None => vec![false; list.len()],
             Some(found) => {
                 let flags = found.components.iter().map(|part| part.is_inside_out);
-                let (flags, turned) = (flags.collect(), found.turned(&faces));
+                let (flags, turned) = (flags.collect(), found.orient_faces(&faces));
                 let mesh = View {
                     vertices: &vertices,
                     faces: &turned,

@@ -1,15 +1,14 @@
 //! The solid inside triangles, wherever they come from: sums, checks, and sums again where digits are lost.
 
-use super::boundary::{Boundary, Replay, find_unbalanced};
-use super::duplicates::Marks;
-use super::matter::{in_units, is_settled, matter};
+use super::boundary::{Boundary, Marks, Replay, find_unbalanced};
 use crate::error::{Corner, Error, MeshFault};
 use crate::mass::amount::Amount;
 use crate::mass::body::RigidBody;
 use crate::mass::error_bound::{ErrorBound, UNIT};
-use crate::mass::provenance::{Checks, MomentsFrom, Provenance, Source};
+use crate::mass::provenance::{BodySource, Checks, MomentsFrom, Provenance};
+use crate::mass::second_moment::SecondMoment;
 use crate::mass::simplex::{LocalFrame, Sums};
-use crate::mass::units::QUANTUM;
+use crate::mass::units::{QUANTUM, Units};
 use crate::numerics::power_of_two::exponent;
 use crate::principal::principal_axes;
 
@@ -77,12 +76,12 @@ pub(super) fn solid<T: Triangles>(
         .and(Checks::ORIENTATION)
         .and(Checks::VOLUME);
     if sums.count == 0 {
-        return Err(failed(MeshFault::NoFaces));
+        return Err(mesh_error(MeshFault::NoFaces));
     }
     if !sums.magnitude.is_finite()
         && let Some(fault) = triangles.find_unusable()?
     {
-        return Err(failed(fault));
+        return Err(mesh_error(fault));
     }
     match checked {
         None => checks = checks.and(Checks::UNCHECKED),
@@ -91,7 +90,7 @@ pub(super) fn solid<T: Triangles>(
             let sign = if sums.content < 0.0 { -1.0 } else { 1.0 };
             let (inside_out, nesting) = triangles.find_inside_out(sign)?;
             if let Some(fault) = inside_out {
-                return Err(failed(fault));
+                return Err(mesh_error(fault));
             }
             checks = checks.and(nesting);
         }
@@ -103,7 +102,7 @@ pub(super) fn solid<T: Triangles>(
     }
     let provenance = Provenance {
         moments,
-        ..Provenance::of_matter(Source::Mesh, sums.count, checks)
+        ..Provenance::of_matter(BodySource::Mesh, sums.count, checks)
     };
     let (body, volume) = body(&sums, amount, options.orient)?;
     if options.check {
@@ -112,7 +111,7 @@ pub(super) fn solid<T: Triangles>(
     Ok((body.with_provenance(provenance), volume))
 }
 
-fn failed<E: From<Error>>(fault: MeshFault) -> E {
+fn mesh_error<E: From<Error>>(fault: MeshFault) -> E {
     Error::from(fault).into()
 }
 
@@ -120,7 +119,7 @@ fn failed<E: From<Error>>(fault: MeshFault) -> E {
 fn check_boundary<T: Triangles>(triangles: &mut T, checked: Checked) -> Result<Checks, T::Error> {
     let checks = Checks::CLOSED.and(Checks::WINDING).and(Checks::DUPLICATES);
     if let Some(fault) = checked.marks.find_duplicates(triangles)? {
-        return Err(failed(fault));
+        return Err(mesh_error(fault));
     }
     if checked.boundary.is_closed() {
         return Ok(checks);
@@ -130,7 +129,7 @@ fn check_boundary<T: Triangles>(triangles: &mut T, checked: Checked) -> Result<C
     };
     let [from, to] = fault.ends.map(|end| triangles.corner(fault.face, &end));
     let (face, count) = (fault.face, fault.count);
-    Err(failed(match fault.second {
+    Err(mesh_error(match fault.second {
         Some(second) => MeshFault::InconsistentWinding {
             from,
             to,
@@ -209,4 +208,69 @@ fn body(sums: &Sums, amount: Amount, orient: bool) -> Result<(RigidBody, f64), E
         ..ErrorBound::default()
     };
     Ok((matter(sums, mass, relative, bound, units)?, volume.abs()))
+}
+
+// The body of what was summed over simplices: solids, shells and wires.
+
+/// Whether the frame is the body's own to a tenth: another turn would save no digits.
+pub(in crate::mass) fn is_settled(sums: &Sums) -> bool {
+    let (s, c) = (sums.central(), sums.center());
+    [(0, 1), (0, 2), (1, 2)]
+        .iter()
+        .all(|&(i, j)| s[(i, j)].powi(2) <= 0.01 * s[(i, i)] * s[(j, j)])
+        && (0..3).all(|k| c[k].powi(2) <= s[(k, k)])
+}
+
+/// The mass of what has these sums, whose content is counted in `2^content`, and its units.
+pub(in crate::mass) fn in_units(
+    sums: &Sums,
+    content: i32,
+    amount: Amount,
+) -> Result<(f64, Units), Error> {
+    let length = exponent(sums.frame.unit);
+    let (mass, power) = amount.mass_in_units(sums.content.abs())?;
+    let of_content = match amount {
+        Amount::Mass(_) => 0,
+        Amount::Density(_) => content,
+    };
+    let units = Units {
+        mass: power + of_content,
+        length,
+        place: 0,
+    };
+    Ok((mass, units))
+}
+
+/// The body of this mass with these sums, whose content is known to `relative`.
+pub(in crate::mass) fn matter(
+    sums: &Sums,
+    mass: f64,
+    relative: f64,
+    bound: ErrorBound,
+    units: Units,
+) -> Result<RigidBody, Error> {
+    let LocalFrame {
+        reference,
+        unit,
+        axes,
+    } = sums.frame;
+    let axes_or = axes.unwrap_or_else(nalgebra::Matrix3::identity);
+    let center_of_mass = reference + axes_or * sums.center() * unit;
+    let central = sums.central() * mass;
+    // First and second moments are off by as much as the content, times the extent once and twice.
+    let extent = sums.extent.norm();
+    let error_bound = ErrorBound {
+        center_of_mass: 2.0 * (relative + 16.0 * UNIT) * extent * unit
+            + 4.0 * UNIT * center_of_mass.amax()
+            + QUANTUM,
+        inertia: 10.0 * (relative + 16.0 * UNIT) * mass * extent.powi(2),
+        ..bound
+    };
+    units.in_user_units(&RigidBody::from_second_moment(&SecondMoment {
+        mass,
+        center_of_mass,
+        central,
+        axes: axes_or,
+        error_bound,
+    })?)
 }

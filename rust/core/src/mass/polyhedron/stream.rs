@@ -1,8 +1,7 @@
 //! Triangles one after the other, without all of them ever being in memory: what a reader of files offers.
 
-use std::fmt;
-use std::io;
 use std::ops::ControlFlow;
+use std::{fmt, io};
 
 use crate::error::{Error, FileFault};
 
@@ -21,7 +20,7 @@ pub const BLOCK: usize = crate::numerics::reduce::BLOCK;
 /// use polhode::mass::Amount;
 /// use polhode::mass::polyhedron::Options;
 /// use polhode::mass::polyhedron::stream::{BLOCK, StreamError, Triangle, TriangleStream};
-/// use polhode::mass::polyhedron::streamed::streamed;
+/// use polhode::mass::polyhedron::streaming::stream_solid;
 ///
 /// /// Triangles that a program makes as they are asked for: here from a list.
 /// struct Made(Vec<Triangle>);
@@ -46,7 +45,7 @@ pub const BLOCK: usize = crate::numerics::reduce::BLOCK;
 /// let mut corner = Made(vec![[o, y, x], [o, x, z], [o, z, y], [x, y, z]]);
 /// let go_on = &mut |_| ControlFlow::Continue(());
 /// // Coordinates in millimetres, by the scale.
-/// let solid = streamed(&mut corner, 1e-3, Amount::Density(6000.0), Options::default(), go_on)?;
+/// let solid = stream_solid(&mut corner, 1e-3, Amount::Density(6000.0), Options::default(), go_on)?;
 /// assert_eq!(solid.triangles, 4);
 /// assert!((solid.body.mass() - 1e-6).abs() < 1e-20);
 /// # Ok::<(), StreamError>(())

@@ -11,7 +11,7 @@ pub trait Index: Copy + Send + Sync {
     /// The position it stands for; one that no list has where it is negative.
     fn position(self) -> usize;
     /// The number itself.
-    fn told(self) -> i64;
+    fn to_i64(self) -> i64;
 }
 
 macro_rules! index {
@@ -22,7 +22,7 @@ macro_rules! index {
                 usize::try_from(self).unwrap_or(usize::MAX)
             }
 
-            fn told(self) -> i64 {
+            fn to_i64(self) -> i64 {
                 i64::try_from(self).unwrap_or(i64::MAX)
             }
         }
@@ -79,7 +79,7 @@ impl<I: Index> View<'_, I> {
             if let Some(index) = corners.iter().find(|k| k.position() >= vertices) {
                 return Some(MeshFault::IndexOutOfRange {
                     face,
-                    index: index.told(),
+                    index: index.to_i64(),
                     vertices,
                 });
             }

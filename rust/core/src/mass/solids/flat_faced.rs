@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 use std::f64::consts::TAU;
 
 use super::super::amount::{Amount, Measure, Unit, length};
-use super::super::ten::{Size, diagonal};
+use super::super::inertial_parameters::{Size, diagonal};
 use crate::error::Error;
 
 /// Box with full edge lengths (x, y, z): `s_x = m x²/12`.

@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::super::amount::{Amount, Measure, length, ordered, ratio};
-use super::super::ten::{Size, diagonal};
+use super::super::amount::{Amount, Measure, check_order, length, ratio};
+use super::super::inertial_parameters::{Size, diagonal};
 use crate::error::Error;
 
 /// Ellipsoid with semi-axes (a, b, c): `s_x = m a²/5`, so `I_x = m (b² + c²)/5` (mex254).
@@ -85,7 +85,7 @@ pub fn hollow_sphere<X: Size>(
     outer_radius: X,
     amount: Amount,
 ) -> Result<X::Body, Error> {
-    ordered(
+    check_order(
         ("inner_radius", inner_radius),
         ("outer_radius", outer_radius),
     )?;

@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::super::amount::{Amount, Measure, length, ordered};
-use super::super::ten::{Size, diagonal};
+use super::super::amount::{Amount, Measure, check_order, length};
+use super::super::inertial_parameters::{Size, diagonal};
 use crate::error::Error;
 
 /// Cylinder of radius R and height h along z: `I_z = ½ m R²`, `I_x = m (3R² + h²)/12` (mex252).
@@ -59,7 +59,7 @@ pub fn tube<X: Size>(
     height: X,
     amount: Amount,
 ) -> Result<X::Body, Error> {
-    ordered(
+    check_order(
         ("inner_radius", inner_radius),
         ("outer_radius", outer_radius),
     )?;
@@ -223,7 +223,7 @@ pub fn capsule<X: Size>(radius: X, length: X, amount: Amount) -> Result<X::Body,
 /// # Errors
 /// When a radius is negative or not finite, the minor one is the larger, or the amount is not positive.
 pub fn torus<X: Size>(major_radius: X, minor_radius: X, amount: Amount) -> Result<X::Body, Error> {
-    ordered(
+    check_order(
         ("minor_radius", minor_radius),
         ("major_radius", major_radius),
     )?;

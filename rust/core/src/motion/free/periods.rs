@@ -6,7 +6,7 @@ use super::Mode;
 use super::invariants::Invariants;
 use super::motion::FreeMotion;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::elliptic::{Real, complete_first, complete_third};
+use crate::numerics::elliptic::{MultiPrecision, complete_first, complete_third};
 
 /// The periods of a free motion. Each mode has periods of its own; those that it does not have are NaN.
 ///
@@ -149,7 +149,7 @@ impl Invariants {
         let k_prime = (self.discriminant.abs() / square)
             .sqrt()
             .scaled(self.discriminant_unit);
-        complete_first(k_prime) * 2.0.into() / Real::sqrt(square)
+        complete_first(k_prime) * 2.0.into() / MultiPrecision::sqrt(square)
     }
 
     fn mean_precession(&self, half_period: f64) -> [f64; 3] {

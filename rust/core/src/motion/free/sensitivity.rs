@@ -684,7 +684,7 @@ mod tests {
     ];
 
     fn motion(moments: [f64; 3], omega: Vector3<f64>) -> FreeMotion {
-        let principal = RefinedPrincipal::given(&moments, &Matrix3::identity());
+        let principal = RefinedPrincipal::from_principal(&moments, &Matrix3::identity());
         FreeMotion::refined(&principal, &omega, &UnitQuaternion::identity()).expect("finite")
     }
 
@@ -727,7 +727,7 @@ mod tests {
         for (moments, omega, t, _) in CASES {
             let first = motion(moments, omega.into());
             let middle = first.at(t);
-            let principal = RefinedPrincipal::given(&moments, &Matrix3::identity());
+            let principal = RefinedPrincipal::from_principal(&moments, &Matrix3::identity());
             let second = FreeMotion::refined(&principal, &middle.omega, &middle.attitude);
             let second = second.expect("finite").sensitivity(1e3);
             let (whole, early) = (first.sensitivity(t + 1e3), first.sensitivity(t));

@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 
 use crate::mass::refined::{RefinedPrincipal, Vector};
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::elliptic::Real;
+use crate::numerics::elliptic::MultiPrecision;
 use crate::numerics::lane::{Double, Lane};
 use crate::numerics::quad_double::QuadDouble;
 
@@ -114,7 +114,7 @@ impl Separation {
 }
 
 /// D of the moments and of `ω₁` and `ω₃`, in products that are exact where they can be.
-fn difference<T: Real>(&[i1, i2, i3]: &[T; 3], &[x, z]: &[T; 2]) -> T {
+fn difference<T: MultiPrecision>(&[i1, i2, i3]: &[T; 3], &[x, z]: &[T; 2]) -> T {
     i3 * (i3 - i2) * (z * z) - i1 * (i2 - i1) * (x * x)
 }
 

@@ -6,7 +6,7 @@ use crate::motion::free::FreeMotion;
 use crate::numerics::double_double::DoubleDouble;
 
 fn motion(moments: [f64; 3], rotor: [f64; 3], omega: [f64; 3]) -> GyrostatMotion {
-    let principal = RefinedPrincipal::given(&moments, &Matrix3::identity());
+    let principal = RefinedPrincipal::from_principal(&moments, &Matrix3::identity());
     let attitude = UnitQuaternion::from_euler_angles(0.3, -1.0, 2.0);
     let rotor = rotor.map(DoubleDouble::from);
     GyrostatMotion::of(&principal, &rotor, &Vector3::from(omega), &attitude).expect("a motion")
@@ -151,7 +151,7 @@ fn many_states_have_the_bits_of_one() {
 
 #[test]
 fn without_momentum_it_is_free_motion() {
-    let principal = RefinedPrincipal::given(&[1.0, 2.0, 2.5], &Matrix3::identity());
+    let principal = RefinedPrincipal::from_principal(&[1.0, 2.0, 2.5], &Matrix3::identity());
     let (omega, attitude) = (Vector3::new(0.3, 0.2, 1.1), UnitQuaternion::identity());
     let rotor = InternalMomentum::default().rotor(&omega);
     let motion = GyrostatMotion::of(&principal, &rotor, &omega, &attitude).expect("a motion");

@@ -13,7 +13,7 @@
 use super::reduced::Reduced;
 use super::turning_points::TurningPoints;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::elliptic::{Real, complete_first, complete_third, incomplete_first};
+use crate::numerics::elliptic::{MultiPrecision, complete_first, complete_third, incomplete_first};
 use crate::numerics::theta::HalfPeriods;
 
 /// 1/2π.
@@ -44,7 +44,7 @@ pub(super) struct Phases {
 }
 
 impl Phases {
-    pub(super) fn of<T: Real>(motion: &Reduced<T>, points: &TurningPoints<T>) -> Self {
+    pub(super) fn of<T: MultiPrecision>(motion: &Reduced<T>, points: &TurningPoints<T>) -> Self {
         let (zero, one) = (T::from(0.0), T::from(1.0));
         let two_kappa = motion.kappa.scaled(2.0);
         let (sum, difference, rest) = (motion.sum(), motion.difference(), motion.rest());
@@ -115,7 +115,7 @@ impl Phases {
 
 /// Ω of β in turns, of the two forms the one whose integral is the tamer:
 /// `−½ (a − b)/(u₃ − u₁) ⟨sn²/(1 − (1 − u₁)/(u₃ − u₁) sn²)⟩`, or `½ (a − b)/(1 − u₁) ⟨1/(1 − (u₂ − u₁)/(1 − u₁) sn²)⟩ + s_β π/T`.
-fn beta_rate<T: Real>(
+fn beta_rate<T: MultiPrecision>(
     two_kappa: T,
     difference: T,
     points: &TurningPoints<T>,
@@ -143,7 +143,7 @@ fn beta_rate<T: Real>(
 }
 
 /// z at time zero: in turns, or on the separatrix the argument itself. From the nearer of the two turning points.
-fn start<T: Real>(
+fn start<T: MultiPrecision>(
     motion: &Reduced<T>,
     points: &TurningPoints<T>,
     k_prime: f64,
@@ -170,7 +170,7 @@ fn start<T: Real>(
 
 /// The shifts, with their signs: `tan²` of each amplitude is `|c − u₁|/(u₂ − u₁)` for α, `(c − u₂)(u₃ − u₁)/((u₂ − u₁)(u₃ − c))`
 /// for β and W, with c = −1, 1 and `u_e`.
-fn shifts<T: Real>(
+fn shifts<T: MultiPrecision>(
     two_kappa: f64,
     points: &TurningPoints<T>,
     k: f64,
@@ -194,7 +194,7 @@ fn shifts<T: Real>(
     ]
 }
 
-fn bottom_shift<T: Real>(points: &TurningPoints<T>, k: f64) -> f64 {
+fn bottom_shift<T: MultiPrecision>(points: &TurningPoints<T>, k: f64) -> f64 {
     amplitude(points.above_bottom.rounded(), points.range.rounded(), k)
 }
 
@@ -210,6 +210,6 @@ fn amplitude(a: f64, b: f64, k: f64) -> f64 {
     incomplete_first(sine, cosine, k)
 }
 
-fn sign<T: Real>(x: T) -> f64 {
+fn sign<T: MultiPrecision>(x: T) -> f64 {
     if x.rounded() < 0.0 { -1.0 } else { 1.0 }
 }

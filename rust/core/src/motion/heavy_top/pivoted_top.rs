@@ -8,7 +8,7 @@ use crate::mass::RigidBody;
 use crate::mass::provenance::MomentsFrom;
 use crate::mass::refined::RefinedPrincipal;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::elliptic::Real;
+use crate::numerics::elliptic::MultiPrecision;
 use crate::numerics::power_of_two::{direction_of, exponent, length, times_power_of_two};
 use crate::numerics::quad_double::QuadDouble;
 use crate::principal::SymmetricTop;
@@ -256,7 +256,7 @@ fn product_of_mantissas(a: f64, b: f64) -> (f64, i32) {
 }
 
 /// The vector, or the opposite one.
-fn toward<T: Real>(vector: [T; 3], is_opposite: bool) -> [T; 3] {
+fn toward<T: MultiPrecision>(vector: [T; 3], is_opposite: bool) -> [T; 3] {
     vector.map(|x| if is_opposite { -x } else { x })
 }
 

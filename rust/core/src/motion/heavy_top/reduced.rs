@@ -18,7 +18,7 @@ use super::top_data::TopData;
 use super::top_data::{near_one, sum_of_squares, times};
 use crate::motion::attitude::components;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::elliptic::Real;
+use crate::numerics::elliptic::MultiPrecision;
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
 use crate::numerics::quad_double::QuadDouble;
 
@@ -76,7 +76,7 @@ impl Reduced<QuadDouble> {
     }
 }
 
-impl<T: Real> Reduced<T> {
+impl<T: MultiPrecision> Reduced<T> {
     /// Of a top with the angular velocity `omega` in B, the attitude `R_NB` and `gravity` in N, all finite.
     pub(super) fn of(
         top: &TopData<T>,
@@ -222,13 +222,13 @@ impl<T: Real> Reduced<T> {
 }
 
 /// Length of a vector, as a number of the order of one and a power of two.
-fn norm<T: Real>(vector: &Vector3<f64>) -> (T, i32) {
+fn norm<T: MultiPrecision>(vector: &Vector3<f64>) -> (T, i32) {
     let scaled = near_one(&[vector.x, vector.y, vector.z].map(T::from));
     (sum_of_squares(&scaled).sqrt(), exponent(vector.amax()))
 }
 
 /// The shortest rotation from `direction` to the third axis; from below the horizontal after half a turn about the first axis.
-fn to_third_axis<T: Real>(direction: &[T; 3]) -> Components<T> {
+fn to_third_axis<T: MultiPrecision>(direction: &[T; 3]) -> Components<T> {
     let (zero, one) = (T::from(0.0), T::from(1.0));
     let identity = [zero, zero, zero, one];
     let flipped = [one, zero, zero, zero];
@@ -248,13 +248,13 @@ fn to_third_axis<T: Real>(direction: &[T; 3]) -> Components<T> {
 }
 
 /// The vector turned by the unit quaternion.
-fn turned<T: Real>(q: &Components<T>, vector: &Vector3<f64>) -> Components<T> {
+fn turned<T: MultiPrecision>(q: &Components<T>, vector: &Vector3<f64>) -> Components<T> {
     let v = [vector.x, vector.y, vector.z, 0.0].map(T::from);
     product(&product(q, &v), &conjugate(q))
 }
 
 /// `p∘q`.
-fn product<T: Real>(p: &Components<T>, q: &Components<T>) -> Components<T> {
+fn product<T: MultiPrecision>(p: &Components<T>, q: &Components<T>) -> Components<T> {
     let ([a, b, c, d], [x, y, z, w]) = (*p, *q);
     [
         d * x + a * w + (b * z - c * y),
@@ -264,10 +264,10 @@ fn product<T: Real>(p: &Components<T>, q: &Components<T>) -> Components<T> {
     ]
 }
 
-fn rounded<T: Real>(q: &Components<T>) -> Quaternion<f64> {
+fn rounded<T: MultiPrecision>(q: &Components<T>) -> Quaternion<f64> {
     Quaternion::from(Vector4::from(q.map(T::rounded)))
 }
 
-fn conjugate<T: Real>(q: &Components<T>) -> Components<T> {
+fn conjugate<T: MultiPrecision>(q: &Components<T>) -> Components<T> {
     [-q[0], -q[1], -q[2], q[3]]
 }

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::elliptic::Real;
+use crate::numerics::elliptic::MultiPrecision;
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
 
 /// The data of a top as the body has them.
@@ -31,7 +31,7 @@ pub(super) struct Sizes<T> {
     pub(super) exponent: i32,
 }
 
-impl<T: Real> TopData<T> {
+impl<T: MultiPrecision> TopData<T> {
     /// The moments and the arm to twice the precision, in units of the top itself.
     pub(super) fn sizes(&self) -> Sizes<T> {
         let TopData {
@@ -69,12 +69,12 @@ impl<T: Real> TopData<T> {
     }
 }
 
-fn not_negative<T: Real>(x: T) -> T {
+fn not_negative<T: MultiPrecision>(x: T) -> T {
     if x.rounded() > 0.0 { x } else { T::from(0.0) }
 }
 
 /// `x 2^e`.
-pub(super) fn times<T: Real>(x: T, e: i32) -> T {
+pub(super) fn times<T: MultiPrecision>(x: T, e: i32) -> T {
     let (mut x, mut rest) = (x, e);
     while rest != 0 && x.rounded() != 0.0 {
         let stride = rest.clamp(-1000, 1000);
@@ -85,11 +85,11 @@ pub(super) fn times<T: Real>(x: T, e: i32) -> T {
 }
 
 /// The vector times a power of two that makes its largest component one or somewhat more.
-pub(super) fn near_one<T: Real>(vector: &[T; 3]) -> [T; 3] {
+pub(super) fn near_one<T: MultiPrecision>(vector: &[T; 3]) -> [T; 3] {
     let largest = (vector.iter()).fold(0.0_f64, |most, x| most.max(x.rounded().abs()));
     vector.map(|x| times(x, -exponent(largest)))
 }
 
-pub(super) fn sum_of_squares<T: Real>(numbers: &[T]) -> T {
+pub(super) fn sum_of_squares<T: MultiPrecision>(numbers: &[T]) -> T {
     (numbers.iter()).fold(T::from(0.0), |sum, &x| sum + x * x)
 }

@@ -6,7 +6,7 @@
 
 use super::reduced::Reduced;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::elliptic::Real;
+use crate::numerics::elliptic::MultiPrecision;
 use crate::numerics::quad_double::QuadDouble;
 
 /// Newton's steps at most: a dozen reach a root from the bound where the search starts.
@@ -67,7 +67,7 @@ impl TurningPoints<QuadDouble> {
     }
 }
 
-impl<T: Real> TurningPoints<T> {
+impl<T: MultiPrecision> TurningPoints<T> {
     /// The same to twice the precision.
     pub(super) fn twofold(&self) -> TurningPoints {
         TurningPoints {
@@ -151,7 +151,7 @@ impl<T: Real> TurningPoints<T> {
 }
 
 /// The quotient of two numbers that are not negative, where nothing over nothing is nothing.
-fn quotient<T: Real>(a: T, b: T) -> T {
+fn quotient<T: MultiPrecision>(a: T, b: T) -> T {
     if a.rounded() <= 0.0 || b.rounded() <= 0.0 {
         T::from(0.0)
     } else {
@@ -160,11 +160,11 @@ fn quotient<T: Real>(a: T, b: T) -> T {
 }
 
 /// `a/b` as a double, where nothing over nothing is nothing: products of two small numbers would be lost.
-fn share<T: Real>(a: T, b: T) -> f64 {
+fn share<T: MultiPrecision>(a: T, b: T) -> f64 {
     quotient(T::from(a.rounded()), T::from(b.rounded())).rounded()
 }
 
-fn not_negative<T: Real>(x: T) -> T {
+fn not_negative<T: MultiPrecision>(x: T) -> T {
     if x.rounded() > 0.0 { x } else { T::from(0.0) }
 }
 
@@ -197,7 +197,7 @@ struct Roots<T> {
     beyond_top: T,
 }
 
-impl<T: Real> Cubic<T> {
+impl<T: MultiPrecision> Cubic<T> {
     /// The root that stands apart by Newton's method, the other two by the quadratic that is left.
     fn roots(&self, pole: &Pole<T>) -> Roots<T> {
         if self.constant.rounded() == 0.0 {
@@ -314,7 +314,7 @@ impl<T: Real> Cubic<T> {
 
 /// The root of `ρ³ + A ρ² + B ρ + C` that Newton's method comes to from `start`, outside of all roots: steadily, and fast since
 /// that root stands apart.
-fn newton<T: Real>(monic: &[T; 3], start: f64) -> T {
+fn newton<T: MultiPrecision>(monic: &[T; 3], start: f64) -> T {
     let [a, b, c] = monic.map(T::rounded);
     let slope = |x: f64| (3.0 * x + 2.0 * a) * x + b;
     let mut x = start;

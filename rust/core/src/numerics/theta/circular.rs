@@ -1,9 +1,19 @@
-//! Theta functions as sums of sines and cosines, for nomes up to 0.11.
+//! The two periods of Jacobi's functions.
 
 use std::f64::consts::PI;
 
-use super::half_periods::HalfPeriods;
 use crate::numerics::lane::Lane;
+
+/// The half periods: K along the real axis, K′ along the imaginary one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct HalfPeriods {
+    /// K.
+    pub real: f64,
+    /// K′.
+    pub imaginary: f64,
+}
+
+// Theta functions as sums of sines and cosines, for nomes up to 0.11.
 
 /// Cosines and sines of z = πu/2K and its multiples up to 9 z.
 #[derive(Clone, Copy, Debug)]

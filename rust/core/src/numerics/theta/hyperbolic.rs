@@ -5,7 +5,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::half_periods::HalfPeriods;
+use super::circular::HalfPeriods;
 use crate::numerics::lane::Lane;
 use crate::numerics::turns::exp_minus;
 

@@ -13,16 +13,14 @@
 //!
 //! | what | file |
 //! |---|---|
-//! | K and K′ | `half_periods` |
-//! | sums of sines and cosines | [`circular`] |
+//! | K and K′, sums of sines and cosines | [`circular`] |
 //! | sums of hyperbolic functions | [`hyperbolic`] |
 //! | quotients of shifted functions | [`quotients`] |
 
 pub(crate) mod circular;
-mod half_periods;
 pub(crate) mod hyperbolic;
 pub(crate) mod quotients;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use half_periods::HalfPeriods;
+pub(crate) use circular::HalfPeriods;

@@ -124,7 +124,7 @@ impl Body {
             mass,
             euler: *euler,
             moments,
-            principal: RefinedPrincipal::given(&moments, &Matrix3::identity()),
+            principal: RefinedPrincipal::from_principal(&moments, &Matrix3::identity()),
             q_bp: from_axes(euler.axes()),
             massless,
             symmetry: Symmetry::of(&moments, &massless),
@@ -354,7 +354,7 @@ mod tests {
         ] {
             let [i1, i2, i3] = moments;
             let kappa = [(i2 - i3) / i1, (i3 - i1) / i2, (i1 - i2) / i3];
-            let principal = RefinedPrincipal::given(&moments, &Matrix3::identity());
+            let principal = RefinedPrincipal::from_principal(&moments, &Matrix3::identity());
             for n in 1..200 {
                 let w = direction(n) * (f64::from(n) * 0.002);
                 let [x, y, z, u] = short_turn(&kappa, &w).expect("near");

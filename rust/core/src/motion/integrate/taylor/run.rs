@@ -22,7 +22,7 @@ use crate::motion::problem::{End, Run, Task, check_times};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lane::Lane;
-use crate::numerics::threads::{fill_blocks, locked, thread_count};
+use crate::numerics::threads::{fill_blocks, lock, thread_count};
 use crate::numerics::twofold::Twofold;
 
 /// Compute the motion of `task` under `terms`.
@@ -227,7 +227,7 @@ impl Tasks<'_, '_> {
                     observer: None,
                 })
             } else {
-                let mut cache = locked(self.caches).pop().unwrap_or_default();
+                let mut cache = lock(self.caches).pop().unwrap_or_default();
                 let side_by_side = SideBySide {
                     settings,
                     jobs,
@@ -235,7 +235,7 @@ impl Tasks<'_, '_> {
                     cache: &mut cache,
                 };
                 let flow = side_by_side.run();
-                locked(self.caches).push(cache);
+                lock(self.caches).push(cache);
                 flow
             }
         };
