@@ -197,7 +197,7 @@ impl Batch for Ensemble<'_> {
             omega,
             position: self.start.position[r],
             velocity: self.start.velocity[v],
-            own,
+            internal_state: own,
         };
         (b, initial)
     }
