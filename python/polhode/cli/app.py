@@ -107,7 +107,7 @@ def check(
     check: Annotated[CheckOptions, ALL] = CheckOptions(),  # noqa: B008
     output: Output = SHOWN,
 ) -> int:
-    """Check the inertia of each link of a robot, and write a corrected copy.
+    """Check the inertia of a robot's links, and write a corrected copy.
 
     Parameters
     ----------
