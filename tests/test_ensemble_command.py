@@ -99,8 +99,8 @@ class TestSpread:
             ),
             (
                 (
-                    "--moments", "2 2 1", "--mass", "1.0(1)", "--center-of-mass", "0, 0, 0.4 to 0.6", "--gravity",
-                    "9.81", "--omega", "0, 0, 20.0 ± 0.5", "--attitude", "0, 0.5 ± 0.1, 0",
+                    "--moments", "2 2 1", "--mass", "1.0(1)", "--center-of-mass", "0, 0, 0.4 to 0.6",
+                    "--gravity", "9.81", "--omega", "0, 0, 20.0 ± 0.5", "--attitude", "0, 0.5 ± 0.1, 0",
                     "--method", "exact",
                 ),
                 distributions.made(
@@ -174,7 +174,7 @@ class TestSpread:
         drawn = distributions.normal((1, 1, 1.9), sigma=(0, 0, 0.1)).draw(500, seed=0, argument="body.1")
         many = np.count_nonzero(drawn[:, 2] > 2.0)
         assert 0 < many < 200
-        assert f"{many} members failed and are in none of these numbers" in values["notes"]
+        assert f"{many} members failed, and are left out of these numbers" in values["notes"]
 
     def test_a_checkpoint_goes_on(self, tmp_path: Path) -> None:
         path = tmp_path / "spread.npz"
@@ -236,7 +236,7 @@ class TestSaved:
         process.wait()
         code, _, err = run("ensemble", *words)
         assert code == 2
-        assert "is there already; add --resume to go on with it, or give another name" in err
+        assert "exists already; add --resume to continue it, or give another name" in err
         code, _, err = run("ensemble", *words, "--seed", "4", "--resume")
         assert code == 2
         assert "holds another ensemble: seed is 0 there and 4 here" in err
@@ -289,17 +289,17 @@ TOP = ("--moments", "2 2 1", "--omega", "0, 0, 20.0 ± 0.5", "--gravity", "9.81"
             "--chunk: expected a multiple of 4096, the members that are reduced together, got 1000; 4096 is",
         ),
         ((*FREE, "--rtol", "-1"), "rtol must be between 1e-28 and 0.1"),
-        ((*FREE, "--resume"), "--resume: goes on with what --save began"),
-        ((*FREE, "--times", "5"), "--times: the spread is told at the end alone"),
+        ((*FREE, "--resume"), "--resume: it continues the file of --save"),
+        ((*FREE, "--times", "5"), "--times: the report has the spread at the end only"),
         ((*FREE, "--save", "a.npz", "--times", "1"), "--times: 1 is less than 2, the start and the end"),
-        ((*FREE, "--save", "a.npz", "--checkpoint", "b.npz"), "--checkpoint: keeps a spread, and --save"),
+        ((*FREE, "--save", "a.npz", "--checkpoint", "b.npz"), "--checkpoint: it is for the report on the spread"),
         (
             (*FREE, "--save", "a.txt"),
             "--save: 'a.txt' has a suffix that is not written; use one of .npz, .zarr",
         ),
         ((*FREE, "--save", "no/a.npz"), "--save: no/a.npz: there is no directory no"),
         ((*FREE, "--save", "a.npz", "--output", "a.npz"), "--output: a.npz is written by --save too"),
-        ((*FREE, "--save", "a.npz", "--resume"), "--resume: there is nothing at a.npz to go on with"),
+        ((*FREE, "--save", "a.npz", "--resume"), "--resume: there is nothing at a.npz to continue"),
         ((*FREE, "--gravity", "9.81"), "--gravity: the weight acts at the centre of mass; state --mass and"),
         (
             (*TOP, "--mass", "1.0(1)", "--center-of-mass", "0 0 1"),
@@ -307,10 +307,13 @@ TOP = ("--moments", "2 2 1", "--omega", "0, 0, 20.0 ± 0.5", "--gravity", "9.81"
         ),
         (
             (*TOP, "--mass", "1", "--center-of-mass", "0 0 1", "--wheel", "z, 1"),
-            "--wheel: beside --gravity it is not",
+            "--wheel: it cannot be combined with --gravity",
         ),
         ((*FREE, "--wheel", "z"), "--wheel: 'z' is not an axis"),
-        ((*FREE, "--density", "2700"), "--density: --moments are of no file; leave it out"),
+        (
+            (*FREE, "--density", "2700"),
+            "--density: it is about a file, and --moments need none; leave it out",
+        ),
         (
             ("--moments", "1 2 2.5", "--omega", "0 0 1", "--end", "1"),
             "ensemble: nothing is drawn, so that all members would be the same",

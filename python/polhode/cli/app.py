@@ -215,11 +215,11 @@ def flyby(
     Examples
     --------
     polhode flyby --moments "0.64 0.97 1" --periods "264.2 h, 27.39 h" \
-        --mode short-axis --n 200
+        --mode short-axis --n 50
     polhode flyby asteroid.obj --periods "5 h, 3 h" --mode long-axis \
-        --eccentricity 4.25 --periapsis "38011 km" --n 200 --save flyby.png
+        --eccentricity 4.25 --periapsis "38011 km" --n 50 --save flyby.png
     polhode flyby --moments "0.64 0.97 1" --periods "263 ± 6 h, 27.38(7) h" \
-        --mode short-axis --pole 0 0 1 --pole-sigma "5 deg" --n 200
+        --mode short-axis --pole 0 0 1 --pole-sigma "5 deg" --n 50
     """
     from polhode.cli.files import check_outputs
     from polhode.cli.flyby import draw_flyby, flyby_report
