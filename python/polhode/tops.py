@@ -51,12 +51,12 @@ class NutationDamping(NamedTuple):
         words = np.array(["damps", "neutral", "flat spin"])[np.sign(self.rate).astype(int) + 1]
         return words if words.ndim else str(words)
 
-    def angle(self, start: ArrayLike, t: ArrayLike, *, degrees: bool = False) -> Any:
-        """θ at a time after it was `start`, both from 0 to a right angle.
+    def angle(self, start_angle: ArrayLike, t: ArrayLike, *, degrees: bool = False) -> Any:
+        """θ at a time after it was `start_angle`, both from 0 to a right angle.
 
         Parameters
         ----------
-        start, t : array_like, shape (...)
+        start_angle, t : array_like, shape (...)
         degrees : bool
             Both angles are in degrees.
 
@@ -65,18 +65,18 @@ class NutationDamping(NamedTuple):
         float or numpy.ndarray, shape (...)
             In radians unless `degrees`.
         """
-        start = np.deg2rad(start) if degrees else start
+        start_angle = np.deg2rad(start_angle) if degrees else start_angle
         grown = np.multiply(self.rate, t)
-        across = np.sin(start) * np.exp(np.minimum(grown, 0.0))
-        found = np.arctan2(across, np.cos(start) * np.exp(-np.maximum(grown, 0.0)))[()]
+        across = np.sin(start_angle) * np.exp(np.minimum(grown, 0.0))
+        found = np.arctan2(across, np.cos(start_angle) * np.exp(-np.maximum(grown, 0.0)))[()]
         return np.rad2deg(found) if degrees else found
 
-    def time(self, start: ArrayLike, end: ArrayLike, *, degrees: bool = False) -> Any:
-        """Time in which θ comes from `start` to `end`; negative where it runs the other way.
+    def time(self, start_angle: ArrayLike, end_angle: ArrayLike, *, degrees: bool = False) -> Any:
+        """Time in which θ comes from `start_angle` to `end_angle`; negative where it runs the other way.
 
         Parameters
         ----------
-        start, end : array_like, shape (...)
+        start_angle, end_angle : array_like, shape (...)
             Between 0 and a right angle, in radians unless `degrees`.
         degrees : bool
             Both angles are in degrees.
@@ -86,9 +86,9 @@ class NutationDamping(NamedTuple):
         float or numpy.ndarray, shape (...)
         """
         if degrees:
-            start, end = np.deg2rad(start), np.deg2rad(end)
+            start_angle, end_angle = np.deg2rad(start_angle), np.deg2rad(end_angle)
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.true_divide(np.log(np.tan(end)) - np.log(np.tan(start)), self.rate)[()]
+            return np.true_divide(np.log(np.tan(end_angle)) - np.log(np.tan(start_angle)), self.rate)[()]
 
     def __repr__(self) -> str:
         return short(self)

@@ -215,12 +215,12 @@ class Trajectory(metaclass=Hinting):
             return in_body
         return AngularMomentum(*(_core.rotate(self.quaternion, part) for part in in_body))
 
-    def point(self, r: Literal["center_of_mass", "com", "origin"] | ArrayLike) -> Floats:
+    def point(self, point: Literal["center_of_mass", "com", "origin"] | ArrayLike) -> Floats:
         """Position in space of a point of the body at every time.
 
         Parameters
         ----------
-        r : {"center_of_mass", "origin"} or array_like, shape (..., 3)
+        point : {"center_of_mass", "origin"} or array_like, shape (..., 3)
             The point in the body frame; ``"com"`` is the centre of mass too.
 
         Returns
@@ -229,11 +229,11 @@ class Trajectory(metaclass=Hinting):
         """
         center = self.body.center_of_mass
         words = {"center_of_mass": center, "com": center, "origin": np.zeros(3)}
-        if isinstance(r, str) and r not in words:
-            raise ValueError(f"r: {r!r} is not 'center_of_mass', 'origin' or a point of shape (..., 3)")
-        place = words[r] if isinstance(r, str) else _core.real_numbers(r, "r")
+        if isinstance(point, str) and point not in words:
+            raise ValueError(f"point: {point!r} is not 'center_of_mass', 'origin' or a point of shape (..., 3)")
+        place = words[point] if isinstance(point, str) else _core.real_numbers(point, "point")
         if place.shape[-1:] != (3,):
-            raise ValueError(f"r: expected shape (..., 3), got {place.shape}")
+            raise ValueError(f"point: expected shape (..., 3), got {place.shape}")
         arm = place - self.about
         return self.position + _core.rotate(self.quaternion, self._per_time(arm))
 
