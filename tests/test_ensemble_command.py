@@ -292,7 +292,7 @@ TOP = ("--moments", "2 2 1", "--omega", "0, 0, 20.0 ± 0.5", "--gravity", "9.81"
         ((*FREE, "--resume"), "--resume: it continues the file of --save"),
         ((*FREE, "--times", "5"), "--times: the report has the spread at the end only"),
         ((*FREE, "--save", "a.npz", "--times", "1"), "--times: 1 is less than 2, the start and the end"),
-        ((*FREE, "--save", "a.npz", "--checkpoint", "b.npz"), "--checkpoint: it is for the report on the spread"),
+        ((*FREE, "--save", "a.npz", "--checkpoint", "b.npz"), "--checkpoint: it is for the report on"),
         (
             (*FREE, "--save", "a.txt"),
             "--save: 'a.txt' has a suffix that is not written; use one of .npz, .zarr",

@@ -172,12 +172,11 @@ def run(arguments: list[str]) -> int:
     command: Callable[[], object] = partial(
         app,
         [_as_value(argument) for argument in arguments],
+        console=_console() if any(flag in arguments for flag in app.help_flags) else None,
         exit_on_error=False,
         print_error=False,
         result_action="return_value",
     )
-    if any(flag in arguments for flag in app.help_flags):
-        command = partial(command, console=_console())
     if arguments in ([], ["--help"], ["-h"]):
         command = partial(print, overview())
     if sorted(arguments) == ["--verbose", "--version"]:
