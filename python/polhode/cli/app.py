@@ -5,8 +5,9 @@ What a command does is imported when it runs, so that the help appears without N
 
 from __future__ import annotations
 
+from inspect import cleandoc
 from pathlib import Path
-from textwrap import dedent, indent
+from textwrap import indent
 from typing import Annotated, Final
 
 from cyclopts import App, Parameter
@@ -422,7 +423,7 @@ def validate(*, output: Output = SHOWN) -> int:
 
 def _examples(document: str) -> str:
     """Return the examples of a docstring as a block of code, of which the help keeps the lines."""
-    return "Examples:\n\n" + indent(dedent(document.partition("    Examples\n    --------\n")[2]), "    ")
+    return "Examples:\n\n" + indent(cleandoc(document).partition("Examples\n--------\n")[2], "    ")
 
 
 for _command in (report, check, molecule, spin, flyby, ensemble, assemble, ledger, samples, demo, validate):
