@@ -6,12 +6,14 @@ What a command does is imported when it runs, so that the help appears without N
 from __future__ import annotations
 
 from pathlib import Path
+from textwrap import dedent, indent
 from typing import Annotated, Final
 
 from cyclopts import App, Parameter
 
 from polhode.cli.layout import held_and_shown, show, show_lines
 from polhode.cli.options import (
+    RESULTS,
     AssembleOptions,
     BodyOptions,
     CheckOptions,
@@ -24,6 +26,7 @@ from polhode.cli.options import (
     SpinOptions,
 )
 from polhode.cli.terminal import note
+from polhode.errors import PolhodeError
 
 __all__ = ["BAD_VERDICT", "GOOD", "app"]
 
@@ -42,32 +45,41 @@ app = App(
     help="One body in: an inertia you can trust, and exactly how it will spin.",
     version=_version,
     help_format="markdown",
+    default_parameter=Parameter(negative=""),
     suppress_keyboard_interrupt=False,
 )
 
 File = Annotated[Path, Parameter(allow_leading_hyphen=True)]
-Body = Annotated[BodyOptions, Parameter(name="*")]
-Output = Annotated[OutputOptions, Parameter(name="*")]
+MaybeFile = Annotated[Path | None, Parameter(allow_leading_hyphen=True)]
+ALL: Final = Parameter(name="*")
+Body = Annotated[BodyOptions, ALL]
+Output = Annotated[OutputOptions, ALL]
 AS_STORED = BodyOptions()
 SHOWN = OutputOptions()
 
 
 @app.command
 def report(
-    file: Annotated[Path | None, Parameter(allow_leading_hyphen=True)] = None,
+    file: MaybeFile = None,
     /,
     *,
     body: Body = AS_STORED,
-    extra: Annotated[ReportOptions, Parameter(name="*")] = ReportOptions(),  # noqa: B008
+    extra: Annotated[ReportOptions, ALL] = ReportOptions(),  # noqa: B008
     output: Output = SHOWN,
 ) -> int:
-    """Print mass, centre, inertia and principal axes of the body in a file.
+    """Print mass, centre of mass, inertia and principal axes of a body.
 
     Parameters
     ----------
     file
-        A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP), a molecule (XYZ, PDB ...), a saved
-        body (JSON, NPZ), an assembly (TOML), or - for standard input; without one, the numbers of --inertia.
+        A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP, IGES), a molecule (XYZ, PDB ...), a
+        saved body (JSON, NPZ), an assembly (TOML), or - for standard input. Without a file: --inertia.
+
+    Examples
+    --------
+    polhode report t-handle.stl --length-unit mm --density "7.85 g/cm^3"
+    polhode report bracket.ply --length-unit in --mass "0.3 lb" --about "0 0 1 in"
+    polhode report torus.obj --length-unit mm --mass "1 kg" --as urdf
     """
     from polhode.cli.files import check_outputs
     from polhode.cli.report import file_report, for_program
@@ -92,15 +104,21 @@ def check(
     file: File,
     /,
     *,
-    check: Annotated[CheckOptions, Parameter(name="*")] = CheckOptions(),  # noqa: B008
+    check: Annotated[CheckOptions, ALL] = CheckOptions(),  # noqa: B008
     output: Output = SHOWN,
 ) -> int:
-    """Judge the inertia of every link of a robot: which law fails, by how much, and what its shape says.
+    """Check the inertia of each link of a robot, and write a corrected copy.
 
     Parameters
     ----------
     file
         A robot or model (URDF, SDF, MJCF), or - for standard input.
+
+    Examples
+    --------
+    polhode check robot.urdf
+    polhode check robot.urdf --fix better.urdf
+    polhode check robot.sdf --strict --format json
     """
     from polhode.cli.check import check_report
     from polhode.cli.files import check_outputs
@@ -119,15 +137,21 @@ def molecule(
     file: File,
     /,
     *,
-    molecule: Annotated[MoleculeOptions, Parameter(name="*")] = MoleculeOptions(),  # noqa: B008
+    molecule: Annotated[MoleculeOptions, ALL] = MoleculeOptions(),  # noqa: B008
     output: Output = SHOWN,
 ) -> int:
-    """Print rotational constants, class of top, inertial defect, planar moments and isotopologues.
+    """Print rotational constants and class of top of a molecule.
 
     Parameters
     ----------
     file
         A molecule (XYZ, PDB, MOL, SDF), or - for standard input.
+
+    Examples
+    --------
+    polhode molecule water.xyz
+    polhode molecule water.xyz --isotopes D --isotopes 18O --isotopes 2=D
+    polhode molecule benzene.xyz --mass-sigmas --format json
     """
     from polhode.cli.files import check_outputs
     from polhode.cli.molecule import molecule_report
@@ -139,20 +163,27 @@ def molecule(
 
 @app.command
 def spin(
-    file: Annotated[Path | None, Parameter(allow_leading_hyphen=True)] = None,
+    file: MaybeFile = None,
     /,
     *,
-    spin: Annotated[SpinOptions, Parameter(name="*")] = SpinOptions(),  # noqa: B008
+    spin: Annotated[SpinOptions, ALL] = SpinOptions(),  # noqa: B008
     body: Body = AS_STORED,
     output: Output = SHOWN,
 ) -> int:
-    """Compute the motion of a free body, a body with wheels, or a top: mode, periods, stability.
+    """Compute the motion of a free body, a body with wheels, or a top.
 
     Parameters
     ----------
     file
-        A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP), a molecule (XYZ, PDB ...), a saved
-        body (JSON, NPZ), an assembly (TOML), or - for standard input; without one, --moments or --inertia.
+        A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP, IGES), a molecule (XYZ, PDB ...), a
+        saved body (JSON, NPZ), an assembly (TOML), or - for standard input. Without a file: --moments or
+        --inertia.
+
+    Examples
+    --------
+    polhode spin --moments "1 2 3" --omega "0.01 5 0" --end 20 --save flip.html
+    polhode spin t-handle.stl --axes principal --omega "0.5 60 0 deg/s"
+    polhode spin --moments "1 3 3.2" --periods "5.41 d, 7.35 d" --mode long-axis
     """
     from polhode.cli.files import check_outputs
     from polhode.cli.spin import spin_report
@@ -164,19 +195,29 @@ def spin(
 
 @app.command
 def flyby(
-    file: Annotated[Path | None, Parameter(allow_leading_hyphen=True)] = None,
+    file: MaybeFile = None,
     /,
     *,
-    flyby: Annotated[FlybyOptions, Parameter(name="*")] = FlybyOptions(),  # noqa: B008
+    flyby: Annotated[FlybyOptions, ALL] = FlybyOptions(),  # noqa: B008
     body: Body = AS_STORED,
     output: Output = SHOWN,
 ) -> int:
-    """Simulate many copies of a tumbling asteroid, each with another rotation phase, past a planet.
+    r"""Simulate many copies of a tumbling asteroid that pass a planet.
 
     Parameters
     ----------
     file
-        A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP), or - for standard input.
+        A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP, IGES), or - for standard input. Without
+        a file: --moments.
+
+    Examples
+    --------
+    polhode flyby --moments "0.64 0.97 1" --periods "264.2 h, 27.39 h" \
+        --mode short-axis --n 200
+    polhode flyby asteroid.obj --periods "3 h, 5 h" --mode long-axis \
+        --eccentricity 4.25 --periapsis "38011 km" --n 200 --save flyby.png
+    polhode flyby --moments "0.64 0.97 1" --periods "263 ± 6 h, 27.38(7) h" \
+        --mode short-axis --pole 0 0 1 --pole-sigma "5 deg" --n 200
     """
     from polhode.cli.files import check_outputs
     from polhode.cli.flyby import draw_flyby, flyby_report
@@ -192,20 +233,31 @@ def flyby(
 
 @app.command
 def ensemble(
-    file: Annotated[Path | None, Parameter(allow_leading_hyphen=True)] = None,
+    file: MaybeFile = None,
     /,
     *,
-    ensemble: Annotated[EnsembleOptions, Parameter(name="*")] = EnsembleOptions(),  # noqa: B008
+    ensemble: Annotated[EnsembleOptions, ALL] = EnsembleOptions(),  # noqa: B008
     body: Body = AS_STORED,
     output: Output = SHOWN,
 ) -> int:
-    """Run one motion many times with numbers that are drawn, and tell their spread or save all states.
+    """Compute one motion many times, with numbers drawn at random.
+
+    The numbers of --moments, --omega, --attitude, --mass and --center-of-mass are the same for all members,
+    or drawn: "1.00 ± 0.01" or "1.00(1)" from a normal distribution, "0.9 to 1.1" from a uniform one. The
+    report gives their spread at the end; --save writes the states of all members instead.
 
     Parameters
     ----------
     file
-        A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP), a molecule (XYZ, PDB ...), a saved
-        body (JSON, NPZ), an assembly (TOML), or - for standard input; without one, --moments or --inertia.
+        A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP, IGES), a molecule (XYZ, PDB ...), a
+        saved body (JSON, NPZ), an assembly (TOML), or - for standard input. Without a file: --moments or
+        --inertia.
+
+    Examples
+    --------
+    polhode ensemble --moments "1.00 ± 0.01, 2, 2.5" --omega "0 1 0" --end 20
+    polhode ensemble --moments "1 2 3" --omega "0 1 0" --attitude any --end 20
+    polhode ensemble t-handle.stl --omega "0, 5 to 6, 0" --end 20 --save runs.npz
     """
     from polhode.cli.ensemble import ensemble_report
     from polhode.cli.files import check_outputs
@@ -221,16 +273,22 @@ def assemble(
     file: File,
     /,
     *,
-    assemble: Annotated[AssembleOptions, Parameter(name="*")] = AssembleOptions(),  # noqa: B008
-    extra: Annotated[ReportOptions, Parameter(name="*")] = ReportOptions(),  # noqa: B008
+    assemble: Annotated[AssembleOptions, ALL] = AssembleOptions(),  # noqa: B008
+    extra: Annotated[ReportOptions, ALL] = ReportOptions(),  # noqa: B008
     output: Output = SHOWN,
 ) -> int:
-    """Put parts together, each with its shape, place and matter, and report on the whole.
+    """Put parts together, and report on the whole.
 
     Parameters
     ----------
     file
         An assembly (TOML).
+
+    Examples
+    --------
+    polhode assemble rover.toml
+    polhode assemble rover.toml --depth 3 --all --save rover.png
+    polhode assemble rover.toml --as mujoco
     """
     from polhode.cli.assemble import assembly_for_program, assembly_report, save_assembly
     from polhode.cli.files import check_outputs
@@ -257,45 +315,54 @@ def ledger(
     file: File,
     /,
     *,
-    ledger: Annotated[LedgerOptions, Parameter(name="*")] = LedgerOptions(),  # noqa: B008
+    ledger: Annotated[LedgerOptions, ALL] = LedgerOptions(),  # noqa: B008
     output: Output = SHOWN,
 ) -> int:
-    """Roll up a tree of parts with its uncertainties, and tell who contributes to them.
+    """Sum up a table of parts, and show what its uncertainty comes from.
 
     Parameters
     ----------
     file
-        A table of parts (CSV, TSV), or - for standard input. --output writes every row where its name ends in
-        .csv.
+        A table of parts (CSV, TSV), or - for standard input.
+
+    Examples
+    --------
+    polhode ledger craft.csv
+    polhode ledger craft.csv --at bus --of Cx
+    polhode ledger craft.csv --of Izz --save shares.png --save rows.csv
     """
     from polhode.cli.files import check_outputs
-    from polhode.cli.ledger import ledger_report
+    from polhode.cli.ledger import ledger_report, save_ledger
     from polhode.io.reading import files_read
 
-    places = [("--picture", ledger.picture), ("--output", output.output)]
+    places = [*(("--save", path) for path in ledger.save), ("--output", output.output)]
     check_outputs(places, [file, ledger.tree])
+    if output.form is None and output.output is not None and output.output.suffix.lower() == ".csv":
+        raise PolhodeError(f"--output: it is for text; --save {output.output} writes the rows as a table")
     with files_read() as read:
         told, made = ledger_report(file, ledger)
     check_outputs(places, read)
-    if ledger.picture is not None:
-        from polhode.cli.ledger import draw_ledger
-
-        draw_ledger(made, ledger)
-    if output.form is None and output.output is not None and output.output.suffix.lower() == ".csv":
-        made.to_csv(output.output)
-    else:
-        show(told, output)
+    for path in ledger.save:
+        save_ledger(made, ledger, path)
+        told.notes.append(f"saved {path}")
+    show(told, output)
     return GOOD
 
 
 @app.command
 def samples(folder: Path | None = None, /) -> int:
-    """List the files to try things with, or put them into a folder: a mesh, molecules, a robot, an assembly.
+    """List the sample files, or write them into a folder.
 
     Parameters
     ----------
     folder
-        Where they go; made where there is none.
+        Folder for the files; it is made if it does not exist. Without it, the files are listed.
+
+    Examples
+    --------
+    polhode samples
+    polhode samples .
+    polhode samples trials
     """
     from rich.console import Console
 
@@ -306,24 +373,37 @@ def samples(folder: Path | None = None, /) -> int:
 
 
 @app.command
-def demo(*, output_dir: Path = Path("polhode-demo")) -> int:
-    """Show it all without a file of your own: a T-handle that flips, and NASA's tumbling brick.
+def demo(*, save: Annotated[Path, RESULTS] = Path("polhode-demo")) -> int:
+    """Show a tour: a T-handle that flips over, and NASA's tumbling brick.
 
     Parameters
     ----------
-    output_dir
-        Where the mesh and the picture are written.
+    save
+        Folder for the mesh and the picture; it is made if it does not exist.
+
+    Examples
+    --------
+    polhode demo
+    polhode demo --save tour
+    polhode demo --save figures/t-handle
     """
     from rich.console import Console
 
     from polhode.cli import demo as demonstration
 
-    return demonstration.run(output_dir, Console(highlight=False))
+    return demonstration.run(save, Console(highlight=False))
 
 
 @app.command
 def validate(*, output: Output = SHOWN) -> int:
-    """Hold this build against NASA's check case, an asteroid, molecules, a CAD printout and closed forms."""
+    """Compare the results of this installation with published ones.
+
+    Examples
+    --------
+    polhode validate
+    polhode validate --format json
+    polhode validate --output validation.json
+    """
     from polhode.cli.files import check_outputs
     from polhode.cli.validate import validation
 
@@ -331,3 +411,12 @@ def validate(*, output: Output = SHOWN) -> int:
     told, is_good = validation()
     show(told, output)
     return GOOD if is_good else BAD_VERDICT
+
+
+def _examples(document: str) -> str:
+    """Return the examples of a docstring as a block of code, of which the help keeps the lines."""
+    return "Examples:\n\n" + indent(dedent(document.partition("    Examples\n    --------\n")[2]), "    ")
+
+
+for _command in (report, check, molecule, spin, flyby, ensemble, assemble, ledger, samples, demo, validate):
+    app[_command.__name__].help_epilogue = _examples(_command.__doc__ or "")

@@ -58,7 +58,7 @@ def run(directory: Path, console: Console) -> int:
         0, or 1 if NASA's brick comes out wrong.
     """
     if directory.exists() and not directory.is_dir():
-        raise PolhodeError(f"--output-dir: {directory} is a file; name a directory")
+        raise PolhodeError(f"--save: {directory} is a file; name a folder")
     directory.mkdir(parents=True, exist_ok=True)
     mesh_file, picture = directory / "t-handle.stl", directory / "t-handle.png"
 
@@ -85,7 +85,7 @@ def run(directory: Path, console: Console) -> int:
         'polhode report bracket.ply --length-unit in --density "2.7 g/cm^3"',
         "polhode check robot.urdf --fix better.urdf",
         "polhode molecule water.xyz",
-        f"polhode spin {mesh_file} --length-unit mm --axes principal --omega 0.01 6 0 --until 20 "
+        f"polhode spin {mesh_file} --length-unit mm --axes principal --omega 0.01 6 0 --end 20 "
         "--save racket.html",
         "polhode --help",
     ):

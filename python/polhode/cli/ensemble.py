@@ -63,16 +63,16 @@ MOST: Final = 2**62
 def ensemble_report(file: Path | None, options: EnsembleOptions, body: BodyOptions) -> Report:
     """Run the members, save them as asked for and report on them."""
     _check(file, options, body)
-    until = quantity(options.until or "", "s", "--until")
-    if until == 0.0:
-        raise PolhodeError(f"--until: expected a time other than 0, got {until:g}")
+    end = quantity(options.end or "", "s", "--end")
+    if end == 0.0:
+        raise PolhodeError(f"--end: expected a time other than 0, got {end:g}")
     if options.save is not None:
         check_place(options.save, resume=options.resume)
     given, notes = _arguments(file, options, body)
     with client_at(options.client) as client:
         many = ensemble(
-            t=np.linspace(0.0, until, options.samples or 2),
-            n=options.members,
+            t=np.linspace(0.0, end, options.times or 2),
+            n=options.n,
             seed=options.seed,
             chunk=options.chunk,
             method=options.method,
@@ -91,11 +91,11 @@ def ensemble_report(file: Path | None, options: EnsembleOptions, body: BodyOptio
         report.section(
             "",
             Field("file", "file", _source(file, options)),
-            Field("members", "members", options.members),
+            Field("members", "members", options.n),
             Field("seed", "seed", options.seed),
             Field("drawn", "drawn", ", ".join(map(_option, many.plan.draws()))),
             Field("method", "method", str(many.plan.options["method"])),
-            Field("time", "end", until, "s"),
+            Field("time", "end", end, "s"),
         )
         if options.save is None:
             _tell_spread(report, many, options)
@@ -117,10 +117,10 @@ def _check(file: Path | None, options: EnsembleOptions, body: BodyOptions) -> No
         raise PolhodeError(f"--moments: the body is that of {shown(file)}; give one of the two")
     if not options.omega:
         raise PolhodeError('--omega: state the start, as in --omega "0, 6.00 ± 0.05, 0.01 ± 0.01"')
-    if options.until is None:
-        raise PolhodeError('--until: state the time of the end, as in "20 s"')
-    if not 0 < options.members < MOST:
-        raise PolhodeError(f"--members: expected a number from 1 to 2^62 - 1, got {options.members}")
+    if options.end is None:
+        raise PolhodeError('--end: state the time of the end, as in "20 s"')
+    if not 0 < options.n < MOST:
+        raise PolhodeError(f"--n: expected a number from 1 to 2^62 - 1, got {options.n}")
     if options.wheel and options.gravity is not None:
         raise PolhodeError(
             "--wheel: beside --gravity it is not taken; leave out one of the two, or add loads.rotor and "
@@ -130,18 +130,16 @@ def _check(file: Path | None, options: EnsembleOptions, body: BodyOptions) -> No
         _check_spread(options)
     elif options.checkpoint is not None:
         raise PolhodeError("--checkpoint: keeps a spread, and --save writes states; use --resume to go on")
-    elif options.samples is not None and options.samples < 2:
-        raise PolhodeError(
-            f"--samples: {options.samples} is less than 2, the start and the end; give 2 or more"
-        )
+    elif options.times is not None and options.times < 2:
+        raise PolhodeError(f"--times: {options.times} is less than 2, the start and the end; give 2 or more")
 
 
 def _check_spread(options: EnsembleOptions) -> None:
     if options.resume:
         raise PolhodeError("--resume: goes on with what --save began; state --save, or use --checkpoint")
-    if options.samples is not None:
-        raise PolhodeError("--samples: the spread is told at the end alone; state --save, or leave it out")
-    if options.chunk % BLOCK and 0 < options.chunk < options.members:
+    if options.times is not None:
+        raise PolhodeError("--times: the spread is told at the end alone; state --save, or leave it out")
+    if options.chunk % BLOCK and 0 < options.chunk < options.n:
         raise PolhodeError(
             f"--chunk: expected a multiple of {BLOCK}, the members that are reduced together, got "
             f"{options.chunk}; {max(round(options.chunk / BLOCK), 1) * BLOCK} is one"
@@ -185,13 +183,17 @@ def _arguments(
 
 
 def _of_moments(options: EnsembleOptions, body: BodyOptions) -> tuple[Any, Any]:
-    """Make the body of --moments, --mass and --center, or what draws it; and whose axes have names."""
-    check_moments_alone(body, "mass", "com")
-    if options.gravity is not None and (body.mass is None or not body.com):
-        raise PolhodeError("--gravity: the weight acts at the centre of mass; state --mass and --center too")
+    """Make the body of the numbers, or what draws it; and the body whose axes have names."""
+    check_moments_alone(body, "mass", "center_of_mass")
+    if options.gravity is not None and (body.mass is None or not body.center_of_mass):
+        raise PolhodeError(
+            "--gravity: the weight acts at the centre of mass; state --mass and --center-of-mass too"
+        )
     mass: Any = 1.0 if body.mass is None else drawn_number(body.mass, "kg", "--mass")
     moments: Any = drawn(options.moments, 3, "kg m^2", "--moments")
-    center: dict[str, Any] = {"center_of_mass": drawn(body.com, 3, "m", "--center")} if body.com else {}
+    center: dict[str, Any] = {}
+    if body.center_of_mass:
+        center["center_of_mass"] = drawn(body.center_of_mass, 3, "m", "--center-of-mass")
     numbers = (mass, moments, *center.values())
     if any(isinstance(one, distributions.Distribution) for one in numbers):
         given: Any = distributions.made(RigidBody.from_principal, mass, moments, **center)

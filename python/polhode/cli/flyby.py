@@ -104,8 +104,8 @@ def _run(
             raise PolhodeError(
                 f"--save: {path.name!r} has a suffix that is not written; use one of {', '.join(PICTURES)}"
             )
-    if options.clones < 1:
-        raise PolhodeError(f"--clones: expected a positive number, got {options.clones}")
+    if options.n < 1:
+        raise PolhodeError(f"--n: expected a positive number, got {options.n}")
     if not options.periods:
         raise PolhodeError('--periods: state the two periods, as in "264.178 h, 27.38547 h"')
     if options.mode is None:
@@ -166,7 +166,7 @@ def _run(
             pole=vector(options.pole, "", "--pole") if options.pole else None,
             pole_sigma=quantity(options.pole_sigma, "rad", "--pole-sigma"),
             radius=radius,
-            n=options.clones,
+            n=options.n,
             seed=options.seed,
             rtol=options.rtol,
             client=client,

@@ -23,9 +23,10 @@ if TYPE_CHECKING:
     from polhode.cli.options import LedgerOptions
     from polhode.uncertainty.ledgers import Ledger, Part, Shares
 
-__all__ = ["draw_ledger", "ledger_report", "node_row", "tensor_row"]
+__all__ = ["ledger_report", "node_row", "save_ledger", "tensor_row"]
 
 _CONTRIBUTORS: Final = 10
+_SAVED: Final = (".png", ".pdf", ".svg", ".csv")
 
 
 def ledger_report(file: Path, options: LedgerOptions) -> tuple[Report, Ledger]:
@@ -34,6 +35,11 @@ def ledger_report(file: Path, options: LedgerOptions) -> tuple[Report, Ledger]:
         raise PolhodeError(f"--of: {options.of!r} is none of the numbers; give one of {', '.join(NUMBERS)}")
     if options.depth < 0:
         raise PolhodeError(f"--depth: expected a number of levels, 0 or more, got {options.depth}")
+    for path in options.save:
+        if path.suffix.lower() not in _SAVED:
+            raise PolhodeError(
+                f"--save: {path} has a suffix that is not written; use one of {', '.join(_SAVED)}"
+            )
     made = ledger(_table(file), options.tree, overwrite=options.overwrite, ignore=options.ignore)
     top = _top(made, options)
     report = Report()
@@ -72,9 +78,11 @@ def ledger_report(file: Path, options: LedgerOptions) -> tuple[Report, Ledger]:
     return report, made
 
 
-def draw_ledger(made: Ledger, options: LedgerOptions) -> None:
-    """Draw who contributes mass, and beside it who contributes variance."""
-    assert options.picture is not None
+def save_ledger(made: Ledger, options: LedgerOptions, path: Path) -> None:
+    """Write all rows as a table, or draw the shares of the mass, and beside them those of the variance."""
+    if path.suffix.lower() == ".csv":
+        made.to_csv(path)
+        return
     figure_module: Any = require("matplotlib.figure", extra="plot", purpose="drawing")
     top = _top(made, options)
     count = 1 if _found_shares(made, top, options) is None else 2
@@ -83,7 +91,7 @@ def draw_ledger(made: Ledger, options: LedgerOptions) -> None:
     made.plot(axes[0], of="mass", at=top.id)
     if count == 2:
         made.plot(axes[1], of="variance", at=top.id, number=options.of)
-    save_picture(figure, options.picture)
+    save_picture(figure, path)
 
 
 def _table(file: Path) -> Any:

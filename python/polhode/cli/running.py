@@ -19,12 +19,21 @@ from polhode.io.reading import words_of
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from rich.console import Console
+
 __all__ = ["run"]
 
-COMMANDS: Final = (
-    "report", "check", "molecule", "spin", "flyby", "ensemble", "assemble", "ledger", "samples", "demo",
-    "validate",
-)  # fmt: skip
+CHAPTERS: Final = {
+    "To begin": ("demo", "samples"),
+    "One body": ("report", "spin", "molecule"),
+    "Bodies of parts": ("assemble", "ledger", "check"),
+    "Many motions": ("ensemble", "flyby"),
+    "This installation": ("validate",),
+}
+"""The commands, in the order in which somebody new needs them."""
+COMMANDS: Final = tuple(name for names in CHAPTERS.values() for name in names)
+WIDTH: Final = 80
+"""Columns of the help, at most."""
 BAD_INPUT: Final = 2
 INTERRUPTED: Final = 130
 OTHER_OPTIONS: Final = (
@@ -33,16 +42,16 @@ OTHER_OPTIONS: Final = (
     ("--format table", "--table --text"),
     ("--save FILE.csv", "--csv --export --write"),
     ("--save FILE.png", "--plot --png --picture --figure --image --draw"),
-    ("--picture FILE.png", "--plot --png --save --figure --image --draw"),
     ("--save FILE.html", "--animate --animation --html --movie --video --film"),
+    ("--save FOLDER", "--output-dir --folder --dir"),
+    ("--fix FILE", "--repair --correct --save --write --in-place -i"),
     ("--output FILE", "--out --outfile --output-file --to --save -o"),
     ("--save FILE", "--out --outfile --output --output-file -o"),
-    ("--output-dir FOLDER", "--out --output --save -o"),
-    ("--until TIME", "--time --times --end --tmax --t-max --t-end --duration --stop --length --T -t"),
-    ("--span TIME", "--time --until --end --tmax --duration"),
-    ("--samples NUMBER", "--steps --points --frames --num --dt --step --fps --n -n"),
-    ("--members NUMBER", "--n --clones --count --num --samples --size -n"),
-    ("--clones NUMBER", "--n --members --count --num --samples --size -n"),
+    ("--end TIME", "--until --time --tmax --t-max --t-end --duration --stop --length --T -t"),
+    ("--span TIME", "--end --until --time --times --tmax --duration"),
+    ("--times NUMBER", "--samples --steps --frames --dt --step --fps"),
+    ("--n NUMBER", "--members --clones --samples --count --num --number --points --size -n"),
+    ("--times NUMBER", "--points --num --number --n -n"),
     ("--axes principal", "--axis --frame --principal --principal-axes --body"),
     ("--degrees", "--deg --degree"),
     ("--omega", "--rate --rates --w --angular-velocity --angular-rate --spin --gyro"),
@@ -52,7 +61,7 @@ OTHER_OPTIONS: Final = (
     ("--moments", "--inertia --principal-moments --moment"),
     ("--inertia", "--tensor --inertia-tensor --moi"),
     ("--periods", "--period"),
-    ("--com", "--cog --center-of-mass --centre --centre-of-mass --center-of-gravity"),
+    ("--center-of-mass", "--center --cog --centre --centre-of-mass --center-of-gravity"),
     ("--density", "--rho --material --densities"),
     ("--mass", "--weight -m"),
     ("--weld 1e-6", "--merge --tolerance --tol --merge-vertices"),
@@ -60,7 +69,6 @@ OTHER_OPTIONS: Final = (
     ("--closure caps", "--close --fill --cap --fill-holes --watertight"),
     ("--orient", "--flip --fix-normals --normals --reorient"),
     ("--repair", "--heal --mend --fix"),
-    ("--fix FILE", "--repair --correct --write --in-place -i"),
     ("--as urdf", "--urdf --sdf --mjcf --export --program"),
     ("--about", "--point --origin --reference"),
     ("--expect FILE", "--compare --diff --reference"),
@@ -73,10 +81,28 @@ OTHER_OPTIONS: Final = (
     ("--index-base 0", "--zero-based --base"),
 )  # fmt: skip
 """What to write, and the names under which people look for it; the first that a command has is meant."""
+OTHER_COMMANDS: Final = (
+    ("report FILE", "inertia mass properties massprops principal axes moments info tensor show read print"),
+    ("report FILE --as PROGRAM", "convert export"),
+    ("report FILE --expect REPORT", "compare diff"),
+    ("spin FILE", "motion rotate period periods tumble top"),
+    ("spin FILE --end TIME --save FILE.csv", "simulate integrate run trajectory"),
+    ("spin FILE --end TIME --save FILE.png", "plot draw picture"),
+    ("spin FILE --end TIME --save FILE.html", "animate animation view movie"),
+    ("check FILE", "robot urdf sdf mjcf verify fix"),
+    ("assemble FILE", "assembly combine add box sphere cylinder solid solids"),
+    ("molecule FILE", "rotor constants spectrum isotopes"),
+    ("ensemble FILE", "monte-carlo montecarlo clones members sample"),
+    ("ledger FILE", "sum rollup parts budget"),
+    ("samples FOLDER", "examples data files"),
+    ("demo", "tour tutorial example"),
+    ("validate", "test selftest doctor"),
+)
+"""What to write, and the words with which people begin."""
 
 
 def _version_in_full() -> None:
-    """Print what a report of a fault has to tell."""
+    """Print what a bug report needs."""
     from polhode.cli.validate import as_text
 
     print(as_text())
@@ -84,14 +110,35 @@ def _version_in_full() -> None:
 
 def overview() -> str:
     """List the commands, each with the first line of its docstring."""
-    lines = ["Usage: polhode COMMAND", "", app.help, "", "Commands:"]
-    for name in COMMANDS:
-        document = app[name].default_command.__doc__ or ""
-        lines.append(f"  {name:<12}{document.partition(chr(10))[0]}")
-    lines += ["", "polhode COMMAND --help tells what a command takes; polhode --version the version."]
-    lines += ["polhode --version --verbose tells of the machine too, for reports of faults."]
+    lines = ["Usage: polhode COMMAND [FILE] [OPTIONS]", "", app.help]
+    for title, names in CHAPTERS.items():
+        lines += ["", f"{title}:"]
+        for name in names:
+            document = app[name].default_command.__doc__ or ""
+            lines.append(f"  {name:<10}{document.partition(chr(10))[0]}")
+    lines += ["", "polhode COMMAND --help lists the options, with three examples."]
+    lines += ["polhode --version --verbose prints what a bug report needs."]
     lines += ["Exit codes: 0 good, 1 the verdict is bad, 2 bad input."]
     return "\n".join(lines)
+
+
+def unknown_command(arguments: list[str]) -> str | None:
+    """Find a first word that is no command, and say which one is meant."""
+    word = next(iter(arguments), "-")
+    if word in COMMANDS or word.startswith("-"):
+        return None
+    meant = next((there for there, others in OTHER_COMMANDS if word.lower() in others.split()), None)
+    if meant is None and Path(word).suffix:
+        return f"{word}: a command stands before the file; did you mean polhode report {word}?"
+    if meant is None:
+        meant = next(iter(get_close_matches(word.lower(), COMMANDS, 1, 0.7)), None)
+    way_out = f"did you mean polhode {meant}?" if meant else f"choose one of {', '.join(COMMANDS)}"
+    return f"{word}: there is no such command; {way_out}"
+
+
+def _options(command: str) -> set[str]:
+    names = {name for one in app[command].assemble_argument_collection() for name in one.names}
+    return {name for name in names if name.startswith("-")}
 
 
 def unknown_option(arguments: list[str]) -> str | None:
@@ -99,8 +146,7 @@ def unknown_option(arguments: list[str]) -> str | None:
     command = next((word for word in arguments[:1] if word in COMMANDS), None)
     if command is None:
         return None
-    known = {name for one in app[command].assemble_argument_collection() for name in one.names}
-    known = {name for name in known if name.startswith("-")} | {*app.help_flags, *app.version_flags}
+    known = _options(command) | {*app.help_flags, *app.version_flags}
     for word in arguments[1:]:
         name = word.partition("=")[0]
         if not re.fullmatch(r"--[A-Za-z][\w-]*|-[A-Za-z]", name) or name in known or Path(word).exists():
@@ -113,9 +159,10 @@ def unknown_option(arguments: list[str]) -> str | None:
             ),
             next(iter(get_close_matches(name, sorted(known), 1, 0.7)), None),
         )
-        way_out = (
-            f"did you mean {meant}?" if meant else f"choose one that it has (see polhode {command} --help)"
-        )
+        elsewhere = [other for other in COMMANDS if name in _options(other)]
+        way_out = f"choose one that it has (see polhode {command} --help)"
+        if meant or elsewhere:
+            way_out = f"did you mean {meant or f'polhode {elsewhere[0]}'}?"
         return f"{name}: {command} has no such option; {way_out}"
     return None
 
@@ -129,11 +176,13 @@ def run(arguments: list[str]) -> int:
         print_error=False,
         result_action="return_value",
     )
+    if any(flag in arguments for flag in app.help_flags):
+        command = partial(command, console=_console())
     if arguments in ([], ["--help"], ["-h"]):
         command = partial(print, overview())
     if sorted(arguments) == ["--verbose", "--version"]:
         command = _version_in_full
-    unknown = unknown_option(arguments)
+    unknown = unknown_command(arguments) or unknown_option(arguments)
     if unknown is not None:
         return _fail(unknown)
     try:
@@ -142,7 +191,7 @@ def run(arguments: list[str]) -> int:
     except UnusedCliTokensError as error:
         rest = " ".join(error.unused_tokens or ())
         return _fail(
-            f"{rest}: more than {arguments[0]} takes; give one file, and in quotes what holds spaces "
+            f"{rest}: more than {arguments[0]} takes; give one file, and put quotes around words with spaces "
             f"(see polhode {arguments[0]} --help)"
         )
     except CycloptsError as error:
@@ -152,12 +201,21 @@ def run(arguments: list[str]) -> int:
     except OSError as error:
         return _fail(words_of(error))
     except MemoryError as error:
-        return _fail(f"there is not enough memory for it ({error})")
+        return _fail(f"there is not enough memory ({error})")
     except (ValueError, ModuleNotFoundError) as error:
         return _fail(str(error))
     except KeyboardInterrupt:
         return _fail("interrupted", code=INTERRUPTED)
     return code if isinstance(code, int) else 0
+
+
+def _console() -> Console:
+    """Return a console that is no wider than people read."""
+    from rich.console import Console
+
+    console = Console()
+    console.width = min(console.width, WIDTH)
+    return console
 
 
 def _as_value(argument: str) -> str:

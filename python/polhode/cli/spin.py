@@ -64,7 +64,7 @@ __all__ = [
 
 def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> Report:
     """Compute the motion of a body, save it as asked for and report on it."""
-    until = _checked(file, spin, options)
+    end = _checked(file, spin, options)
     loaded = _body(file, spin, options)
     body = loaded.body
     axes = body.principal.axes if spin.axes == "principal" else np.eye(3)
@@ -121,22 +121,22 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
     report.section("stability", *kind.stability())
     report.notes += _notes(loaded)
     note_linear(report)
-    if until is None:
+    if end is None:
         return report
-    _check_end(motion, until)
-    trajectory = motion.at(np.linspace(0.0, until, spin.samples))
+    _check_end(motion, end)
+    trajectory = motion.at(np.linspace(0.0, end, spin.times))
     angles = np.rad2deg(trajectory.euler_angles("ZXZ", singular="nan")[-1])
     report.section(
         "at the end",
-        Field("time", "end", until, "s"),
+        Field("time", "end", end, "s"),
         Field(
             "omega_end",
             "omega, end",
             trajectory.omega[-1] @ axes * rate,
             rate_unit,
-            **of_end(motion, until, axes, rate),
+            **of_end(motion, end, axes, rate),
         ),
-        *attitude_field(motion, until),
+        *attitude_field(motion, end),
         Field("euler_angles_end", "Euler angles, end", angles, "deg", "ZXZ phi, theta, psi"),
         *kind.drifts(trajectory),
     )
@@ -186,27 +186,27 @@ def _checked(file: Path | None, spin: SpinOptions, options: BodyOptions) -> floa
         raise PolhodeError(f"--mode: {MODES}")
     if spin.mode is not None and not spin.periods:
         raise PolhodeError("--mode: it says which motion has the periods of --periods; leave it out")
-    if spin.save and spin.until is None:
-        raise PolhodeError('--save: state the time of the end with --until, as in "20 s"')
-    if spin.samples < 2:
-        raise PolhodeError(f"--samples: {spin.samples} is less than 2, the start and the end; give 2 or more")
+    if spin.save and spin.end is None:
+        raise PolhodeError('--save: state the time of the end with --end, as in "20 s"')
+    if spin.times < 2:
+        raise PolhodeError(f"--times: {spin.times} is less than 2, the start and the end; give 2 or more")
     check_paths(spin.save)
-    if spin.until is None:
+    if spin.end is None:
         return None
-    until = quantity(spin.until, "s", "--until")
-    if until == 0.0:
-        raise PolhodeError(f"--until: expected a time other than 0, got {until:g}")
-    return until
+    end = quantity(spin.end, "s", "--end")
+    if end == 0.0:
+        raise PolhodeError(f"--end: expected a time other than 0, got {end:g}")
+    return end
 
 
-def _check_end(motion: FreeMotion | HeavyTop | GyrostatMotion, until: float) -> None:
+def _check_end(motion: FreeMotion | HeavyTop | GyrostatMotion, end: float) -> None:
     """Refuse a time after so many turns that the last digit of the angular velocity is a turn or more."""
     rate = fastest(motion)
     digit = rate * np.finfo(float).eps
-    if not digit * abs(until) < 1.0:
+    if not digit * abs(end) < 1.0:
         raise PolhodeError(
-            f"--until: after {until:g} s at {rate:.4g} rad/s the last digit of the angular velocity turns "
-            f"the body by {digit * abs(until):.2g} rad, and its attitude is not known; end before "
+            f"--end: after {end:g} s at {rate:.4g} rad/s the last digit of the angular velocity turns "
+            f"the body by {digit * abs(end):.2g} rad, and its attitude is not known; end before "
             f"{at_most(1.0 / digit, 2)} s"
         )
 
@@ -218,12 +218,16 @@ def _body(file: Path | None, spin: SpinOptions, options: BodyOptions) -> LoadedB
     for option, is_given in (("--bond-sigma", options.bond_sigma), ("--mass-sigmas", options.mass_sigmas)):
         if is_given:
             raise PolhodeError(f"{option}: --moments are of no molecule; leave it out")
-    check_moments_alone(options, "mass", "com")
-    if spin.gravity is not None and (options.mass is None or not options.com):
-        raise PolhodeError("--gravity: the weight acts at the centre of mass; state --mass and --center too")
+    check_moments_alone(options, "mass", "center_of_mass")
+    if spin.gravity is not None and (options.mass is None or not options.center_of_mass):
+        raise PolhodeError(
+            "--gravity: the weight acts at the centre of mass; state --mass and --center-of-mass too"
+        )
     moments = amounts(spin.moments, 3, "kg m^2", "--moments")
     mass = amount(options.mass, "kg", "--mass") if options.mass is not None else 1.0
-    center = vector(options.com, "m", "--center") if options.com else (0.0, 0.0, 0.0)
+    center = (
+        vector(options.center_of_mass, "m", "--center-of-mass") if options.center_of_mass else (0.0, 0.0, 0.0)
+    )
     body = RigidBody.from_principal(mass, moments, center_of_mass=center)
     return LoadedBody(body=body, source=[], mass_unit="kg", length="m")
 
@@ -822,9 +826,9 @@ def of_shape(motion: FreeMotion) -> Callable[[str], Told]:
     return lambda name: {"sigma": found.sigma[places[name]], "linear": found.linear[places[name]]}
 
 
-def of_end(motion: FreeMotion | HeavyTop | GyrostatMotion, until: float, axes: Floats, rate: float) -> Told:
+def of_end(motion: FreeMotion | HeavyTop | GyrostatMotion, end: float, axes: Floats, rate: float) -> Told:
     """Return the uncertain numbers at the end."""
-    found = _end(motion, until)
+    found = _end(motion, end)
     if found is None:
         return {}
     covariance, linear = found
@@ -832,9 +836,9 @@ def of_end(motion: FreeMotion | HeavyTop | GyrostatMotion, until: float, axes: F
     return {"sigma": rate * _along(axes, covariance[3:, 3:]), "linear": np.full(3, is_linear)}
 
 
-def attitude_field(motion: FreeMotion | HeavyTop | GyrostatMotion, until: float) -> list[Field]:
+def attitude_field(motion: FreeMotion | HeavyTop | GyrostatMotion, end: float) -> list[Field]:
     """Sigmas of the small angles by which the body may be turned at the end."""
-    found = _end(motion, until)
+    found = _end(motion, end)
     if found is None:
         return []
     covariance, linear = found
@@ -850,9 +854,9 @@ def attitude_field(motion: FreeMotion | HeavyTop | GyrostatMotion, until: float)
     ]
 
 
-def _end(motion: FreeMotion | HeavyTop | GyrostatMotion, until: float) -> tuple[Floats, Any] | None:
+def _end(motion: FreeMotion | HeavyTop | GyrostatMotion, end: float) -> tuple[Floats, Any] | None:
     """Return the covariance of attitude and angular velocity at the end, and what of it is linear."""
-    run = motion.at([0.0, until])
+    run = motion.at([0.0, end])
     if run.covariance is None or run.sigma is None:
         return None
     linear = run.sigma.linear
@@ -926,7 +930,7 @@ def save(
         return ()
     return (
         f"shown is the beginning, to {span.t[-1]:.6g} of {end:.6g} s: {len(span.t)} points follow the motion "
-        "no farther; an earlier --until shows all of it",
+        "no farther; an earlier --end shows all of it",
     )
 
 
@@ -938,7 +942,7 @@ def _between(samples: Trajectory) -> tuple[str, ...]:
     needed = np.ceil(len(samples) * widest / TURN)
     return (
         f"from one of its times to the next the body turns by up to {np.rad2deg(widest):.4g} deg, which the "
-        f"numbers do not tell from less; --samples {needed:.7g} follows it",
+        f"numbers do not tell from less; --times {needed:.7g} follows it",
     )
 
 

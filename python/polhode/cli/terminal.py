@@ -35,7 +35,7 @@ _WAYS_OUT: Final = (
     ("pass density= instead", "pass --density instead"),
     ("pass allow_outside=True", "pass --allow-outside"),
     (" (validity.nearest_valid finds the nearest tensor that a body has)", ""),
-    ("move the body with translated()", "correct --center"),
+    ("move the body with translated()", "correct --center-of-mass"),
     ("index_base=0", "--index-base 0"),
     ("pass overwrite=True", "pass --overwrite"),
     ("pass ignore= with its name", "pass --ignore with its name"),

@@ -35,7 +35,7 @@ _WHOLE: Final = (".json", ".npz", ".toml")
 """Endings of such files."""
 _OF_MESHES: Final = ("weld", "closure", "orient", "union", "repair", "index_base")
 _OF_SHAPES: Final = ("density", "mass", *_OF_MESHES, "bond_sigma", "mass_sigmas")
-_OF_PRINTOUTS: Final = ("inertia", "com", "products", "inertia_about")
+_OF_PRINTOUTS: Final = ("inertia", "center_of_mass", "products", "inertia_about")
 _PLAIN: Final = BodyOptions()
 
 
@@ -85,7 +85,7 @@ def _whole_body(file: Path, options: BodyOptions) -> LoadedBody:
 
 
 def _printed(file: Path | None, options: BodyOptions) -> LoadedBody:
-    """Make the body of --mass, --com and --inertia."""
+    """Make the body of --mass, --center-of-mass and --inertia."""
     from polhode.interop.printouts import from_printout
 
     if file is not None:
@@ -98,8 +98,8 @@ def _printed(file: Path | None, options: BodyOptions) -> LoadedBody:
             )
     if not options.inertia or options.mass is None:
         raise PolhodeError(
-            "give a file, or what a CAD program printed: "
-            '--mass "2 lbm" --com "0 0 1 in" --inertia "3 4 5 0.1 0 0 lbm in^2" --products positive'
+            'give a file, or what a CAD program printed: --mass "2 lbm" --center-of-mass "0 0 1 in" '
+            '--inertia "3 4 5 0.1 0 0 lbm in^2" --products positive'
         )
     count = len(split(options.inertia, None, "kg m^2", "--inertia"))
     if count not in (3, 6, 9):
@@ -109,7 +109,9 @@ def _printed(file: Path | None, options: BodyOptions) -> LoadedBody:
         )
     body = from_printout(
         amount(options.mass, "kg", "--mass"),
-        vector(options.com, "m", "--com") if options.com else (0.0, 0.0, 0.0),
+        vector(options.center_of_mass, "m", "--center-of-mass")
+        if options.center_of_mass
+        else (0.0, 0.0, 0.0),
         quantities(options.inertia, count, "kg m^2", "--inertia"),
         products=options.products,
         about=options.inertia_about,
@@ -117,7 +119,7 @@ def _printed(file: Path | None, options: BodyOptions) -> LoadedBody:
     )
     texts = (
         ("--mass", (options.mass,), "kg"),
-        ("--com", options.com, "m"),
+        ("--center-of-mass", options.center_of_mass, "m"),
         ("--inertia", options.inertia, "kg m^2"),
     )
     notes = [
@@ -125,8 +127,8 @@ def _printed(file: Path | None, options: BodyOptions) -> LoadedBody:
         for option, words, unit in texts
         if words and not any(has_unit(part) for part in split(words, None, unit, option))
     ]
-    if not options.com:
-        notes.append("no --com was given: the centre of mass was taken at the origin")
+    if not options.center_of_mass:
+        notes.append("no --center-of-mass was given: the centre of mass was taken at the origin")
     return LoadedBody(body, [], "kg", "m", notes=tuple(notes), kind="printout")
 
 
