@@ -167,7 +167,7 @@ def _packed(numbers: np.ndarray[Any, Any], kind: str) -> str:
 @cache
 def _template() -> str:
     """Join the page's files: its style, and its modules without what they import from each other."""
-    folder = files("polhode.animation").joinpath("page")
+    folder = files("polhode.draw.animation").joinpath("web")
 
     def read(name: str) -> str:
         return folder.joinpath(name).read_text(encoding="utf-8")
