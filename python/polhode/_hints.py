@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Hinting",
     "check_kind",
+    "check_no_tensor",
     "explain_calls",
     "explain_module_call",
     "no_attribute",
@@ -219,8 +220,7 @@ _OF_CLASSES: Final = {
             "free_motion(omega) is the motion in closed form, simulate(t, omega) that with loads",
         ),
         "m": "mass is it",
-        "volume": "a body keeps mass and moments alone: io.solid_from_file(path, density=...).volume is that of "
-        "a mesh",
+        "volume": "a body has mass and moments alone: io.solid_from_file(path, density=1.0).volume is a mesh's",
         **dict.fromkeys(
             ("summary", "describe", "info", "report"),
             'print(body) shows its numbers; after save("body.json"), polhode report body.json prints all',
@@ -278,7 +278,7 @@ _INSTEAD: Final = {
 
 _OF_FUNCTIONS: Final = {
     ("gravity_gradient", "radius"): (
-        "it takes an orbit: gravity_gradient(orbits.from_elements(mu, semi_major_axis=radius, eccentricity=0))"
+        "give an orbit: gravity_gradient(orbits.from_elements(mu, semi_major_axis=radius, eccentricity=0))"
     ),
     **dict.fromkeys(
         (("RigidBody.simulate", name) for name in ("t_end", "end", "duration", "t_max", "tmax", "until")),
@@ -371,6 +371,13 @@ def no_keyword(function: str, given: str, known: Iterable[str]) -> TypeError:
     else:
         way_out = f"did you mean {meant[0]}=?" if meant else f"it takes {', '.join(known)}"
     return TypeError(f"{function}() got an unexpected keyword argument {given!r}; {way_out}")
+
+
+def check_no_tensor(values: object) -> None:
+    """Refuse the elements of a tensor by their names, with how the tensor is written."""
+    if isinstance(values, dict) and any(str(name).lower() == "ixx" for name in values):
+        rows = "[[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]]"
+        raise TypeError(f"expected numbers, got a dict of a tensor's elements; write {rows}")
 
 
 def check_kind(value: object, argument: str, *kinds: str) -> None:
