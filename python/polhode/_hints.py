@@ -220,7 +220,7 @@ _OF_CLASSES: Final = {
             "free_motion(omega) is the motion in closed form, simulate(t, omega) that with loads",
         ),
         "m": "mass is it",
-        "volume": "a body has mass and moments alone: io.solid_from_file(path, density=1.0).volume is a mesh's",
+        "volume": "a body has mass and moments alone: io.solid_from_file(path, density=1.0).volume is one",
         **dict.fromkeys(
             ("summary", "describe", "info", "report"),
             'print(body) shows its numbers; after save("body.json"), polhode report body.json prints all',
