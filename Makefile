@@ -120,7 +120,7 @@ bench: build setup ## times beside the peers, as ratios, of the extension as in 
 
 setup: $(VENV)/.tools ## virtual environment with the development tools
 
-optional: $(VENV)/.optional ## what tests of windows, CAD files and pages need, as far as it can be had here
+optional: $(VENV)/.optional ## install the optional test tools that this system offers
 
 build: $(VENV)/.built ## the extension, installed in place
 

@@ -192,7 +192,7 @@ def test_a_film_without_ffmpeg(carrier: str, tmp_path: Path, monkeypatch: pytest
     found = None if carrier == "absent" else SimpleNamespace(get_ffmpeg_exe=refuse)
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", found)
     (tmp_path / "box.obj").write_bytes(obj(*cube(1.0)))
-    words = ("--mass", "1", "--omega", "0 0 1", "--until", "1")
+    words = ("--mass", "1", "--omega", "0 0 1", "--end", "1")
     code, _, err = run("spin", tmp_path / "box.obj", *words, "--save", tmp_path / "a.mp4")
     assert code == 2
     assert "needs the program ffmpeg" in err

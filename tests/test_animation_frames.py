@@ -161,7 +161,7 @@ def in_space(shown: Trajectory) -> Floats:
 def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """200 s at one turn a second, from the command: 300 frames of it would turn backward."""
     path = tmp_path_factory.mktemp("page") / "racket.html"
-    words = ("--moments", "1 3 3.2", "--omega", 0.01, 6, 0, "--until", 200, "--save", path)
+    words = ("--moments", "1 3 3.2", "--omega", 0.01, 6, 0, "--end", 200, "--save", path)
     code, out, err = run("spin", *words)
     assert (code, err) == (0, "")
     assert "beginning" not in out
@@ -183,7 +183,7 @@ class TestPages:
         assert shown["duration"] == 200.0  # real time
 
     def test_backward_in_time(self, tmp_path: Path) -> None:
-        words = ("--moments", "1 3 3.2", "--omega", 0.01, 6, 0, "--until", " -30")
+        words = ("--moments", "1 3 3.2", "--omega", 0.01, 6, 0, "--end", " -30")
         code, _, err = run("spin", *words, "--save", tmp_path / "back.html")
         assert (code, err) == (0, "")
         t = np.array(data(tmp_path / "back.html")["t"])
@@ -197,7 +197,7 @@ class TestPages:
             "2 2 1",
             "--mass",
             1,
-            "--center",
+            "--center-of-mass",
             "0 0 1",
             "--gravity",
             9.81,
@@ -207,7 +207,7 @@ class TestPages:
             40,
         )
         code, _, err = run(
-            "spin", *words, "--attitude", "0 30 0 deg", "--until", 10, "--save", tmp_path / "top.html"
+            "spin", *words, "--attitude", "0 30 0 deg", "--end", 10, "--save", tmp_path / "top.html"
         )
         assert (code, err) == (0, "")
         shown = data(tmp_path / "top.html")
@@ -221,7 +221,7 @@ class TestPages:
         assert shown["top"]["down"] == [0.0, 0.0, -1.0]
 
     def test_frames_beyond_the_most_are_told(self, tmp_path: Path) -> None:
-        words = ("spin", "--moments", "1 3 3.2", "--omega", 0.01, 6, 0, "--until", 1e6)
+        words = ("spin", "--moments", "1 3 3.2", "--omega", 0.01, 6, 0, "--end", 1e6)
         saves = [word for name in ("a.html", "a.png") for word in ("--save", tmp_path / name)]
         code, out, err = run(*words, *saves)
         assert (code, err) == (0, "")

@@ -190,4 +190,4 @@ class TestPrintouts:
         assert told["principal_moments"] == pytest.approx(
             [k * 0.45359237 * 9.80665 * 0.0254 for k in (3, 4, 5)]
         )
-        assert told["notes"] == ["no --com was given: the centre of mass was taken at the origin"]
+        assert told["notes"] == ["no --center-of-mass was given: the centre of mass was taken at the origin"]

@@ -118,7 +118,7 @@ def test_whoever_reads_it_tells_it(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         "long-axis",
         "--eccentricity",
         "4.25",
-        "--clones",
+        "--n",
         "2",
     )
     code, out, _ = run("flyby", path, "--density", "2700 kg/m^3", *orbit)

@@ -215,7 +215,7 @@ BAD_STL = bytes(80) + struct.pack("<I", 4_000_000_000) + bytes(50)
         ("odd.xyz", b"1\na\nXx 0 0 0\n", "'Xx' is not an element"),
     ],
 )
-@pytest.mark.parametrize("command", [("report",), ("spin", "--omega", "0", "0", "1", "--until", "1")])
+@pytest.mark.parametrize("command", [("report",), ("spin", "--omega", "0", "0", "1", "--end", "1")])
 def test_bad_file_is_one_line_and_exit_2(
     command: tuple[str, ...], name: str, data: bytes | None, message: str, tmp_path: Path
 ) -> None:
@@ -282,7 +282,7 @@ def test_welding_is_said(tmp_path: Path) -> None:
     assert report["principal_moments"] == pytest.approx(whole["principal_moments"], rel=1e-9)
     said = f"{len(corners) - len(mesh.vertices)} corners were joined"
     assert any(said in note for note in report["notes"])
-    out = run("spin", path, "--weld", 1e-7, "--omega", 0, 0, 1, "--until", 1)[1]
+    out = run("spin", path, "--weld", 1e-7, "--omega", 0, 0, 1, "--end", 1)[1]
     assert said in out
 
 

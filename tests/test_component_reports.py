@@ -38,7 +38,7 @@ class TestReport:
         if has_union:
             alone = self.report(path, "--length-unit", "m", "--density", "2", "--union")
             assert alone["mass"] == pytest.approx(2 * 1.21, rel=1e-12)
-            assert any("how far that moves corners is in no bound" in note for note in alone["notes"])
+            assert any("the error bounds do not include how far this moves corners" in note for note in alone["notes"])
 
     @pytest.mark.parametrize("marks", [" # of {}", " \\\n", "/1/1 \\\r\n "])
     def test_names_of_groups_whatever_stands_in_the_lines_of_faces(self, tmp_path: Path, marks: str) -> None:
@@ -154,12 +154,12 @@ class TestReport:
     @pytest.mark.parametrize(
         ("density", "says"),
         [
-            ("body=1", "nothing is said of component insert; add insert=DENSITY"),
+            ("body=1", "no density is given for component insert; add insert=DENSITY"),
             (
                 "body=1,insert=2,lid=3",
                 "'lid=3' names no component; give NAME=DENSITY for each, by commas, of body, insert",
             ),
-            ("body=1,body=2", "'body=2' stands twice"),
+            ("body=1,body=2", "'body=2' is given twice"),
             ("body=1,insert=0", "insert=0 is not above 0"),
             ("body=1,insert=2 g/cm^3", "state --length-unit too"),
         ],

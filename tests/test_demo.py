@@ -36,7 +36,7 @@ def test_t_handle_is_a_t() -> None:
 
 def test_demo(tmp_path: Path, capsys: Capture) -> None:
     folder = tmp_path / "out" / "demo"
-    assert main(["demo", "--output-dir", str(folder)]) == 0
+    assert main(["demo", "--save", str(folder)]) == 0
     out, err = capsys.readouterr()
     assert err == ""
     assert (folder / "t-handle.png").read_bytes().startswith(b"\x89PNG")
@@ -63,7 +63,7 @@ def test_demo_without_matplotlib_says_so(
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     for name in [name for name in sys.modules if name.startswith("matplotlib.")]:
         monkeypatch.delitem(sys.modules, name)
-    assert main(["demo", "--output-dir", str(tmp_path)]) == 0
+    assert main(["demo", "--save", str(tmp_path)]) == 0
     out = capsys.readouterr().out
     assert 'pip install "polhode[plot]"' in out
     assert "verdict: good" in out
@@ -73,6 +73,6 @@ def test_demo_ends_with_1_where_the_brick_comes_out_wrong(
     tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(brick, "MOMENTS", (0.0018942, 0.006211019, 0.007194665))  # two digits short
-    assert main(["demo", "--output-dir", str(tmp_path)]) == 1
+    assert main(["demo", "--save", str(tmp_path)]) == 1
     out = capsys.readouterr().out
     assert "verdict: BAD" in out

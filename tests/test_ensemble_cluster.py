@@ -90,10 +90,10 @@ def test_the_command_prints_the_same_numbers_by_workers(workers: Any, tmp_path: 
         "1.00(1), 2.00(2), 2.5",
         "--omega",
         "0, 1.00 ± 0.05, 0.01",
-        "--until",
+        "--end",
         "9",
     )
-    many = (*words, "--members", "9000")
+    many = (*words, "--n", "9000")
     code, out, err = run(*many, "--client", workers.scheduler.address)
     assert (code, err) == (0, "")
     assert out == run(*many)[1]

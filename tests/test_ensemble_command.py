@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 MOMENTS = ("--moments", "1.00 ± 0.01, 2.00(2), 2.5")
 SPIN = ("--omega", "0, 1.00 ± 0.05, 0.01")
-FREE = (*MOMENTS, *SPIN, "--attitude", "any", "--until", "20 s", "--members", "5000", "--seed", "7")
+FREE = (*MOMENTS, *SPIN, "--attitude", "any", "--end", "20 s", "--n", "5000", "--seed", "7")
 BODY = distributions.made(
     RigidBody.from_principal,
     1.0,
@@ -99,8 +99,8 @@ class TestSpread:
             ),
             (
                 (
-                    "--moments", "2 2 1", "--mass", "1.0(1)", "--center", "0, 0, 0.4 to 0.6", "--gravity",
-                    "9.81", "--omega", "0, 0, 20.0 ± 0.5", "--attitude", "0, 0.5 ± 0.1, 0",
+                    "--moments", "2 2 1", "--mass", "1.0(1)", "--center-of-mass", "0, 0, 0.4 to 0.6",
+                    "--gravity", "9.81", "--omega", "0, 0, 20.0 ± 0.5", "--attitude", "0, 0.5 ± 0.1, 0",
                     "--method", "exact",
                 ),
                 distributions.made(
@@ -125,14 +125,14 @@ class TestSpread:
     def test_loads_and_distributions_are_those_of_python(
         self, words: tuple[str, ...], body: Any, omega: Any, more: dict[str, Any]
     ) -> None:
-        values = told(*words, "--until", "3", "--members", "300")
+        values = told(*words, "--end", "3", "--n", "300")
         want = ensemble(body, [0, 3], omega, n=300, seed=0, reduce=kept(has_modes=False), **more)
         assert rows_of(values).tobytes() == as_rows(want).tobytes()
         assert "modes" not in values
 
     def test_a_body_from_a_file(self, tmp_path: Path) -> None:
         path = write_obj(tmp_path / "cube.obj", *cube())
-        values = told(path, "--omega", "0, 0, 1 to 2", "--until", "3", "--members", "50")
+        values = told(path, "--omega", "0, 0, 1 to 2", "--end", "3", "--n", "50")
         want = ensemble(
             RigidBody.from_file(path, density=1.0),
             [0, 3],
@@ -159,7 +159,7 @@ class TestSpread:
     def test_what_is_drawn_has_the_mean_and_the_sigma_that_were_typed(self) -> None:
         """A sphere keeps its angular velocity: the spread at the end is that of the start."""
         values = told(
-            "--moments", "1 1 1", "--omega", "0, 1.00 ± 0.05, 2.0(3)", "--until", "9", "--members", "40000"
+            "--moments", "1 1 1", "--omega", "0, 1.00 ± 0.05, 2.0(3)", "--end", "9", "--n", "40000"
         )  # fmt: skip
         rows = rows_of(values)
         for row, mean, sigma in ((1, 1.0, 0.05), (2, 2.0, 0.3)):
@@ -170,11 +170,11 @@ class TestSpread:
             )
 
     def test_members_that_make_no_body_are_counted(self) -> None:
-        values = told("--moments", "1, 1, 1.9 ± 0.1", "--omega", "0 0 1", "--until", "1", "--members", "500")
+        values = told("--moments", "1, 1, 1.9 ± 0.1", "--omega", "0 0 1", "--end", "1", "--n", "500")
         drawn = distributions.normal((1, 1, 1.9), sigma=(0, 0, 0.1)).draw(500, seed=0, argument="body.1")
         many = np.count_nonzero(drawn[:, 2] > 2.0)
         assert 0 < many < 200
-        assert f"{many} members failed and are in none of these numbers" in values["notes"]
+        assert f"{many} members failed, and are left out of these numbers" in values["notes"]
 
     def test_a_checkpoint_goes_on(self, tmp_path: Path) -> None:
         path = tmp_path / "spread.npz"
@@ -197,7 +197,7 @@ class TestSaved:
 
     def test_a_file_of_numpy(self, tmp_path: Path) -> None:
         path = tmp_path / "clones.npz"
-        values = told(*FREE, "--save", path, "--samples", "5", "--chunk", "700")
+        values = told(*FREE, "--save", path, "--times", "5", "--chunk", "700")
         self.same(path, free(np.linspace(0.0, 20.0, 5)).compute())
         assert values["status"] == [{"status": "complete", "members": 5000}]
         assert list(tmp_path.iterdir()) == [path]
@@ -214,7 +214,7 @@ class TestSaved:
         assert values["status"] == [{"status": "complete", "members": 5000}]
 
     def test_it_counts_those_that_are_refused(self, tmp_path: Path) -> None:
-        words = ("--moments", "1, 1, 1.9 ± 0.1", "--omega", "0 0 1", "--until", "1", "--members", "500")
+        words = ("--moments", "1, 1, 1.9 ± 0.1", "--omega", "0 0 1", "--end", "1", "--n", "500")
         rows = told(*words, "--save", tmp_path / "some.npz")["status"]
         assert [row["status"] for row in rows] == ["complete", "refused"]
         assert sum(row["members"] for row in rows) == 500
@@ -224,7 +224,7 @@ class TestSaved:
         if name.endswith("zarr"):
             pytest.importorskip("zarr")
         words = [
-            *MOMENTS, *SPIN, "--wheel", "z, 0.5", "--until", "400", "--members", "3000", "--chunk", "100",
+            *MOMENTS, *SPIN, "--wheel", "z, 0.5", "--end", "400", "--n", "3000", "--chunk", "100",
             "--save", str(tmp_path / name),
         ]  # fmt: skip
         begun = tmp_path / (f"{name}.parts" if name.endswith("npz") else f"{name}/status")
@@ -236,7 +236,7 @@ class TestSaved:
         process.wait()
         code, _, err = run("ensemble", *words)
         assert code == 2
-        assert "is there already; add --resume to go on with it, or give another name" in err
+        assert "exists already; add --resume to continue it, or give another name" in err
         code, _, err = run("ensemble", *words, "--seed", "4", "--resume")
         assert code == 2
         assert "holds another ensemble: seed is 0 there and 4 here" in err
@@ -265,7 +265,7 @@ class TestSaved:
         assert path.read_bytes() == before
 
 
-TOP = ("--moments", "2 2 1", "--omega", "0, 0, 20.0 ± 0.5", "--gravity", "9.81", "--until", "1")
+TOP = ("--moments", "2 2 1", "--omega", "0, 0, 20.0 ± 0.5", "--gravity", "9.81", "--end", "1")
 
 
 @pytest.mark.parametrize(
@@ -273,13 +273,13 @@ TOP = ("--moments", "2 2 1", "--omega", "0, 0, 20.0 ± 0.5", "--gravity", "9.81"
     [
         ((), "ensemble: give a file, or principal moments with --moments"),
         (MOMENTS, "--omega: state the start"),
-        ((*MOMENTS, *SPIN), "--until: state the time of the end"),
-        ((*MOMENTS, *SPIN, "--until", "0"), "--until: expected a time other than 0, got 0"),
-        ((*MOMENTS, *SPIN, "--until", "nan"), "--until: 'nan' is not a number"),
+        ((*MOMENTS, *SPIN), "--end: state the time of the end"),
+        ((*MOMENTS, *SPIN, "--end", "0"), "--end: expected a time other than 0, got 0"),
+        ((*MOMENTS, *SPIN, "--end", "nan"), "--end: 'nan' is not a number"),
         ((*FREE, "--inertia", "1 2 2.5"), "--moments and --inertia: both say what the body is"),
         (("a.obj", *FREE), "--moments: the body is that of a.obj; give one of the two"),
-        ((*FREE[:-3], "0"), "--members: expected a number from 1 to 2^62 - 1, got 0"),
-        ((*FREE[:-3], str(2**62)), f"--members: expected a number from 1 to 2^62 - 1, got {2**62}"),
+        ((*FREE[:-3], "0"), "--n: expected a number from 1 to 2^62 - 1, got 0"),
+        ((*FREE[:-3], str(2**62)), f"--n: expected a number from 1 to 2^62 - 1, got {2**62}"),
         ((*FREE[:-1], "-1"), "--seed: expected an integer from 0 to 2**64 - 1, got -1"),
         ((*FREE[:-1], str(2**64)), f"--seed: expected an integer from 0 to 2**64 - 1, got {2**64}"),
         ((*FREE[:-1], "1.5"), "--seed: expected a whole number, got '1.5'"),
@@ -289,51 +289,54 @@ TOP = ("--moments", "2 2 1", "--omega", "0, 0, 20.0 ± 0.5", "--gravity", "9.81"
             "--chunk: expected a multiple of 4096, the members that are reduced together, got 1000; 4096 is",
         ),
         ((*FREE, "--rtol", "-1"), "rtol must be between 1e-28 and 0.1"),
-        ((*FREE, "--resume"), "--resume: goes on with what --save began"),
-        ((*FREE, "--samples", "5"), "--samples: the spread is told at the end alone"),
-        ((*FREE, "--save", "a.npz", "--samples", "1"), "--samples: 1 is less than 2, the start and the end"),
-        ((*FREE, "--save", "a.npz", "--checkpoint", "b.npz"), "--checkpoint: keeps a spread, and --save"),
+        ((*FREE, "--resume"), "--resume: it continues the file of --save"),
+        ((*FREE, "--times", "5"), "--times: the report has the spread at the end only"),
+        ((*FREE, "--save", "a.npz", "--times", "1"), "--times: 1 is less than 2, the start and the end"),
+        ((*FREE, "--save", "a.npz", "--checkpoint", "b.npz"), "--checkpoint: it is for the report on the spread"),
         (
             (*FREE, "--save", "a.txt"),
             "--save: 'a.txt' has a suffix that is not written; use one of .npz, .zarr",
         ),
         ((*FREE, "--save", "no/a.npz"), "--save: no/a.npz: there is no directory no"),
         ((*FREE, "--save", "a.npz", "--output", "a.npz"), "--output: a.npz is written by --save too"),
-        ((*FREE, "--save", "a.npz", "--resume"), "--resume: there is nothing at a.npz to go on with"),
+        ((*FREE, "--save", "a.npz", "--resume"), "--resume: there is nothing at a.npz to continue"),
         ((*FREE, "--gravity", "9.81"), "--gravity: the weight acts at the centre of mass; state --mass and"),
         (
-            (*TOP, "--mass", "1.0(1)", "--center", "0 0 1"),
+            (*TOP, "--mass", "1.0(1)", "--center-of-mass", "0 0 1"),
             "--method: with --gravity a body that is drawn needs one; state",
         ),
         (
-            (*TOP, "--mass", "1", "--center", "0 0 1", "--wheel", "z, 1"),
-            "--wheel: beside --gravity it is not",
+            (*TOP, "--mass", "1", "--center-of-mass", "0 0 1", "--wheel", "z, 1"),
+            "--wheel: it cannot be combined with --gravity",
         ),
         ((*FREE, "--wheel", "z"), "--wheel: 'z' is not an axis"),
-        ((*FREE, "--density", "2700"), "--density: --moments are of no file; leave it out"),
         (
-            ("--moments", "1 2 2.5", "--omega", "0 0 1", "--until", "1"),
+            (*FREE, "--density", "2700"),
+            "--density: it is about a file, and --moments need none; leave it out",
+        ),
+        (
+            ("--moments", "1 2 2.5", "--omega", "0 0 1", "--end", "1"),
             "ensemble: nothing is drawn, so that all members would be the same",
         ),
-        ((*MOMENTS, "--omega", "0 to 1, 0 ± 1, 1", "--until", "1"), "has a sigma and bounds"),
+        ((*MOMENTS, "--omega", "0 to 1, 0 ± 1, 1", "--end", "1"), "has a sigma and bounds"),
         (
-            (*MOMENTS, "--omega", "2 to 1, 0, 1", "--until", "1"),
+            (*MOMENTS, "--omega", "2 to 1, 0, 1", "--end", "1"),
             "--omega: the lower bound must not exceed the upper one, got 2 to 1 rad/s",
         ),
         (
-            (*MOMENTS, "--omega", "0 to 1 to 2, 0, 1", "--until", "1"),
+            (*MOMENTS, "--omega", "0 to 1 to 2, 0, 1", "--end", "1"),
             "--omega: expected 3 numbers with commas",
         ),
         (
-            (*MOMENTS, "--omega", "-1e308 to 1e308, 0, 1", "--until", "1"),
+            (*MOMENTS, "--omega", "-1e308 to 1e308, 0, 1", "--end", "1"),
             "--omega: low, high: their difference",
         ),
         (
-            (*MOMENTS, "--omega", "1 kg ± 1 kg, 0 kg, 1 kg", "--until", "1"),
+            (*MOMENTS, "--omega", "1 kg ± 1 kg, 0 kg, 1 kg", "--end", "1"),
             "--omega: 'kg' cannot be converted",
         ),
         (
-            ("--moments", "1, 1, 3.0 ± 0.1", "--omega", "0 0 1", "--until", "1"),
+            ("--moments", "1, 1, 3.0 ± 0.1", "--omega", "0 0 1", "--end", "1"),
             "none of the first 16 members can begin; member 0: principal moments 1.0, 1.0, 2.",
         ),
         ((*FREE, "--client", "nowhere"), "--client: no scheduler of dask answers at 'nowhere'"),
@@ -354,7 +357,7 @@ def test_what_it_refuses(
 
 def test_a_body_with_sigmas_is_refused_with_the_way_out(tmp_path: Path) -> None:
     path = write_obj(tmp_path / "cube.obj", *cube())
-    code, _, err = run("ensemble", path, "--mass", "1.0 ± 0.1", "--omega", "0, 0, 1 to 2", "--until", "1")
+    code, _, err = run("ensemble", path, "--mass", "1.0 ± 0.1", "--omega", "0, 0, 1 to 2", "--end", "1")
     assert code == 2
     assert "ensemble: the body has sigmas" in err
 
@@ -366,7 +369,7 @@ def test_the_help_tells_of_all_that_is_drawn() -> None:
         "--moments",
         "--omega",
         "--attitude",
-        "--members",
+        "--n",
         "--seed",
         "--save",
         "--resume",

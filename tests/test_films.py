@@ -84,29 +84,29 @@ class TestPictures:
         assert max(len(line.get_data_3d()[0]) for line in ax.lines) > 1000
 
     def test_numbers_whose_times_are_too_few_are_told(self, tmp_path: Path) -> None:
-        words = ("spin", "--moments", "1 3 3.2", "--omega", 0.01, 6, 0, "--until", 2000, "--save")
+        words = ("spin", "--moments", "1 3 3.2", "--omega", 0.01, 6, 0, "--end", 2000, "--save")
         out = run(*words, tmp_path / "a.csv")[1]
-        told = re.search(r"a.csv: .* the body turns by up to \S+ deg, .*; --samples (\d+) follows it", out)
+        told = re.search(r"a.csv: .* the body turns by up to \S+ deg, .*; --times (\d+) follows it", out)
         assert told
-        assert "turns by" not in run(*words, tmp_path / "a.csv", "--samples", told[1])[1]
+        assert "turns by" not in run(*words, tmp_path / "a.csv", "--times", told[1])[1]
 
 
 class TestTheEnd:
     @pytest.mark.parametrize("until", ["1e300", "1e16", " -1e300"])
     def test_beyond_what_digits_tell(self, until: str) -> None:
-        code, _, err = run("spin", "--moments", "1 3 3.2", "--omega", 0.01, 6, 0, "--until", until)
+        code, _, err = run("spin", "--moments", "1 3 3.2", "--omega", 0.01, 6, 0, "--end", until)
         assert code == 2
-        assert re.match(r"polhode: --until: after \S+ s at \S+ rad/s the last digit .* end before \S+ s", err)
+        assert re.match(r"polhode: --end: after \S+ s at \S+ rad/s the last digit .* end before \S+ s", err)
 
     def test_both_sides_of_it(self) -> None:
         rate = fastest(BRICK.free_motion((0.01, 6.0, 0.0)))
         last = 1.0 / (rate * np.finfo(float).eps)
         for factor, expected in ((0.99, 0), (1.01, 2)):
-            words = ("--moments", "1 3 3.2", "--omega", 0.01, 6, 0, "--until", repr(float(factor * last)))
+            words = ("--moments", "1 3 3.2", "--omega", 0.01, 6, 0, "--end", repr(float(factor * last)))
             assert run("spin", *words)[0] == expected
 
     @pytest.mark.parametrize("until", ["nan", "inf", "1e999", "0", "soon"])
     def test_what_is_no_time(self, until: str) -> None:
-        code, _, err = run("spin", "--moments", "1 3 3.2", "--omega", 0.01, 6, 0, "--until", until)
+        code, _, err = run("spin", "--moments", "1 3 3.2", "--omega", 0.01, 6, 0, "--end", until)
         assert code == 2
-        assert err.startswith("polhode: --until: ")
+        assert err.startswith("polhode: --end: ")

@@ -247,7 +247,7 @@ def test_what_is_refused(make: Callable[[], object], error: type[Exception], mes
 
 WORDS = (
     "--moments", "0.64", "0.97", "1", "--periods", "264.178 h, 27.38547 h", "--mode", "short-axis",
-    "--eccentricity", "4.253901873", "--periapsis", "38011.486 km", "--clones", "200",
+    "--eccentricity", "4.253901873", "--periapsis", "38011.486 km", "--n", "200",
 )  # fmt: skip
 
 
@@ -270,7 +270,7 @@ def test_an_orbit_just_beyond_the_planet_and_a_parabola_are_flybys() -> None:
     parabola = orbits.from_elements(EARTH, eccentricity=1.0, periapsis=4e4, since_periapsis=-DAY)
     assert not flybys.flyby(APOPHIS, parabola, 2 * DAY, n=3, **PERIODS).failed.any()
     code, _, err = run(
-        "flyby", *WORDS[:-6], "--eccentricity", "1", "--periapsis", "6371.1 km", "--clones", "3"
+        "flyby", *WORDS[:-6], "--eccentricity", "1", "--periapsis", "6371.1 km", "--n", "3"
     )
     assert code == 0, err
 
@@ -298,7 +298,7 @@ class TestCommand:
         [
             ((), "give a file, or principal moments with --moments"),
             (("--moments", "1 2 2.5"), "--periods: state the two periods"),
-            ((*WORDS[:-1], "0"), "--clones: expected a positive number, got 0"),
+            ((*WORDS[:-1], "0"), "--n: expected a positive number, got 0"),
             ((*WORDS, "--span", "-1 d"), "--span: expected a positive time"),
             ((*WORDS[:8], "--eccentricity", "-1"), "--eccentricity: expected 1 or more, got -1"),
             ((*WORDS[:8], "--eccentricity", "0.5"), "--eccentricity: 0.5 is that of an ellipse"),

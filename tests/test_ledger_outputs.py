@@ -278,12 +278,12 @@ class TestCommand:
 
     def test_files(self, craft: Path) -> None:
         folder = craft.parent
-        assert run("ledger", craft, "--output", folder / "all.csv")[0] == 0
+        assert run("ledger", craft, "--save", folder / "all.csv")[0] == 0
         assert np.array_equal(ledger(folder / "all.csv", overwrite=True).mass, ledger(craft).mass)
-        assert run("ledger", craft, "--output", folder / "all.json", "--picture", folder / "all.png")[0] == 0
+        assert run("ledger", craft, "--output", folder / "all.json", "--save", folder / "all.png")[0] == 0
         assert json.loads((folder / "all.json").read_text("utf-8"))["parts"] == 2
         assert (folder / "all.png").read_bytes().startswith(b"\x89PNG")
-        code, _, err = run("ledger", craft, "--output", craft)
+        code, _, err = run("ledger", craft, "--save", craft)
         assert code == 2
         assert "write to another one" in err
         assert craft.read_text("utf-8") == CRAFT
@@ -294,7 +294,7 @@ class TestCommand:
 
     def test_exact_tables_say_so(self, craft: Path) -> None:
         craft.write_text(CRAFT.replace(",0.1,0.002,", ",,,").replace(",0.01,0.001,", ",,,"), "utf-8")
-        code, out, _ = run("ledger", craft, "--picture", craft.parent / "all.svg")
+        code, out, _ = run("ledger", craft, "--save", craft.parent / "all.svg")
         assert code == 0
         assert "no part states a standard deviation" in out
         craft.write_text(CRAFT.replace(",0.1,0.002,", ",,,"), "utf-8")
@@ -308,7 +308,9 @@ class TestCommand:
             (("--at", "x"), "--at: no part has the id 'x'"),
             (("--depth", "-1"), "--depth: expected a number of levels, 0 or more"),
             (("--tree", "none.csv"), "none.csv"),
-            (("--output", "no/where.csv"), "create it first"),
+            (("--save", "no/where.csv"), "create it first"),
+            (("--save", "rows.xlsx"), "use one of .png, .pdf, .svg, .csv"),
+            (("--output", "rows.csv"), "--save rows.csv writes the rows"),
         ],
     )
     def test_bad_words(self, craft: Path, words: tuple[str, ...], told: str) -> None:

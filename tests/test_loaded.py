@@ -116,7 +116,7 @@ class TestOnce:
 
     def test_a_shape_that_is_drawn_is_not_recognised_again(self, seen: Any, tmp_path: Path) -> None:
         """The stream of a binary STL keeps no triangles: those that are drawn are read from it once more."""
-        words = ["--omega", "0", "0", "1", "--until", "1", "--save", str(tmp_path / "m.html")]
+        words = ["--omega", "0", "0", "1", "--end", "1", "--save", str(tmp_path / "m.html")]
         for name, content, readings in (
             ("part.stl", binary_stl(*cube(2.0)), 2),
             ("part.obj", obj(*cube(2.0)), 1),

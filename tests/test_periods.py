@@ -233,7 +233,7 @@ def check_top(rng: np.random.Generator, *, sleeps: bool) -> None:
     given = turn.inv().apply(omega)
     phi, theta, psi = start.as_euler("ZXZ") if tilt else (0.0, 0.0, 0.0)
     words = (
-        "--mass", "1", "--center", " ".join(map(repr, center.tolist())), "--gravity", "9.81",
+        "--mass", "1", "--center-of-mass", " ".join(map(repr, center.tolist())), "--gravity", "9.81",
         "--attitude", " ".join(map(repr, (float(phi), float(theta), float(psi)))),
     )  # fmt: skip
     told, text = report(moments, given, *words)

@@ -215,7 +215,7 @@ class TestCommand:
         assert (code, out) == (0, interop.to_text(body, program) + "\n")
         assert err.splitlines() == [
             f"polhode: note: {option} has no unit: {unit} was taken"
-            for option, unit in (("--mass", "kg"), ("--com", "m"), ("--inertia", "kg m^2"))
+            for option, unit in (("--mass", "kg"), ("--center-of-mass", "m"), ("--inertia", "kg m^2"))
         ]
         path = tmp_path / "x.json"
         assert run("report", *self.WORDS, "--as", program, "--output", path)[:2] == (0, "")

@@ -28,7 +28,7 @@ def test_spin_of_a_brick(tmp_path: Path) -> None:
     i1, i2, i3 = brick.MOMENTS
     sides = np.sqrt(6 * np.array([i2 + i3 - i1, i1 + i3 - i2, i1 + i2 - i3]) / brick.MASS)
     path = write_obj(tmp_path / "brick.obj", *box(tuple(sides)))
-    rates = ("--omega", "10", "20", "30", "--degrees", "--until", "30")
+    rates = ("--omega", "10", "20", "30", "--degrees", "--end", "30")
     report = json.loads(run("spin", path, "--mass", brick.MASS, *rates, "--format", "json")[1])
     np.testing.assert_allclose(report["principal_moments"], brick.MOMENTS, rtol=1e-14)
     np.testing.assert_allclose(report["omega_start"], [10, 20, 30], rtol=1e-14)
@@ -52,7 +52,7 @@ def test_a_wrong_path_is_told_before_a_start_that_is_missing(tmp_path: Path) -> 
 def test_spin_along_principal_axes(tmp_path: Path) -> None:
     path = write_obj(tmp_path / "box.obj", *box((3.0, 1.0, 2.0)))
     report = json.loads(
-        run("spin", path, "--axes", "principal", "--omega", 0, 0, 2, "--until", 1, "--format", "json")[1]
+        run("spin", path, "--axes", "principal", "--omega", 0, 0, 2, "--end", 1, "--format", "json")[1]
     )
     np.testing.assert_allclose(report["omega_end"], [0, 0, 2], atol=1e-12)
     assert report["angular_momentum"] == pytest.approx(2 * 6 * (9 + 4) / 12, rel=1e-13)
@@ -60,7 +60,7 @@ def test_spin_along_principal_axes(tmp_path: Path) -> None:
 
 def test_undefined_euler_angles_are_said(tmp_path: Path) -> None:
     path = write_obj(tmp_path / "cube.obj", *cube(2.0))
-    arguments = ("spin", path, "--omega", 0, 0, 1, "--until", 1)
+    arguments = ("spin", path, "--omega", 0, 0, 1, "--end", 1)
     code, out, _ = run(*arguments)
     assert code == 0
     assert "undefined" in out
@@ -70,14 +70,14 @@ def test_undefined_euler_angles_are_said(tmp_path: Path) -> None:
 
 
 def test_body_at_rest_stays(slab: Path) -> None:
-    report = json.loads(run("spin", slab, "--omega", 0, 0, 0, "--until", 1, "--format", "json")[1])
+    report = json.loads(run("spin", slab, "--omega", 0, 0, 0, "--end", 1, "--format", "json")[1])
     assert report["omega_end"] == [0, 0, 0]
     assert report["kinetic_energy_drift"] == 0
 
 
 def test_spin_of_a_linear_molecule(tmp_path: Path) -> None:
     (tmp_path / "co.xyz").write_text("2\ncarbon monoxide\nC 0 0 0\nO 0 0 1.128\n")
-    code, out, err = run("spin", tmp_path / "co.xyz", "--omega", 1, 0, 0.5, "--until", 3, "--format", "json")
+    code, out, err = run("spin", tmp_path / "co.xyz", "--omega", 1, 0, 0.5, "--end", 3, "--format", "json")
     assert (code, err) == (0, "")
     assert json.loads(out)["omega_end"][2] == pytest.approx(0.5, rel=1e-12)
 
@@ -85,7 +85,7 @@ def test_spin_of_a_linear_molecule(tmp_path: Path) -> None:
 def test_spin_saves_by_suffix(slab: Path, tmp_path: Path) -> None:
     names = [tmp_path / name for name in ("a.png", "a.svg", "a.pdf", "a.csv", "a.npz")]
     saves = [argument for name in names for argument in ("--save", name)]
-    code, out, err = run("spin", slab, "--omega", 0.1, 2, 0.1, "--until", 5, "--samples", 11, *saves)
+    code, out, err = run("spin", slab, "--omega", 0.1, 2, 0.1, "--end", 5, "--times", 11, *saves)
     assert (code, err) == (0, "")
     for name, start in zip(names, (b"\x89PNG", b"<?xml", b"%PDF", b"t,omega_x", b"PK"), strict=True):
         assert name.read_bytes().startswith(start)
@@ -109,7 +109,7 @@ def volume(triangles: np.ndarray) -> float:
 def test_the_part_itself_is_drawn(tmp_path: Path) -> None:
     """Not the box of its inertia: about C, with its own outline, and its own volume."""
     saves = [argument for name in ("t.html", "t.png") for argument in ("--save", tmp_path / name)]
-    turn = ("--omega", 0, 0, 1, "--until", 1, "--samples", 11)
+    turn = ("--omega", 0, 0, 1, "--end", 1, "--times", 11)
     code, out, err = run("spin", samples.path("t-handle.stl"), "--length-unit", "mm", *turn, *saves)
     assert (code, err) == (0, "")
     assert "coarser" not in out
@@ -125,7 +125,7 @@ def test_the_part_itself_is_drawn(tmp_path: Path) -> None:
 def test_a_large_mesh_is_drawn_coarser_and_said_to_be(tmp_path: Path) -> None:
     vertices, faces = icosphere(5)
     path = write_obj(tmp_path / "ball.obj", vertices * (3.0, 2.0, 1.0), faces)
-    turn = ("--omega", 0, 0, 1, "--until", 1, "--samples", 3)
+    turn = ("--omega", 0, 0, 1, "--end", 1, "--times", 3)
     out = run("spin", path, *turn, "--save", tmp_path / "ball.html")[1]
     found = re.search(r"drawn coarser: (\d+) triangles for 20480, corners within cells of (\S+) unit", out)
     assert found
@@ -139,7 +139,7 @@ def test_a_large_mesh_is_drawn_coarser_and_said_to_be(tmp_path: Path) -> None:
 def test_an_open_mesh_is_drawn_from_both_sides(tmp_path: Path) -> None:
     vertices, faces = cube(2.0)
     path = write_obj(tmp_path / "open.obj", vertices, faces[2:])
-    turn = ("--omega", 0, 0, 1, "--until", 1, "--samples", 3, "--save", tmp_path / "open.html")
+    turn = ("--omega", 0, 0, 1, "--end", 1, "--times", 3, "--save", tmp_path / "open.html")
     code, out, _ = run("spin", path, "--closure", "caps", *turn)
     assert code == 0
     assert "the mesh is open; --closure caps closed it, which changed its volume by" in out
@@ -203,7 +203,7 @@ def test_attitude_turns_the_momentum() -> None:
 
 def test_long_motions_are_exact() -> None:
     """A million turns at once, and back."""
-    asked = ("--moments", "1 2 3", "--omega", "1 2 3", "--samples", 2, "--format", "json", "--until")
+    asked = ("--moments", "1 2 3", "--omega", "1 2 3", "--times", 2, "--format", "json", "--end")
     there, back = (json.loads(run("spin", *asked, t)[1]) for t in ("2e6 s", "-2e6 s"))
     for report in (there, back):
         assert report["kinetic_energy_drift"] < 1e-14
@@ -213,7 +213,7 @@ def test_long_motions_are_exact() -> None:
 
 def test_animation_and_json(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("polhode.draw.sampling._SECONDS", 0.5)  # few pictures
-    asked = ("--moments", "1 2 3", "--omega", "0.01 2 0", "--until", 10, "--samples", 31)
+    asked = ("--moments", "1 2 3", "--omega", "0.01 2 0", "--end", 10, "--times", 31)
     code, _, err = run("spin", *asked, "--save", tmp_path / "a.html", "--save", tmp_path / "a.gif")
     assert (code, err) == (0, "")
     assert (tmp_path / "a.gif").read_bytes().startswith(b"GIF89a")
@@ -236,7 +236,7 @@ def test_animation_and_json(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
 )
 def test_an_axis_straight_up_or_down_rests(omega: str, tilt: float | str, path: str) -> None:
     """In degrees a half turn is off by rounding, and so are the cusps that it would have."""
-    body = ("--moments", "2e-4 2e-4 3e-4", "--mass", 0.5, "--center", "0 0 4 cm")
+    body = ("--moments", "2e-4 2e-4 3e-4", "--mass", 0.5, "--center-of-mass", "0 0 4 cm")
     start = ("--omega", omega, "--attitude", f"0 {tilt} 0 deg", "--gravity", 9.81, "--format", "json")
     code, out, _ = run("spin", *body, *start)
     assert (code, json.loads(out)["path"]) == (0, path)
@@ -246,8 +246,8 @@ def test_heavy_top() -> None:
     """A top let go without precession: the other turning point solves 1 - u^2 = p (u0 - u)."""
     mass, length, i_t, i_s, rate, tilt, g = 0.5, 0.04, 2e-4, 3e-4, 150.0, 0.6, 9.81
     start = ("--omega", f"0 0 {rate}", "--attitude", f"0, {math.degrees(tilt)} deg, 0", "--gravity", g)
-    asked = ("--moments", f"{i_t} {i_t} {i_s}", "--mass", mass, "--center", "0 0 4 cm", "--format", "json")
-    code, out, err = run("spin", *asked, *start, "--until", "30")
+    asked = ("--moments", f"{i_t} {i_t} {i_s}", "--mass", mass, "--center-of-mass", "0 0 4 cm", "--format", "json")
+    code, out, err = run("spin", *asked, *start, "--end", "30")
     assert (code, err) == (0, "")
     report = json.loads(out)
     assert report["path"] == "cusp"

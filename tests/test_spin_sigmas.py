@@ -24,7 +24,7 @@ def told(*arguments: str) -> Any:
 
 class TestReports:
     def test_is_what_python_says(self) -> None:
-        found = told(*BRICK, "--omega", "0.3, 0.2, 1.100(2)", "--until", "10")
+        found = told(*BRICK, "--omega", "0.3, 0.2, 1.100(2)", "--end", "10")
         body = RigidBody.from_principal(1.0, [Uncertain(1.0, 0.002), 2.0, 2.5])
         motion = body.free_motion(Uncertain((0.3, 0.2, 1.1), (0.0, 0.0, 0.002)))
         periods, run_ = motion.periods, motion.at([0.0, 10.0])
@@ -62,7 +62,7 @@ class TestReports:
             "spin",
             "--moments",
             "2e-4, 2e-4, 3e-4",
-            "--center",
+            "--center-of-mass",
             "0 0 0.04",
             "--gravity",
             "9.81",
@@ -70,14 +70,14 @@ class TestReports:
             "json",
         )
         found = told(
-            *top, "--mass", "0.5", "--omega", "0, 0, 150 ± 1", "--attitude", "0 30 0 deg", "--until", "1"
+            *top, "--mass", "0.5", "--omega", "0, 0, 150 ± 1", "--attitude", "0 30 0 deg", "--end", "1"
         )
         assert found["sigma"]["omega_end"][2] == pytest.approx(1.0, rel=1e-9)
         assert len(found["sigma"]["attitude_end"]) == 3
 
     def test_without_sigma_nothing_is_said(self) -> None:
         found = told(
-            "spin", "--moments", "1", "2", "2.5", "--omega", "0.3", "0.2", "1.1", "--until", "10", *BRICK[3:]
+            "spin", "--moments", "1", "2", "2.5", "--omega", "0.3", "0.2", "1.1", "--end", "10", *BRICK[3:]
         )
         assert "sigma" not in found
         assert "linear" not in found

@@ -47,7 +47,7 @@ def integrated(inertia: Any, inside: Any, omega: Any, times: Any) -> Any:
 
 def test_the_motion_is_that_of_a_body_with_the_momentum_inside(tmp_path: Path) -> None:
     saved = tmp_path / "motion.npz"
-    report = told(*BODY, *WHEELS, "--until", "30", "--samples", "7", "--save", saved)
+    report = told(*BODY, *WHEELS, "--end", "30", "--times", "7", "--save", saved)
     omega, attitude = integrated(np.diag(MOMENTS), INSIDE, OMEGA, np.linspace(0.0, 30.0, 7))
     motion = Trajectory.from_file(saved)
     np.testing.assert_allclose(motion.omega, omega, atol=1e-10)
@@ -99,7 +99,7 @@ def test_steady_rotations() -> None:
 
 
 def test_what_it_prints() -> None:
-    out = run("spin", "--moments", "1 2 2.5", "--omega", 0, 1, 0, "--wheel", "y, 0.6", "--until", 10)[1]
+    out = run("spin", "--moments", "1 2 2.5", "--omega", 0, 1, 0, "--wheel", "y, 0.6", "--end", 10)[1]
     lines = [" ".join(line.split()) for line in out.splitlines()]
     for line in (
         "mode steady L rests in the body",
@@ -123,7 +123,7 @@ def test_a_circle_and_no_momentum_at_all() -> None:
     out = run("spin", "--moments", "1 1 2", "--omega", 1, 0, 0, "--wheel", "z, -0.5")[1]
     assert "one of a circle about (0 0 1)" in out
     assert "circular  L goes round" in out
-    still = run("spin", "--moments", "1 1 2", "--omega", 0, 0, 0.25, "--wheel", "z, -0.5", "--until", 5)[1]
+    still = run("spin", "--moments", "1 1 2", "--omega", 0, 0, 0.25, "--wheel", "z, -0.5", "--end", 5)[1]
     assert "none with an axis of its own: L is zero" in still
 
 
@@ -155,8 +155,8 @@ def _off(report: Any, inside: Any) -> Any:
 
 
 def test_a_wheel_with_no_momentum_changes_nothing() -> None:
-    without = told(*BODY, "--until", "100")
-    with_it = told(*BODY, "--wheel", "z, 0", "--until", "100")
+    without = told(*BODY, "--end", "100")
+    with_it = told(*BODY, "--wheel", "z, 0", "--end", "100")
     for name in ("omega_end", "euler_angles_end", "angular_momentum_vector", "kinetic_energy"):
         assert with_it[name] == without[name]
 
@@ -165,7 +165,7 @@ def test_pictures_and_numbers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr("polhode.draw.sampling._SECONDS", 0.5)  # few pictures
     names = [tmp_path / name for name in ("a.png", "a.svg", "a.csv", "a.npz", "a.json", "a.html", "a.gif")]
     saves = [word for name in names for word in ("--save", name)]
-    code, out, err = run(*BODY, "--wheel", "y, 0.7", "--until", 1, "--samples", 11, *saves)
+    code, out, err = run(*BODY, "--wheel", "y, 0.7", "--end", 1, "--times", 11, *saves)
     assert (code, err) == (0, "")
     for name, start in zip(
         names, (b"\x89PNG", b"<?xml", b"t,omega_x", b"PK", b"{", b"<!", b"GIF89a"), strict=True

@@ -29,7 +29,7 @@ COMMANDS = (
     "spin part.obj --omega 0 1 0",
     "ledger craft.csv",
     "ledger craft.csv --output -",
-    "demo --output-dir demo",
+    "demo --save demo",
 )
 
 

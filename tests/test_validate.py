@@ -23,7 +23,7 @@ def test_every_case_agrees_here() -> None:
     code, out, err = run("validate")
     assert (code, err) == (0, "")
     assert out.count(" good ") == len(CASES)
-    assert f"{len(CASES)} cases agree with what others say" in out
+    assert f"{len(CASES)} cases agree with the published values" in out
     assert {case.kind for case in CASES} == {"NASA", "asteroid", "molecule", "CAD", "closed form"}
 
 

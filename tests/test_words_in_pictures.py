@@ -61,7 +61,7 @@ def test_ledgers() -> None:
 @pytest.mark.parametrize("name", [MATH, os.fsdecode(b"\xff")])
 def test_files_with_odd_names(tmp_path: Path, name: str) -> None:
     slab = write_obj(tmp_path / f"{name}.obj", *box((1.0, 2.0, 3.0)))
-    words = ("--mass", "1", "--omega", "0 0 1", "--until", "1")
+    words = ("--mass", "1", "--omega", "0 0 1", "--end", "1")
     code, _, err = run("spin", slab, *words, "--save", tmp_path / "a.svg", "--save", tmp_path / "a.html")
     assert (code, err) == (0, "")
     shown = name if name.isprintable() else r"\udcff"

@@ -265,11 +265,11 @@ class TestOutputsOfCommands:
             ("check arm.urdf --output link.obj", "--output: link.obj is a file that is read"),
             ("check arm.urdf --fix a --output a", "--output: a is written by --fix too"),
             (
-                "spin part.obj --omega 0 1 0 --until 1 --save a.csv --save ./a.csv",
+                "spin part.obj --omega 0 1 0 --end 1 --save a.csv --save ./a.csv",
                 "--save: a.csv is written by --save",
             ),
             (
-                "spin part.obj --omega 0 1 0 --until 1 --save a.json --output a.json",
+                "spin part.obj --omega 0 1 0 --end 1 --save a.json --output a.json",
                 "--output: a.json is written by",
             ),
         ],

@@ -72,7 +72,7 @@ def _command(*words: str) -> Callable[[Path], object]:
     return act
 
 
-_SPIN = ("spin", "part.obj", "--omega", "0", "1", "0.01", "--until", "1", "--samples", "4", "--save", "OUT")
+_SPIN = ("spin", "part.obj", "--omega", "0", "1", "0.01", "--end", "1", "--times", "4", "--save", "OUT")
 
 WRITERS: dict[str, tuple[str, Callable[[Path], object]]] = {
     "body, JSON": ("body.json", lambda path: _stack().save(path)),
@@ -95,10 +95,10 @@ WRITERS: dict[str, tuple[str, Callable[[Path], object]]] = {
     "ledger, CSV": ("all.csv", lambda path: _ledger().to_csv(path)),
     "ledger, JSON": ("all.json", lambda path: _ledger().to_json(path)),
     "ledger, report": ("told.txt", _command("ledger", "craft.csv", "--output", "OUT")),
-    "ledger, rows": ("rows.csv", _command("ledger", "craft.csv", "--output", "OUT")),
+    "ledger, rows": ("rows.csv", _command("ledger", "craft.csv", "--save", "OUT")),
     "assembly, report": ("told.txt", _command("assemble", "pair.toml", "--output", "OUT")),
     "snippet": ("told.urdf", _command("report", "pair.toml", "--as", "solidworks", "--output", "OUT")),
-    "ledger, PNG": ("craft.png", _command("ledger", "craft.csv", "--picture", "OUT")),
+    "ledger, PNG": ("craft.png", _command("ledger", "craft.csv", "--save", "OUT")),
 }
 
 

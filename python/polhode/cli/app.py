@@ -11,7 +11,6 @@ from typing import Annotated, Final
 
 from cyclopts import App, Parameter
 
-from polhode.cli.layout import held_and_shown, show, show_lines
 from polhode.cli.options import (
     RESULTS,
     AssembleOptions,
@@ -45,7 +44,6 @@ app = App(
     help="One body in: an inertia you can trust, and exactly how it will spin.",
     version=_version,
     help_format="markdown",
-    default_parameter=Parameter(negative=""),
     suppress_keyboard_interrupt=False,
 )
 
@@ -82,6 +80,7 @@ def report(
     polhode report torus.obj --length-unit mm --mass "1 kg" --as urdf
     """
     from polhode.cli.files import check_outputs
+    from polhode.cli.layout import held_and_shown, show_lines
     from polhode.cli.report import file_report, for_program
     from polhode.io.reading import files_read
 
@@ -107,7 +106,7 @@ def check(
     check: Annotated[CheckOptions, ALL] = CheckOptions(),  # noqa: B008
     output: Output = SHOWN,
 ) -> int:
-    """Check the inertia of each link of a robot, and write a corrected copy.
+    """Check the inertia of a robot's links, and write a corrected copy.
 
     Parameters
     ----------
@@ -122,6 +121,7 @@ def check(
     """
     from polhode.cli.check import check_report
     from polhode.cli.files import check_outputs
+    from polhode.cli.layout import show
     from polhode.io.reading import files_read
 
     check_outputs([("--fix", check.fix), ("--output", output.output)], [file])
@@ -154,6 +154,7 @@ def molecule(
     polhode molecule benzene.xyz --mass-sigmas --format json
     """
     from polhode.cli.files import check_outputs
+    from polhode.cli.layout import show
     from polhode.cli.molecule import molecule_report
 
     check_outputs([("--output", output.output)], [file])
@@ -186,6 +187,7 @@ def spin(
     polhode spin --moments "1 3 3.2" --periods "5.41 d, 7.35 d" --mode long-axis
     """
     from polhode.cli.files import check_outputs
+    from polhode.cli.layout import show
     from polhode.cli.spin import spin_report
 
     check_outputs([*(("--save", path) for path in spin.save), ("--output", output.output)], [file])
@@ -213,14 +215,15 @@ def flyby(
     Examples
     --------
     polhode flyby --moments "0.64 0.97 1" --periods "264.2 h, 27.39 h" \
-        --mode short-axis --n 200
-    polhode flyby asteroid.obj --periods "3 h, 5 h" --mode long-axis \
-        --eccentricity 4.25 --periapsis "38011 km" --n 200 --save flyby.png
+        --mode short-axis --n 50
+    polhode flyby asteroid.obj --periods "5 h, 3 h" --mode long-axis \
+        --eccentricity 4.25 --periapsis "38011 km" --n 50 --save flyby.png
     polhode flyby --moments "0.64 0.97 1" --periods "263 ± 6 h, 27.38(7) h" \
-        --mode short-axis --pole 0 0 1 --pole-sigma "5 deg" --n 200
+        --mode short-axis --pole 0 0 1 --pole-sigma "5 deg" --n 50
     """
     from polhode.cli.files import check_outputs
     from polhode.cli.flyby import draw_flyby, flyby_report
+    from polhode.cli.layout import show
 
     check_outputs([*(("--save", path) for path in flyby.save), ("--output", output.output)], [file])
     told, found = flyby_report(file, flyby, body)
@@ -261,6 +264,7 @@ def ensemble(
     """
     from polhode.cli.ensemble import ensemble_report
     from polhode.cli.files import check_outputs
+    from polhode.cli.layout import show
 
     places = [("--save", ensemble.save), ("--checkpoint", ensemble.checkpoint), ("--output", output.output)]
     check_outputs(places, [file])
@@ -292,6 +296,7 @@ def assemble(
     """
     from polhode.cli.assemble import assembly_for_program, assembly_report, save_assembly
     from polhode.cli.files import check_outputs
+    from polhode.cli.layout import held_and_shown, show_lines
     from polhode.io.reading import files_read
 
     places = [*(("--save", path) for path in assemble.save), ("--output", output.output)]
@@ -332,6 +337,7 @@ def ledger(
     polhode ledger craft.csv --of Izz --save shares.png --save rows.csv
     """
     from polhode.cli.files import check_outputs
+    from polhode.cli.layout import show
     from polhode.cli.ledger import ledger_report, save_ledger
     from polhode.io.reading import files_read
 
@@ -405,6 +411,7 @@ def validate(*, output: Output = SHOWN) -> int:
     polhode validate --output validation.json
     """
     from polhode.cli.files import check_outputs
+    from polhode.cli.layout import show
     from polhode.cli.validate import validation
 
     check_outputs([("--output", output.output)], [])

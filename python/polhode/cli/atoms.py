@@ -70,7 +70,7 @@ def atoms_of(
     mass_sigmas : bool
         Whether the sigmas of the masses count.
     """
-    notes = ["sigmas of the masses are those on record for the isotopes; equal isotopes share one"]
+    notes = ["sigmas of the masses are the published ones; atoms of the same isotope share one error"]
     if not mass_sigmas:
         notes = []
     if bond_sigma is None:
@@ -92,5 +92,5 @@ def atoms_of(
     )
     parts = len(atoms) - len(pairs)  # each bond is in no ring, so that it joins two parts
     if parts > 1 and bond_sigma > 0.0:
-        notes.append(f"no bonds join {parts} parts of the molecule: where these are counts as exact")
+        notes.append(f"no bonds join {parts} parts of the molecule: their positions count as exact")
     return Atoms(positions, molecule.rounding, mass_sigmas, tuple(notes))

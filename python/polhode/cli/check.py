@@ -77,7 +77,7 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
     notes = dict.fromkeys(note for verdict in verdicts for note in verdict.notes)
     report.notes += [in_options(note) for note in (*robot.notes, *_gathered(notes))]
     if filling and not any(is_without_mass(*each) for each in zip(robot.links, verdicts, strict=True)):
-        report.notes.append(f"--{next(iter(filling))} changes nothing: no link that fails is without mass")
+        report.notes.append(f"--{next(iter(filling))} has no effect: no failing link is without mass")
     report.notes += _warnings(robot, verdicts, failing)
     if options.fix is None:
         if any(verdict.better is not None for verdict in bad):
@@ -137,8 +137,8 @@ def _warnings(robot: robots.Robot, verdicts: list[robots.Verdict], failing: froz
     if not names:
         return []
     return [
-        "warning: --fix replaces tensors that a body can have, perhaps identified or measured: "
-        f"{_some(names, 8)}; compare before you use the copy"
+        "warning: --fix replaces tensors that a body can have; they may be measured: "
+        f"{_some(names, 8)}; compare them before you use the copy"
     ]
 
 
@@ -152,7 +152,7 @@ def _filling(options: CheckOptions) -> dict[str, float]:
             continue
         found[name] = quantity(text, unit, f"--{name}")
         if not found[name] > 0.0:
-            raise PolhodeError(f"--{name}: {text} is not above 0; give the one of the material")
+            raise PolhodeError(f"--{name}: {text} is not above 0; give a positive {name}")
     return found
 
 
@@ -258,7 +258,7 @@ def _fix(
         report.notes.append(f"left as they are, to be corrected by hand: {', '.join(unread)}")
     if unshaped:
         report.notes.append(
-            f"left as they are, since nothing tells better values that engines take: {', '.join(unshaped)}"
+            f"left as they are, since no better values are known that engines accept: {', '.join(unshaped)}"
         )
     if elsewhere:
         report.notes.append(f"left as they are, to be fixed in their own files: {', '.join(elsewhere)}")

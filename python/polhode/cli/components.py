@@ -66,7 +66,7 @@ def components_of(
     """Take the mesh of a file apart; None where it is one component, or too large."""
     if options.union:
         return Components(
-            [], [], ["components were joined (--union): how far that moves corners is in no bound"]
+            [], [], ["--union joined components; the error bounds do not include how far this moves corners"]
         )
     if loaded.cad is not None or solid.faces > _MOST_FACES or options.closure is not None:
         return None
@@ -75,9 +75,7 @@ def components_of(
         count = int(labels(loaded.mesh.faces, len(loaded.mesh.vertices)).max(initial=0)) + 1
         if count <= MOST_PARTS or weld != 0.0 or options.repair:
             return None
-        note = (
-            f"{count} components are more than {MOST_PARTS}: they are not listed, nor is seen what overlaps"
-        )
+        note = f"{count} components are more than {MOST_PARTS}: neither they nor their overlaps are listed"
         return Components([], [], [note])
     notes = told(overlaps(parts), sum(part.volume for part in parts), _unit(options))
     notes += [_WAY_OUT] if notes else []
@@ -166,7 +164,7 @@ def _densities(text: str, names: list[str], unit: str | None) -> list[float | Un
         name, is_named, value = (word.strip() for word in item.partition("="))
         if not is_named or name in given or name not in names:
             known = ", ".join(names[:12]) + (" …" if len(names) > 12 else "")
-            what = "stands twice" if name in given else "names no component"
+            what = "is given twice" if name in given else "names no component"
             raise PolhodeError(
                 f"--density: {item.strip()!r} {what}; give NAME=DENSITY for each, by commas, of {known}"
             )
@@ -177,8 +175,10 @@ def _densities(text: str, names: list[str], unit: str | None) -> list[float | Un
             )
         given[name] = found = amount(value, "kg/m^3", "--density")
         if not _value(found) > 0.0:
-            raise PolhodeError(f"--density: {item.strip()} is not above 0; give the one of the material")
+            raise PolhodeError(f"--density: {item.strip()} is not above 0; give a positive density")
     absent = [name for name in names if name not in given]
     if absent:
-        raise PolhodeError(f"--density: nothing is said of component {absent[0]}; add {absent[0]}=DENSITY")
+        raise PolhodeError(
+            f"--density: no density is given for component {absent[0]}; add {absent[0]}=DENSITY"
+        )
     return [given[name] for name in names]

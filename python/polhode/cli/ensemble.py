@@ -84,8 +84,7 @@ def ensemble_report(file: Path | None, options: EnsembleOptions, body: BodyOptio
         if not many.plan.draws():
             raise PolhodeError(
                 "ensemble: nothing is drawn, so that all members would be the same; write a number with a "
-                'sigma or with bounds, as in --omega "0, 6.00 ± 0.05, 0.01", or let polhode spin tell of the '
-                "one motion"
+                'sigma or with bounds, as in --omega "0, 6.00 ± 0.05, 0.01", or use polhode spin'
             )
         report = Report()
         report.section(
@@ -123,22 +122,24 @@ def _check(file: Path | None, options: EnsembleOptions, body: BodyOptions) -> No
         raise PolhodeError(f"--n: expected a number from 1 to 2^62 - 1, got {options.n}")
     if options.wheel and options.gravity is not None:
         raise PolhodeError(
-            "--wheel: beside --gravity it is not taken; leave out one of the two, or add loads.rotor and "
+            "--wheel: it cannot be combined with --gravity; leave out one of the two, or add loads.rotor and "
             "loads.uniform_gravity in Python"
         )
     if options.save is None:
         _check_spread(options)
     elif options.checkpoint is not None:
-        raise PolhodeError("--checkpoint: keeps a spread, and --save writes states; use --resume to go on")
+        raise PolhodeError(
+            "--checkpoint: it is for the report on the spread; use --resume to continue --save"
+        )
     elif options.times is not None and options.times < 2:
         raise PolhodeError(f"--times: {options.times} is less than 2, the start and the end; give 2 or more")
 
 
 def _check_spread(options: EnsembleOptions) -> None:
     if options.resume:
-        raise PolhodeError("--resume: goes on with what --save began; state --save, or use --checkpoint")
+        raise PolhodeError("--resume: it continues the file of --save; add --save, or use --checkpoint")
     if options.times is not None:
-        raise PolhodeError("--times: the spread is told at the end alone; state --save, or leave it out")
+        raise PolhodeError("--times: the report has the spread at the end only; add --save, or leave it out")
     if options.chunk % BLOCK and 0 < options.chunk < options.n:
         raise PolhodeError(
             f"--chunk: expected a multiple of {BLOCK}, the members that are reduced together, got "
@@ -229,18 +230,18 @@ def _tell_spread(report: Report, many: Ensemble, options: EnsembleOptions) -> No
     spread, shares = found["spread"], found["shares"]
     if not spread.members:
         raise PolhodeError(
-            f"ensemble: none of {len(many)} members came to the end; write their states by --save, which "
-            "tell the status of each, or ask Ensemble.member(k) in Python why"
+            f"ensemble: none of {len(many)} members reached the end; --save writes the status of each, and "
+            "Ensemble.member(k) in Python raises its error"
         )
     report.section("at the end", numbers_table(found))
     if "modes" in found:
         report.section("modes", modes_table(found))
     if spread.left_out:
-        report.notes.append(f"{spread.left_out} members failed and are in none of these numbers")
+        report.notes.append(f"{spread.left_out} members failed, and are left out of these numbers")
     if shares.rank_error:
         report.notes.append(f"the ranks of quantiles are right to {shares.rank_error:.1g} of all members")
     if options.checkpoint is not None:
-        report.notes.append(f"kept in {options.checkpoint}")
+        report.notes.append(f"partial results are in {options.checkpoint}")
 
 
 def _tell_saved(report: Report, many: Ensemble, path: Path) -> None:
@@ -277,12 +278,10 @@ def check_place(path: Path, *, resume: bool) -> None:
     begun = next((place for place in (path, _parts(path)) if _is_there(place)), None)
     if begun is not None and not resume:
         raise PolhodeError(
-            f"--save: {begun} is there already; add --resume to go on with it, or give another name"
+            f"--save: {begun} exists already; add --resume to continue it, or give another name"
         )
     if begun is None and resume:
-        raise PolhodeError(
-            f"--resume: there is nothing at {path} to go on with; leave --resume out to begin it"
-        )
+        raise PolhodeError(f"--resume: there is nothing at {path} to continue; leave --resume out")
 
 
 def saved(many: Ensemble, path: Path) -> dict[str, int]:

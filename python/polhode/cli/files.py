@@ -97,7 +97,7 @@ def as_file(file: Path) -> Iterator[Path]:
             )
         if suffix is None:
             raise FileFormatError(
-                "-: the content does not tell its format; save it in a file with the format's suffix"
+                "-: its content does not show its format; save it in a file with the format's suffix"
             )
         named = raw.rename(raw.with_suffix(suffix))
         try:

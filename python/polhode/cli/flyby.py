@@ -76,7 +76,7 @@ def flyby_report(file: Path | None, options: FlybyOptions, body: BodyOptions) ->
     ]
     report.section("modes after", Table("modes", (Column("mode", "mode"), Column("share", "clones")), shares))
     if found.failed.any():
-        report.notes.append(f"{int(found.failed.sum())} clones failed and are in none of these numbers")
+        report.notes.append(f"{int(found.failed.sum())} clones failed, and are left out of these numbers")
     report.notes += notes
     report.notes.append("spin rate: 2 E/|L|; pole shift: the angle between L before and after")
     return report, found

@@ -413,8 +413,8 @@ def held_against(report: Report, expected: Path, rtol: float) -> list[dict[str, 
     if any("in_sigmas" in row for row in found):
         columns.append(Column("in_sigmas", "difference ± its sigma"))
         report.notes.append(
-            "the sigma of a difference takes those of the two reports as independent: what comes from one "
-            "source in both is not in a saved report; RigidBody.covariance_with tells it in Python"
+            "the sigma of a difference takes the two reports as independent, since a saved report does not "
+            "hold the sources that they share; RigidBody.covariance_with takes them into account in Python"
         )
     if found:
         report.section("differs from what was expected", Table("differences", columns, found))

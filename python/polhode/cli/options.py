@@ -59,10 +59,10 @@ MESH: Final = _group("Mesh")
 MOLECULE: Final = _group("Molecule")
 COMPUTATION: Final = _group("Computation")
 
-FLAG: Final = Parameter(show_default=False)
-WORDS: Final = Parameter(consume_multiple=True, show_default=False)
+FLAG: Final = Parameter(negative="", show_default=False)
+WORDS: Final = Parameter(negative="", consume_multiple=True, show_default=False)
 """Numbers, in one argument or in several."""
-REPEATED: Final = Parameter(show_default=False)
+REPEATED: Final = Parameter(negative="", show_default=False)
 
 Count: TypeAlias = Annotated[int, Parameter(converter=_count)]
 LengthUnit: TypeAlias = Literal["m", "mm", "cm", "um", "nm", "km", "in", "ft", "angstrom"]

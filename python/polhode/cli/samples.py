@@ -23,4 +23,7 @@ def run(folder: Path | None, console: Console) -> None:
     for name in samples.names():
         write(console, f"  {name:<{longest}}  {samples.about(name)}")
     write(console)
-    write(console, "  polhode samples FOLDER puts them there" if folder is None else f"  now in {folder}")
+    write(
+        console,
+        "  polhode samples FOLDER writes them into a folder" if folder is None else f"  now in {folder}",
+    )

@@ -185,7 +185,7 @@ def _checked(file: Path | None, spin: SpinOptions, options: BodyOptions) -> floa
     if spin.periods and spin.mode is None:
         raise PolhodeError(f"--mode: {MODES}")
     if spin.mode is not None and not spin.periods:
-        raise PolhodeError("--mode: it says which motion has the periods of --periods; leave it out")
+        raise PolhodeError("--mode: it is for --periods alone; leave it out")
     if spin.save and spin.end is None:
         raise PolhodeError('--save: state the time of the end with --end, as in "20 s"')
     if spin.times < 2:
@@ -217,7 +217,7 @@ def _body(file: Path | None, spin: SpinOptions, options: BodyOptions) -> LoadedB
         return any_body(file, options, with_shape=any(path.suffix.lower() in DRAWN for path in spin.save))
     for option, is_given in (("--bond-sigma", options.bond_sigma), ("--mass-sigmas", options.mass_sigmas)):
         if is_given:
-            raise PolhodeError(f"{option}: --moments are of no molecule; leave it out")
+            raise PolhodeError(f"{option}: it is about a molecule, and --moments need none; leave it out")
     check_moments_alone(options, "mass", "center_of_mass")
     if spin.gravity is not None and (options.mass is None or not options.center_of_mass):
         raise PolhodeError(
@@ -930,7 +930,7 @@ def save(
         return ()
     return (
         f"shown is the beginning, to {span.t[-1]:.6g} of {end:.6g} s: {len(span.t)} points follow the motion "
-        "no farther; an earlier --end shows all of it",
+        "no further; an earlier --end shows all of it",
     )
 
 
@@ -941,8 +941,8 @@ def _between(samples: Trajectory) -> tuple[str, ...]:
         return ()
     needed = np.ceil(len(samples) * widest / TURN)
     return (
-        f"from one of its times to the next the body turns by up to {np.rad2deg(widest):.4g} deg, which the "
-        f"numbers do not tell from less; --times {needed:.7g} follows it",
+        f"between two of its times the body turns by up to {np.rad2deg(widest):.4g} deg, so that the numbers "
+        f"do not show how; --times {needed:.7g} follows it",
     )
 
 

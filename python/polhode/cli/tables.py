@@ -182,9 +182,9 @@ def top_fields(loaded: LoadedBody, rtol: float | None = None) -> list[Field]:
     if rtol is not None:
         why = "as --rtol says"
     elif rounding == 0.0:
-        why = "the default: the file prints no digits behind the point, by which to tell more"
+        why = "the default: the coordinates in the file have no decimals"
     elif rtols.max() <= TOP_RTOL:
-        why = "the default: the digits of the file tell more"
+        why = "the default: the file has enough digits"
     else:
         why = f"what rounding of the coordinates by {rounding:.2g} {loaded.length}, by their digits, can make"
     return [
@@ -279,5 +279,5 @@ def note_linear(report: Report) -> None:
     ):
         report.notes.append(
             f"{NOT_LINEAR}: the first order is not enough; in Python "
-            'polhode.uncertainty.propagate(f, body, method="monte-carlo", seed=1) tells what is right'
+            'polhode.uncertainty.propagate(f, body, method="monte-carlo", seed=1) computes the right one'
         )

@@ -233,7 +233,7 @@ def validation(cases: tuple[Case, ...] = CASES) -> tuple[Report, bool]:
     report.section("published cases and closed forms", Table("cases", columns, rows))
     bad = sum(row["verdict"] == "bad" for row in rows)
     report.notes.append(
-        f"{bad} of {len(rows)} cases are bad" if bad else f"{len(rows)} cases agree with what others say"
+        f"{bad} of {len(rows)} cases are bad" if bad else f"{len(rows)} cases agree with the published values"
     )
     report.notes.append(f"the bits of all numbers: {bits.hexdigest()[:16]}; --format json shows them")
     return report, not bad

@@ -90,7 +90,7 @@ def _printed(file: Path | None, options: BodyOptions) -> LoadedBody:
 
     if file is not None:
         name = next(name for name in _OF_PRINTOUTS if _is_given(options, name)).replace("_", "-")
-        raise PolhodeError(f"--{name}: {shown(file)} tells what the body is; leave it out, or the file")
+        raise PolhodeError(f"--{name}: {shown(file)} defines the body already; leave out one of the two")
     for name in ("length_unit", *(name for name in _OF_SHAPES if name != "mass")):
         if _is_given(options, name):
             raise PolhodeError(
@@ -180,7 +180,8 @@ def check_moments_alone(options: BodyOptions, *taken: str) -> None:
     for field in fields(options):
         if field.name not in taken and _is_given(options, field.name):
             raise PolhodeError(
-                f"--{field.name.replace('_', '-')}: --moments are of no file; leave it out, or name the file"
+                f"--{field.name.replace('_', '-')}: it is about a file, and --moments need none; leave it out, "
+                "or give a file"
             )
 
 
