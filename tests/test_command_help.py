@@ -109,13 +109,23 @@ def test_other_names_lead_to_the_option(command: str, old: str, meant: str) -> N
 @pytest.mark.parametrize(
     ("words", "meant"),
     [
-        (("inertia", "part.stl"), "did you mean polhode report FILE?"),
-        (("simulate", "--moments", "1 2 3"), "did you mean polhode spin FILE --end TIME --save FILE.csv?"),
-        (("convert", "part.stl", "--to", "urdf"), "did you mean polhode report FILE --as PROGRAM?"),
-        (("compare", "a.stl", "b.stl"), "did you mean polhode report FILE --expect REPORT?"),
-        (("animate", "part.stl"), "did you mean polhode spin FILE --end TIME --save FILE.html?"),
-        (("part.stl", "--density", "7850"), "did you mean polhode report part.stl?"),
-        (("repot", "part.stl"), "did you mean polhode report?"),
+        (("inertia", "part.stl"), "did you mean polhode report part.stl?"),
+        (
+            ("simulate", "--moments", "1 2 3", "--t-end", "9"),
+            'did you mean polhode spin --moments "1 2 3" --end 9 --save FILE.csv?',
+        ),
+        (("simulate",), "did you mean polhode spin FILE --end TIME --save FILE.csv?"),
+        (
+            ("convert", "part.stl", "--to", "urdf"),
+            "did you mean polhode report part.stl --as urdf --length-unit UNIT?",
+        ),
+        (
+            ("compare", "a.stl", "b.stl"),
+            "did you mean polhode report a.stl --expect REPORT.json? (polhode report OTHER",
+        ),
+        (("animate", "part.stl"), "did you mean polhode spin part.stl --end TIME --save FILE.html?"),
+        (("part.stl", "--density", "7850"), "did you mean polhode report part.stl --density 7850?"),
+        (("repot", "part.stl"), "did you mean polhode report part.stl?"),
         (("spin", "--about", "0 0 1"), "did you mean polhode report?"),
         (("xyzzy",), "choose one of demo, samples, report, spin"),
     ],

@@ -7,8 +7,10 @@ extension asks it too. A message is not a second spelling: only what it names wo
 from __future__ import annotations
 
 import inspect
+import sys
 from difflib import get_close_matches
 from functools import wraps
+from types import ModuleType
 from typing import TYPE_CHECKING, Any, Final, ParamSpec, TypeVar
 
 if TYPE_CHECKING:
@@ -17,7 +19,9 @@ if TYPE_CHECKING:
 __all__ = [
     "Hinting",
     "check_kind",
+    "check_no_tensor",
     "explain_calls",
+    "explain_module_call",
     "no_attribute",
     "no_keyword",
     "no_name",
@@ -38,6 +42,14 @@ _OF_MODULES: Final = {
         "torques": "loads is the module of torques and forces",
         "bodies": "solids, laminae and rods are the modules of shapes",
         "shapes": "solids, laminae and rods are the modules of shapes",
+        **dict.fromkeys(
+            ("check_inertia", "validate_inertia", "is_valid"),
+            "RigidBody(mass, inertia) refuses a tensor that no body has, "
+            "validity.nearest_valid(inertia) finds the nearest possible one",
+        ),
+        **dict.fromkeys(
+            ("uncertain", "ufloat", "measurement"), "Uncertain(value, sigma) is a number with its sigma"
+        ),
     },
     "polhode.loads": {
         "torque": 'constant_torque((0, 0, 1), "body") is one, torque_callback(f) takes a function',
@@ -151,7 +163,7 @@ _OF_CLASSES: Final = {
         "to_dataset": "to_xarray() gives a Dataset",
         "times": "t is it",
         "time": "t is it",
-        "attitude": "quaternion is it, or rotation as SciPy's",
+        "attitude": "quaternion is it, rotation is SciPy's, euler_angles(sequence) the angles",
         "quaternions": "quaternion is it",
         "angular_velocity": "omega is it",
         "omegas": "omega is it",
@@ -161,6 +173,16 @@ _OF_CLASSES: Final = {
         "read": "Trajectory.from_file(path) reads what save wrote",
         "periods": "body.free_motion(omega).periods has them, of a body without a load",
         "mode": "body.free_motion(omega).mode is it, of a body without a load",
+        **dict.fromkeys(
+            ("at", "interpolate", "sample"),
+            "simulate(t, omega) gives the states at every t asked for, state(index) is one of them, and "
+            "body.free_motion(omega).at(t) is the closed form, without a load",
+        ),
+        **dict.fromkeys(
+            ("zero_crossings", "crossings", "find_events"),
+            "simulate(t, omega, events=lambda t, omega, *_: omega[2]) finds them, and events.t has the times",
+        ),
+        "plot_polhode": "polhode.plot.polhode(body.free_motion(omega)) draws it",
     },
     "FreeMotion": {
         "omega_at": "at(t).omega is it",
@@ -182,6 +204,11 @@ _OF_CLASSES: Final = {
         ),
         "inertia_at": "inertia_about(point) is the tensor about a point",
         "moment": "moment_about(axis) is that about an axis",
+        "moment_about_axis": "moment_about(axis, point) is it",
+        **dict.fromkeys(
+            ("products_of_inertia", "products", "product_of_inertia"),
+            "inertia[0, 1] is minus the product Ixy, interop.to_positive_products(body) has all products",
+        ),
         **dict.fromkeys(
             ("translate", "move", "moved", "shift", "shifted"),
             "translated(displacement) is the moved body",
@@ -193,7 +220,18 @@ _OF_CLASSES: Final = {
             "free_motion(omega) is the motion in closed form, simulate(t, omega) that with loads",
         ),
         "m": "mass is it",
-        "volume": "a body keeps mass and moments alone: polhode report FILE prints the volume of a mesh",
+        "volume": "a body has mass and moments alone: io.solid_from_file(path, density=1.0).volume is one",
+        **dict.fromkeys(
+            ("summary", "describe", "info", "report"),
+            'print(body) shows its numbers; after save("body.json"), polhode report body.json prints all',
+        ),
+        "flip_period": "free_motion(omega).periods.flip is it",
+        **dict.fromkeys(("period", "periods"), "free_motion(omega).periods has them"),
+        **dict.fromkeys(
+            ("clones", "perturbed", "sample", "monte_carlo"),
+            'uncertainty.propagate(f, body, "monte-carlo", n=1000, seed=1) draws bodies with a sigma, '
+            "ensemble(body, t, omega, n=1000, seed=1) draws motions",
+        ),
         "density": "a body keeps mass and moments alone",
         "gyration": "radii_of_gyration are they",
         "radius_of_gyration": "radii_of_gyration are they",
@@ -208,7 +246,8 @@ _OTHER_ARGUMENTS: Final = {
     "density": ("rho", "material"),
     "inertia": ("I", "J", "tensor", "inertia_tensor"),
     "moments": ("inertia", "principal_moments"),
-    "omega": ("w", "angular_velocity", "rate", "rates"),
+    "length_unit": ("unit", "units", "lunit", "length_units"),
+    "omega": ("w", "angular_velocity", "rate", "rates", "omega0", "w0", "initial_omega"),
     "attitude": ("q", "quaternion", "orientation", "rotation"),
     "load": ("loads", "torque", "force"),
     "height": ("h", "length"),
@@ -227,7 +266,7 @@ _OTHER_ARGUMENTS: Final = {
     "axis": ("direction",),
     "position": ("r",),
     "velocity": ("v",),
-    "t": ("time", "times"),
+    "t": ("time", "times", "t_eval", "t_span"),
 }
 """Names under which people look for an argument, by the argument."""
 
@@ -236,6 +275,29 @@ _INSTEAD: Final = {
     "gravity": "it is a load: load=loads.uniform_gravity((0, 0, -9.81))",
 }
 """Arguments that no other argument replaces as it is."""
+
+_OF_FUNCTIONS: Final = {
+    ("gravity_gradient", "radius"): (
+        "give an orbit: gravity_gradient(orbits.from_elements(mu, semi_major_axis=radius, eccentricity=0))"
+    ),
+    **dict.fromkeys(
+        (("RigidBody.simulate", name) for name in ("t_end", "end", "duration", "t_max", "tmax", "until")),
+        "the times are t=[0, end], or t=numpy.linspace(0, end, 1001)",
+    ),
+}
+"""Arguments that no other argument of one function replaces."""
+
+_OF_SHAPES: Final = {
+    **dict.fromkeys(
+        ("center", "centre", "center_of_mass", "com", "position", "origin"),
+        ".translated(displacement) of what this returns moves the body",
+    ),
+    **dict.fromkeys(
+        ("axis", "direction", "rotation", "attitude", "orientation"),
+        ".rotated(rotation) of what this returns turns the body",
+    ),
+}
+"""Arguments that place a shape."""
 
 _LABELS: Final = {
     "time_unit": "time_label",
@@ -299,13 +361,23 @@ def no_keyword(function: str, given: str, known: Iterable[str]) -> TypeError:
     known = [name for name in known if name != given]
     meant = [name for name, others in _OTHER_ARGUMENTS.items() if name in known and given in others]
     meant = meant or get_close_matches(given, known, 1)
+    instead = _OF_FUNCTIONS.get((function, given), _INSTEAD.get(given))
+    if "." not in function and {"mass", "density"}.issubset(known):
+        instead = instead or _OF_SHAPES.get(given)
     if _LABELS.get(given) in known:
         way_out = f"write {_LABELS[given]}=, which is a word in the picture and converts no number"
-    elif given in _INSTEAD:
-        way_out = _INSTEAD[given]
+    elif instead:
+        way_out = instead
     else:
         way_out = f"did you mean {meant[0]}=?" if meant else f"it takes {', '.join(known)}"
     return TypeError(f"{function}() got an unexpected keyword argument {given!r}; {way_out}")
+
+
+def check_no_tensor(values: object) -> None:
+    """Refuse the elements of a tensor by their names, with how the tensor is written."""
+    if isinstance(values, dict) and any(str(name).lower() == "ixx" for name in values):
+        rows = "[[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]]"
+        raise TypeError(f"expected numbers, got a dict of a tensor's elements; write {rows}")
 
 
 def check_kind(value: object, argument: str, *kinds: str) -> None:
@@ -336,6 +408,19 @@ def explain_calls(names: dict[str, Any], public: Iterable[str]) -> None:
             explained.__name__ = explained.__qualname__ = name
             explained.__module__ = names["__name__"]
             names[name] = explained
+
+
+def explain_module_call(module: str, way_out: str) -> None:
+    """Let a module that is called like a function say what to write instead."""
+
+    class Called(ModuleType):
+        """A module whose call is refused."""
+
+        def __call__(self, *_args: object, **_options: object) -> None:
+            """Refuse the call."""
+            raise TypeError(f"{module} is a module; {way_out}")
+
+    sys.modules[module].__class__ = Called
 
 
 def with_hints(function: Callable[_Takes, _Returns], name: str | None = None) -> Callable[_Takes, _Returns]:

@@ -17,7 +17,7 @@ from polhode.cli.terminal import ReaderLeft, in_options, printable, standard_out
 from polhode.io.reading import words_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from rich.console import Console
 
@@ -69,7 +69,7 @@ OTHER_OPTIONS: Final = (
     ("--closure caps", "--close --fill --cap --fill-holes --watertight"),
     ("--orient", "--flip --fix-normals --normals --reorient"),
     ("--repair", "--heal --mend --fix"),
-    ("--as urdf", "--urdf --sdf --mjcf --export --program"),
+    ("--as urdf", "--urdf --sdf --mjcf --export --program --to"),
     ("--about", "--point --origin --reference"),
     ("--expect FILE", "--compare --diff --reference"),
     ("--packages FOLDER", "--package --package-path --package-dir --include -I"),
@@ -83,22 +83,43 @@ OTHER_OPTIONS: Final = (
 """What to write, and the names under which people look for it; the first that a command has is meant."""
 OTHER_COMMANDS: Final = (
     ("report FILE", "inertia mass properties massprops principal axes moments info tensor show read print"),
-    ("report FILE --as PROGRAM", "convert export"),
-    ("report FILE --expect REPORT", "compare diff"),
+    ("report FILE --length-unit UNIT --as PROGRAM", "convert export"),
+    ("report FILE --expect REPORT.json", "compare diff"),
     ("spin FILE", "motion rotate period periods tumble top"),
     ("spin FILE --end TIME --save FILE.csv", "simulate integrate run trajectory"),
     ("spin FILE --end TIME --save FILE.png", "plot draw picture"),
     ("spin FILE --end TIME --save FILE.html", "animate animation view movie"),
-    ("check FILE", "robot urdf sdf mjcf verify fix"),
+    ("check FILE", "robot urdf sdf mjcf verify fix .urdf .mjcf .xml"),
     ("assemble FILE", "assembly combine add box sphere cylinder solid solids"),
     ("molecule FILE", "rotor constants spectrum isotopes"),
     ("ensemble FILE", "monte-carlo montecarlo clones members sample"),
-    ("ledger FILE", "sum rollup parts budget"),
+    ("ledger FILE", "sum rollup parts budget .csv .tsv"),
     ("samples FOLDER", "examples data files"),
     ("demo", "tour tutorial example"),
     ("validate", "test selftest doctor"),
 )
-"""What to write, and the words with which people begin."""
+"""What to write, and the words and the endings of files with which people begin."""
+REMARKS: Final = (
+    ("polhode report OTHER --output REPORT.json writes the report of the other file", "compare diff"),
+    (
+        'a [[part]] of the file may be solid = "box"; in Python solids.box((x, y, z), mass=MASS) is one',
+        "box",
+    ),
+    (
+        'a [[part]] of the file may be solid = "cylinder"; in Python solids.cylinder(radius, height, '
+        "density=DENSITY) is one",
+        "cylinder sphere solid solids",
+    ),
+    (
+        "a load acts in Python: body.simulate(t, omega, load=loads.damping(0.01))",
+        "--damping --drag --torque --load --loads --force --friction",
+    ),
+)
+"""What else there is to know, by the words and options with which people begin."""
+COMPANIONS: Final = {"--inertia": {"--mass": "MASS"}}
+"""Options without which another one is refused."""
+WITHOUT_FILE: Final = ("--moments", "--inertia")
+OPTION: Final = re.compile(r"--[A-Za-z][\w-]*|-[A-Za-z]")
 
 
 def _version_in_full() -> None:
@@ -127,13 +148,55 @@ def unknown_command(arguments: list[str]) -> str | None:
     word = next(iter(arguments), "-")
     if word in COMMANDS or word.startswith("-"):
         return None
-    meant = next((there for there, others in OTHER_COMMANDS if word.lower() in others.split()), None)
-    if meant is None and Path(word).suffix:
-        return f"{word}: a command stands before the file; did you mean polhode report {word}?"
+    meant = _row(OTHER_COMMANDS, word.lower())
+    suffix = Path(word).suffix.lower()
+    if meant is None and suffix:
+        whole = _in_full(_row(OTHER_COMMANDS, suffix) or "report FILE", arguments)
+        return f"{word}: a command stands before the file; did you mean polhode {whole}?"
     if meant is None:
-        meant = next(iter(get_close_matches(word.lower(), COMMANDS, 1, 0.7)), None)
-    way_out = f"did you mean polhode {meant}?" if meant else f"choose one of {', '.join(COMMANDS)}"
-    return f"{word}: there is no such command; {way_out}"
+        near = get_close_matches(word.lower(), COMMANDS, 1, 0.7)
+        meant = next((there for there, _ in OTHER_COMMANDS if there.split()[0] in near), None)
+    if meant is None:
+        return f"{word}: there is no such command; choose one of {', '.join(COMMANDS)}"
+    way_out = f"did you mean polhode {_in_full(meant, arguments[1:])}?"
+    remarks = [f"({one})" for one in map(partial(_row, REMARKS), [word.lower(), *arguments[1:]]) if one]
+    return " ".join([f"{word}: there is no such command;", way_out, *dict.fromkeys(remarks)])
+
+
+def _row(table: Iterable[tuple[str, str]], word: str) -> str | None:
+    """Return what to write instead of a word; None if the table does not have it."""
+    return next((there for there, others in table if word in others.split()), None)
+
+
+def _in_full(meant: str, words: list[str]) -> str:
+    """Complete a command with the file and the options that were given, under the names that it has."""
+    groups: list[list[str]] = [[]]
+    for word in words:
+        name, _, value = word.partition("=")
+        if OPTION.fullmatch(name):
+            groups.append([name, value] if value else [name])
+        else:
+            groups[-1].append(f'"{word}"' if " " in word else word)
+    files, *options = groups
+    command, *rest = meant.split()
+    missing = {rest[at]: rest[at + 1] for at in range(len(rest) - 1) if rest[at].startswith("--")}
+    file = [word for word in files[:1] if Path(word).suffix and "FILE" in rest]
+    if not file and not any(name in WITHOUT_FILE for name, *_ in options):
+        return meant
+    known = _options(command)
+    wanted = [row for row in OTHER_OPTIONS if row[0].split()[0] in missing]
+    possible = [row for row in OTHER_OPTIONS if row[0].split()[0] in known]
+    call = [command, *file]
+    for name, *values in options:
+        there = _row(wanted, name) or (name if name in known else _row(possible, name))
+        if there is None:
+            continue
+        option = there.split()[0]
+        call += [option, *values] if values else [there]
+        missing.pop(option, None)
+        missing |= COMPANIONS.get(option, {})
+    given = {name for name, *_ in options}
+    return " ".join([*call, *(f"{name} {value}" for name, value in missing.items() if name not in given)])
 
 
 def _options(command: str) -> set[str]:
@@ -149,7 +212,7 @@ def unknown_option(arguments: list[str]) -> str | None:
     known = _options(command) | {*app.help_flags, *app.version_flags}
     for word in arguments[1:]:
         name = word.partition("=")[0]
-        if not re.fullmatch(r"--[A-Za-z][\w-]*|-[A-Za-z]", name) or name in known or Path(word).exists():
+        if not OPTION.fullmatch(name) or name in known or Path(word).exists():
             continue
         meant = next(
             (
@@ -160,9 +223,13 @@ def unknown_option(arguments: list[str]) -> str | None:
             next(iter(get_close_matches(name, sorted(known), 1, 0.7)), None),
         )
         elsewhere = [other for other in COMMANDS if name in _options(other)]
-        way_out = f"choose one that it has (see polhode {command} --help)"
-        if meant or elsewhere:
-            way_out = f"did you mean {meant or f'polhode {elsewhere[0]}'}?"
+        way_out = _row(REMARKS, name) or f"choose one that it has (see polhode {command} --help)"
+        if meant:
+            way_out = f"did you mean {meant}?"
+        elif elsewhere and name in WITHOUT_FILE:
+            way_out = f"did you mean polhode {_in_full(elsewhere[0], arguments[1:])}?"
+        elif elsewhere:
+            way_out = f"did you mean polhode {elsewhere[0]}?"
         return f"{name}: {command} has no such option; {way_out}"
     return None
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from polhode import _core
 from polhode._format import short
-from polhode._hints import check_kind
+from polhode._hints import check_kind, check_no_tensor
 from polhode._optional import require
 from polhode.errors import PolhodeError
 from polhode.uncertainty.variables import of_forms
@@ -65,6 +65,7 @@ def joined(values: Any) -> Any:
     >>> round(solids.box([edge, edge, 3.0], density=1.0).sigma.mass, 6)
     0.06
     """
+    check_no_tensor(values)
     kinds = (_core.Uncertain, *ufloat_kinds())
     if not _holds(values, kinds):
         return None
