@@ -71,6 +71,34 @@ pub(crate) fn no_attribute(object: &Bound<'_, PyAny>, name: &str) -> PyErr {
     refused(name).unwrap_or_else(|error| error)
 }
 
+/// Arguments that a function needs; they may be missing where a keyword is refused with the one that was meant.
+pub(crate) fn needed<'a, 'py, const N: usize>(
+    function: &str,
+    arguments: [(&str, Option<&'a Bound<'py, PyAny>>); N],
+) -> PyResult<[&'a Bound<'py, PyAny>; N]> {
+    let missing: Vec<String> = (arguments.iter())
+        .filter(|(_, given)| given.is_none())
+        .map(|(name, _)| format!("{name}="))
+        .collect();
+    let given: Vec<_> = arguments.iter().filter_map(|(_, given)| *given).collect();
+    given.try_into().map_err(|_| {
+        PyTypeError::new_err(format!(
+            "{function}() needs {} too; give it",
+            missing.join(", ")
+        ))
+    })
+}
+
+/// A mesh of another library where its vertices are asked for, and no faces.
+pub(crate) fn no_faces(vertices: &Bound<'_, PyAny>) -> PyErr {
+    let has_faces = vertices.hasattr("faces").unwrap_or(false);
+    PyTypeError::new_err(if has_faces {
+        "RigidBody.from_mesh() takes arrays, vertices and faces; RigidBody.from_mesh_object(mesh, density=...) takes a mesh"
+    } else {
+        "RigidBody.from_mesh() needs faces= too; give it"
+    })
+}
+
 /// Refuse keyword arguments that `function` does not have, with the one that was meant.
 pub(crate) fn refuse_unknown(
     function: &str,

@@ -30,7 +30,7 @@ use crate::body::PyRigidBody;
 use crate::depth::RecursionGuard;
 use crate::errors::{at_row, to_py};
 use crate::figure::{MOST_FACES, Outline, alone};
-use crate::hints::refuse_unknown;
+use crate::hints::{no_faces, refuse_unknown};
 use crate::interrupt::{Beat, Interrupt, watched};
 use crate::lazy_arrays::{handed_over, is_any};
 use crate::memory;
@@ -250,7 +250,10 @@ impl PyRigidBody {
     /// --------
     /// polhode.io : the readers, which also return vertices and faces.
     #[staticmethod]
-    #[pyo3(signature = (path, *, density=None, mass=None, length_unit=None, weld=0.0, closure=None, orient=false, union=false, repair=false, index_base=1, masses="most_common", progress=None))]
+    #[pyo3(
+        signature = (path, *, density=None, mass=None, length_unit=None, weld=0.0, closure=None, orient=false, union=false, repair=false, index_base=1, masses="most_common", progress=None, **unknown),
+        text_signature = "(path, *, density=None, mass=None, length_unit=None, weld=0.0, closure=None, orient=False, union=False, repair=False, index_base=1, masses=\"most_common\", progress=None)"
+    )]
     #[expect(clippy::too_many_arguments, reason = "one for each of Python's")]
     fn from_file<'py>(
         py: Python<'py>,
@@ -266,7 +269,23 @@ impl PyRigidBody {
         #[pyo3(from_py_with = read_scalar)] index_base: i64,
         #[pyo3(from_py_with = read_scalar)] masses: &str,
         progress: Option<Bound<'py, PyAny>>,
+        unknown: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        let known = [
+            "path",
+            "density",
+            "mass",
+            "length_unit",
+            "weld",
+            "closure",
+            "orient",
+            "union",
+            "repair",
+            "index_base",
+            "masses",
+            "progress",
+        ];
+        refuse_unknown("RigidBody.from_file", &known, unknown)?;
         let options = PyDict::new(py);
         options.set_item("density", density)?;
         options.set_item("mass", mass)?;
@@ -436,18 +455,22 @@ impl PyRigidBody {
     /// >>> RigidBody.from_mesh(corners, faces[:3], density=6.0, closure="caps").mass
     /// 1.0
     #[staticmethod]
-    #[pyo3(signature = (vertices, faces, *, density=None, mass=None, closure=None, orient=false, check=true))]
+    #[pyo3(
+        signature = (vertices, faces=None, *, density=None, mass=None, closure=None, orient=false, check=true),
+        text_signature = "(vertices, faces, *, density=None, mass=None, closure=None, orient=False, check=True)"
+    )]
     #[expect(clippy::too_many_arguments, reason = "one for each of Python's")]
     fn from_mesh(
         py: Python<'_>,
         vertices: &Bound<'_, PyAny>,
-        faces: &Bound<'_, PyAny>,
+        faces: Option<&Bound<'_, PyAny>>,
         density: Option<Weight>,
         mass: Option<Weight>,
         #[pyo3(from_py_with = read_scalar)] closure: Option<&str>,
         orient: bool,
         check: bool,
     ) -> PyResult<Self> {
+        let faces = faces.ok_or_else(|| no_faces(vertices))?;
         let amount = amount(number(mass.as_ref()), number(density.as_ref()))?;
         let (vertices, uncertain) = &value_of(vertices)?;
         if uncertain.is_some() && (closure.is_some() || orient) {

@@ -134,7 +134,7 @@ impl PyRigidBody {
     /// array([ 12.618391, -17.397475,  31.119589])
     #[pyo3(
         signature = (
-            t, omega, attitude=None, *, load=None, position=None, velocity=None, about="center_of_mass",
+            t=None, omega=None, attitude=None, *, load=None, position=None, velocity=None, about="center_of_mass",
             method="auto", rtol=1e-10, atol=None, events=None, on_failure="raise", progress=None, states=None,
             max_steps=None, **unknown
         ),
@@ -144,8 +144,8 @@ impl PyRigidBody {
     fn simulate<'py>(
         slf: &Bound<'py, Self>,
         py: Python<'py>,
-        t: &Bound<'py, PyAny>,
-        omega: &Bound<'py, PyAny>,
+        t: Given<'_, 'py>,
+        omega: Given<'_, 'py>,
         attitude: Given<'_, 'py>,
         load: Given<'_, 'py>,
         position: Given<'_, 'py>,
@@ -162,6 +162,7 @@ impl PyRigidBody {
         unknown: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         hints::refuse_unknown("RigidBody.simulate", &KEYWORDS, unknown)?;
+        let [t, omega] = hints::needed("RigidBody.simulate", [("t", t), ("omega", omega)])?;
         if is_any(&[Some(omega), attitude, position, velocity]) {
             let arrays = [load, position, velocity, events, states];
             let words = (about, method, on_failure);
