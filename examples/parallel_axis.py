@@ -15,7 +15,7 @@ def draw() -> Figure:
     distance = np.linspace(0.02, 0.5, 400)
     pivots = np.stack([0.0 * distance, 0.0 * distance, distance], axis=-1)
     # Moment about the axis x through each pivot: I_C + m d².
-    moment = np.array([rod.moment_about((1.0, 0.0, 0.0), point=pivot) for pivot in pivots])
+    moment = np.array([rod.moment_about((1.0, 0.0, 0.0), about=pivot) for pivot in pivots])
     period = 2 * np.pi * np.sqrt(moment / (rod.mass * G * distance))
     gyration = rod.radii_of_gyration[-1]
     best = distance[period.argmin()]

@@ -204,7 +204,7 @@ _OF_CLASSES: Final = {
         ),
         "inertia_at": "inertia_about(point) is the tensor about a point",
         "moment": "moment_about(axis) is that about an axis",
-        "moment_about_axis": "moment_about(axis, point) is it",
+        "moment_about_axis": "moment_about(axis, about) is it",
         **dict.fromkeys(
             ("products_of_inertia", "products", "product_of_inertia"),
             "inertia[0, 1] is minus the product Ixy, interop.to_positive_products(body) has all products",

@@ -51,13 +51,13 @@ def test_the_center_of_mass_has_the_least_moment_of_all_points(body: Body, unit:
 def test_a_rod_about_its_end() -> None:
     rod = solids.box((0.0, 0.0, 3.0), mass=2.0)
     assert rod.moment_about((1.0, 0, 0)) == 1.5
-    assert rod.moment_about((1.0, 0, 0), point=(0.0, 0.0, 1.5)) == 6.0
-    assert rod.moment_about((0.0, 0, 1.0), point=(0.0, 0.0, 1.5)) == 0.0
+    assert rod.moment_about((1.0, 0, 0), about=(0.0, 0.0, 1.5)) == 6.0
+    assert rod.moment_about((0.0, 0, 1.0), about=(0.0, 0.0, 1.5)) == 0.0
 
 
 def test_a_sphere_about_a_tangent() -> None:
     ball = solids.sphere(1.0, mass=5.0)
-    assert ball.moment_about((0, 0, 1.0), point=(1.0, 0, 0)) == pytest.approx(7.0, rel=1e-15)
+    assert ball.moment_about((0, 0, 1.0), about=(1.0, 0, 0)) == pytest.approx(7.0, rel=1e-15)
 
 
 class TestMomentAbout:
@@ -83,7 +83,7 @@ class TestShapes:
     def test_points_broadcast_against_bodies(self) -> None:
         stack = solids.cube([1.0, 2.0], mass=1.0)
         assert stack.inertia_about(np.zeros((5, 1, 3))).shape == (5, 2, 3, 3)
-        assert stack.moment_about(np.eye(3)[:, None], point="origin").shape == (3, 2)
+        assert stack.moment_about(np.eye(3)[:, None], about="origin").shape == (3, 2)
         assert stack.principal_about((1.0, 0, 0)).moments.shape == (2, 3)
 
     @pytest.mark.parametrize("about", ["centre", "COM", "", 3, None, (1.0, 2.0), np.zeros((3, 2))])

@@ -22,7 +22,7 @@ impl PyRigidBody {
     ///
     /// Parameters
     /// ----------
-    /// r : {"center_of_mass", "origin"} or array_like, shape (..., 3)
+    /// point : {"center_of_mass", "origin"} or array_like, shape (..., 3)
     ///     The point of the body, in the body frame.
     /// omega : array_like, shape (..., 3)
     ///     Angular velocity relative to space, components in the body frame.
@@ -47,18 +47,18 @@ impl PyRigidBody {
     /// array([[2., 0., 0.],
     ///        [0., 0., 0.]])
     #[pyo3(
-        signature = (r, omega, velocity=Argument::default(), about=Argument::default()),
-        text_signature = "($self, r, omega, velocity=(0.0, 0.0, 0.0), about='center_of_mass')"
+        signature = (point, omega, velocity=Argument::default(), about=Argument::default()),
+        text_signature = "($self, point, omega, velocity=(0.0, 0.0, 0.0), about='center_of_mass')"
     )]
     fn point_velocity<'py>(
         &self,
         py: Python<'py>,
-        r: &Bound<'py, PyAny>,
+        point: &Bound<'py, PyAny>,
         omega: &Bound<'py, PyAny>,
         velocity: Argument<'py>,
         about: Argument<'py>,
     ) -> Array<'py> {
-        let r = points(py, &self.bodies, Some(r), "r")?;
+        let r = points(py, &self.bodies, Some(point), "point")?;
         let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
         let velocity = read_or(&velocity, "velocity", Vector3::zeros())?;
         let about = points(py, &self.bodies, about.value(), "about")?;
@@ -69,7 +69,7 @@ impl PyRigidBody {
             &velocity.shape,
             &about.shape,
         ];
-        let grid = Broadcast::of(["body", "r", "omega", "velocity", "about"], shapes)?;
+        let grid = Broadcast::of(["body", "point", "omega", "velocity", "about"], shapes)?;
         let velocities = grid.try_map(py, |[_, r_, w, v, p]| {
             let arm = r[r_] - about[p];
             Ok(point_velocity(&arm, &omega[w], &velocity[v]))
@@ -81,7 +81,7 @@ impl PyRigidBody {
     ///
     /// Parameters
     /// ----------
-    /// r : {"center_of_mass", "origin"} or array_like, shape (..., 3)
+    /// point : {"center_of_mass", "origin"} or array_like, shape (..., 3)
     ///     The point of the body, in the body frame.
     /// omega : array_like, shape (..., 3)
     ///     Angular velocity relative to space, components in the body frame.
@@ -107,29 +107,29 @@ impl PyRigidBody {
     /// array([0., 2., 0.])
     #[pyo3(
         signature = (
-            r, omega, angular_acceleration=Argument::default(), acceleration=Argument::default(),
+            point, omega, angular_acceleration=Argument::default(), acceleration=Argument::default(),
             about=Argument::default()
         ),
-        text_signature = "($self, r, omega, angular_acceleration=(0.0, 0.0, 0.0), acceleration=(0.0, 0.0, 0.0), about='center_of_mass')"
+        text_signature = "($self, point, omega, angular_acceleration=(0.0, 0.0, 0.0), acceleration=(0.0, 0.0, 0.0), about='center_of_mass')"
     )]
     fn point_acceleration<'py>(
         &self,
         py: Python<'py>,
-        r: &Bound<'py, PyAny>,
+        point: &Bound<'py, PyAny>,
         omega: &Bound<'py, PyAny>,
         angular_acceleration: Argument<'py>,
         acceleration: Argument<'py>,
         about: Argument<'py>,
     ) -> Array<'py> {
         let zero = Vector3::zeros();
-        let r = points(py, &self.bodies, Some(r), "r")?;
+        let r = points(py, &self.bodies, Some(point), "point")?;
         let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
         let angular = read_or(&angular_acceleration, "angular_acceleration", zero)?;
         let linear = read_or(&acceleration, "acceleration", zero)?;
         let about = points(py, &self.bodies, about.value(), "about")?;
         let names = [
             "body",
-            "r",
+            "point",
             "omega",
             "angular_acceleration",
             "acceleration",

@@ -84,7 +84,7 @@ impl PyRigidBody {
     ///
     /// Parameters
     /// ----------
-    /// point : {"center_of_mass", "origin"} or array_like, shape (..., 3)
+    /// about : {"center_of_mass", "origin"} or array_like, shape (..., 3)
     ///     P in the body frame.
     ///
     /// Returns
@@ -100,9 +100,9 @@ impl PyRigidBody {
     /// array([[ 8., -3., -3.],
     ///        [-3.,  8., -3.],
     ///        [-3., -3.,  8.]])
-    fn inertia_about<'py>(&self, py: Python<'py>, point: &Bound<'py, PyAny>) -> Array<'py> {
-        let points = points(py, &self.bodies, Some(point), "point")?;
-        let grid = self.with("point", &points)?;
+    fn inertia_about<'py>(&self, py: Python<'py>, about: &Bound<'py, PyAny>) -> Array<'py> {
+        let points = points(py, &self.bodies, Some(about), "about")?;
+        let grid = self.with("about", &points)?;
         write(
             py,
             &grid.try_map(py, |[b, p]| {
@@ -118,7 +118,7 @@ impl PyRigidBody {
     /// ----------
     /// axis : array_like, shape (..., 3)
     ///     Direction of the axis in the body frame, as a vector of any length but zero.
-    /// point : {"center_of_mass", "origin"} or array_like, shape (..., 3), optional
+    /// about : {"center_of_mass", "origin"} or array_like, shape (..., 3), optional
     ///     A point on the axis.
     ///
     /// Returns
@@ -130,17 +130,17 @@ impl PyRigidBody {
     /// >>> from polhode import solids
     /// >>> solids.sphere(1.0, mass=5.0).moment_about((0, 0, 3))
     /// 2.0
-    #[pyo3(signature = (axis, point=Argument::default()), text_signature = "($self, axis, point='center_of_mass')")]
+    #[pyo3(signature = (axis, about=Argument::default()), text_signature = "($self, axis, about='center_of_mass')")]
     fn moment_about<'py>(
         &self,
         py: Python<'py>,
         axis: &Bound<'py, PyAny>,
-        point: Argument<'py>,
+        about: Argument<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let points = points(py, &self.bodies, point.value(), "point")?;
+        let points = points(py, &self.bodies, about.value(), "about")?;
         let axes: Stack<Vector3<f64>> = read(axis, "axis")?;
         let shapes = [&self.bodies.shape[..], &axes.shape, &points.shape];
-        let grid = Broadcast::of(["body", "axis", "point"], shapes)?;
+        let grid = Broadcast::of(["body", "axis", "about"], shapes)?;
         let moments = grid.try_map(py, |[b, a, p]| {
             self.bodies[b].moment_about(&axes[a], &points[p])
         })?;
@@ -151,7 +151,7 @@ impl PyRigidBody {
     ///
     /// Parameters
     /// ----------
-    /// point : {"center_of_mass", "origin"} or array_like, shape (..., 3)
+    /// about : {"center_of_mass", "origin"} or array_like, shape (..., 3)
     ///
     /// Returns
     /// -------
@@ -167,10 +167,10 @@ impl PyRigidBody {
     fn principal_about<'py>(
         &self,
         py: Python<'py>,
-        point: &Bound<'py, PyAny>,
+        about: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let points = points(py, &self.bodies, Some(point), "point")?;
-        let grid = self.with("point", &points)?;
+        let points = points(py, &self.bodies, Some(about), "about")?;
+        let grid = self.with("about", &points)?;
         let found = grid.try_map(py, |[b, p]| {
             self.bodies[b].check_about(&points[p])?;
             let found = self.bodies[b].principal_about(&points[p]);

@@ -320,7 +320,7 @@ impl PyRigidBody {
     ///
     /// Parameters
     /// ----------
-    /// point : {"center_of_mass", "origin"} or array_like, shape (..., 3)
+    /// about : {"center_of_mass", "origin"} or array_like, shape (..., 3)
     ///
     /// Returns
     /// -------
@@ -337,9 +337,9 @@ impl PyRigidBody {
     fn sigma_about<'py>(
         &self,
         py: Python<'py>,
-        point: &Bound<'py, PyAny>,
+        about: &Bound<'py, PyAny>,
     ) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let points = points(py, &self.bodies, Some(point), "point")?;
+        let points = points(py, &self.bodies, Some(about), "about")?;
         let found = self.deviations(py, Some(&points))?;
         found.map(|found| sigma_of(py, &found)).transpose()
     }
