@@ -12,10 +12,10 @@ from polhode._core import RigidBody
 from polhode.assembly.tables import COMMON, FILE, KINDS, PRINTED, check_keys, text_of
 from polhode.errors import PolhodeError
 from polhode.interop.printouts import from_printout
-from polhode.io.body import body_of_molecule, check_molecule_options
+from polhode.io.read import body_of_molecule, check_molecule_options
 from polhode.io.components import MOST_FACES, overlapping
 from polhode.io.content import is_molecule
-from polhode.io.loaded import load
+from polhode.io.read import load
 from polhode.io.mesh_solid import solid_of
 from polhode.io.reading import words_of
 from polhode.io.saved import read_report
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from polhode.assembly.tables import Scope
-    from polhode.io.loaded import Loaded
+    from polhode.io.read import Loaded
 
 __all__ = ["SAVED", "Matter", "body_of_part", "kind_of"]
 

@@ -12,7 +12,7 @@ from polhode.cli.files import as_file
 from polhode.cli.terminal import reading_progress
 from polhode.errors import PolhodeError
 from polhode.io.content import is_molecule
-from polhode.io.loaded import load
+from polhode.io.read import load
 from polhode.io.mesh import weld_within
 from polhode.io.mesh_solid import MeshSolid, solid_of
 from polhode.molecules.bonding import crossings_of
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from polhode import RigidBody, Uncertain
     from polhode.cli.atoms import Atoms
     from polhode.cli.options import BodyOptions, LengthUnit
-    from polhode.io.loaded import Loaded
+    from polhode.io.read import Loaded
     from polhode.io.mesh import Mesh
     from polhode.io.molecules import Molecule
     from polhode.molecules import CellCrossings, Isotope
@@ -282,7 +282,7 @@ def _amount(text: str | None, si: str, option: str, unit: str | None) -> float |
 
 def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
     from polhode.cli.atoms import atoms_of
-    from polhode.io.body import check_molecule_options, molecule_isotopes
+    from polhode.io.read import check_molecule_options, molecule_isotopes
 
     check_molecule_options(
         file,

@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from os import PathLike
 
-    from polhode.io.body import body_from_file
-    from polhode.io.loaded import Loaded, load, read_mesh
+    from polhode.io.read import body_from_file
+    from polhode.io.read import Loaded, load, read_mesh
     from polhode.io.mesh import Mesh
     from polhode.io.mesh_solid import MeshSolid, solid_from_file
     from polhode.io.molecules import Molecule, read_xyz
@@ -51,15 +51,15 @@ else:
 
 _HOMES = {
     "BODY_SCHEMA": "saved",
-    "Loaded": "loaded",
+    "Loaded": "read",
     "Mesh": "mesh",
     "MeshSolid": "mesh_solid",
     "Molecule": "molecules",
     "TRAJECTORY_SCHEMA": "saved",
-    "body_from_file": "body",
-    "load": "loaded",
+    "body_from_file": "read",
+    "load": "read",
     "load_body": "saved",
-    "read_mesh": "loaded",
+    "read_mesh": "read",
     "read_xyz": "molecules",
     "save_body": "saved",
     "save_trajectory_json": "saved",

@@ -12,7 +12,7 @@ import numpy as np
 
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.io.content import is_molecule
-from polhode.io.loaded import load
+from polhode.io.read import load
 from polhode.io.mesh_solid import naming_file, solid_of, warn_of_overlaps
 from polhode.molecules import ATOMIC_MASS_CONSTANT, Isotope, body_of_atoms, isotopes
 from polhode.molecules.bonding import crossings_of

@@ -12,7 +12,7 @@ import numpy as np
 
 from polhode import _core
 from polhode.errors import FileFormatError, MeshError, PolhodeError
-from polhode.io.loaded import Loaded, load
+from polhode.io.read import Loaded, load
 from polhode.io.mesh import weld_within
 from polhode.io.repair import RepairStep, repaired, resolution_of, spanned_volume
 from polhode.units import metres_per

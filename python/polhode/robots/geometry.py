@@ -10,7 +10,7 @@ import numpy as np
 from polhode import RigidBody, solids
 from polhode.errors import PolhodeError
 from polhode.io.components import overlapping
-from polhode.io.loaded import load
+from polhode.io.read import load
 from polhode.io.mesh import Mesh, equal_rows, used_vertices
 from polhode.robots.mjcf import legacy_solid
 from polhode.robots.model import quoted, shortened
