@@ -6,13 +6,16 @@ message names the argument, the row of a stack, the bad number, the law that it 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from polhode._core import RigidBody
     from polhode.motion.trajectory import Trajectory
 
 __all__ = [
+    "Argument",
     "FileFormatError",
     "IntegrationError",
     "InvalidInertiaError",
@@ -23,25 +26,66 @@ __all__ = [
 ]
 
 
-class PolhodeError(ValueError):
-    """Base class of the errors that polhode raises about physics and data."""
-
-
-class InvalidInertiaError(PolhodeError):
-    """Mass properties that no real body can have.
+class Argument(NamedTuple):
+    """An argument in a message: the command line and the files of assemblies write it in their own way.
 
     Attributes
     ----------
-    way_out : str
-        The remedy at the end of the message; ``""`` where there is none.
+    name : str
+    value : object
+        The value to pass; None names the argument alone.
     """
 
+    name: str
+    value: object = None
+
+    def __str__(self) -> str:
+        if self.value is None:
+            return self.name
+        return f'{self.name}="{self.value}"' if isinstance(self.value, str) else f"{self.name}={self.value}"
+
+
+class PolhodeError(ValueError):
+    """Base class of the errors that polhode raises about physics and data.
+
+    Its `args` are the pieces of the message: texts, and an :class:`Argument` where an argument is named. They
+    become words when the message is printed.
+
+    Attributes
+    ----------
+    kind : str
+        What is wrong, where the command line has a remedy of its own; else ``""``.
+    way_out : str
+        The remedy at the end of a message of the core; ``""`` where there is none.
+    row : int or None
+        Place in the flattened stack of the value at fault, where the message begins with it.
+    """
+
+    kind: str = ""
     way_out: str = ""
+    row: int | None = None
+
+    def __str__(self) -> str:
+        return self.words()
+
+    def words(self, name: Callable[[Argument], str] = str) -> str:
+        """Return the message.
+
+        Parameters
+        ----------
+        name : callable, optional
+            A function that writes an argument; as Python does by default.
+        """
+        return "".join(name(part) if isinstance(part, Argument) else str(part) for part in self.args)
 
     @property
     def fault(self) -> str:
         """The message without the remedy, for a caller that has another one."""
         return str(self).removesuffix(self.way_out).rstrip("; :")
+
+
+class InvalidInertiaError(PolhodeError):
+    """Mass properties that no real body can have."""
 
 
 class MeshError(PolhodeError):
@@ -54,17 +98,9 @@ class MeshError(PolhodeError):
     ----------
     law : str
         ``"closed"`` where the mesh is open; else ``""``.
-    way_out : str
-        The remedy at the end of the message; ``""`` if `law` is ``""``.
     """
 
     law: str = ""
-    way_out: str = ""
-
-    def offer(self, way_out: str) -> None:
-        """Put another remedy into the message, before the present one."""
-        fault = str(self).removesuffix(self.way_out)
-        self.args = (f"{fault}{way_out}; or {self.way_out}" if self.way_out else f"{fault} ({way_out})",)
 
 
 class FileFormatError(PolhodeError):

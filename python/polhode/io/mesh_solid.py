@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import warnings
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
@@ -12,10 +11,8 @@ import numpy as np
 
 from polhode import _core
 from polhode.errors import FileFormatError, MeshError, PolhodeError
-from polhode.io.read import Loaded, load
 from polhode.io.mesh import weld_within
 from polhode.io.repair import RepairStep, repaired, resolution_of, spanned_volume
-from polhode.units import metres_per
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -23,10 +20,11 @@ if TYPE_CHECKING:
     from polhode._typing import SupportsSigma
     from polhode.io.cad_files import CadFile, SolidPart
     from polhode.io.mesh import Mesh
+    from polhode.io.read import Loaded
 
     Number = float | _core.Uncertain | SupportsSigma
 
-__all__ = ["MeshSolid", "naming_file", "solid_from_file", "solid_of", "warn_of_overlaps"]
+__all__ = ["MeshSolid", "naming_file", "solid_of"]
 
 _SMALL_FILE: Final = 1 << 28
 """Bytes of a file that is read whole for a hint in an error."""
@@ -75,86 +73,6 @@ class MeshSolid(NamedTuple):
     components: Any = None
     parts: tuple[SolidPart, ...] = ()
     steps: tuple[RepairStep, ...] = ()
-
-
-def solid_from_file(
-    path: str | os.PathLike[str],
-    *,
-    density: Number | None = None,
-    mass: Number | None = None,
-    scale: float | None = None,
-    weld: float = 0.0,
-    closure: Literal["caps", "hull"] | None = None,
-    orient: bool = False,
-    repair: bool = False,
-    index_base: int = 1,
-    progress: Callable[[float], object] | None = None,
-) -> MeshSolid:
-    """Make a solid from the mesh in a file; errors name the file.
-
-    Binary STL and binary PLY are read block by block, so that a file may be larger than the memory. Of a PLY
-    file only the vertices are kept in memory, since faces refer to them in any order. Other formats are read
-    into memory as a whole. The same holds if corners are welded within a length, or if holes are closed.
-
-    To find duplicate faces, a file that is read in blocks is read once more for every eight million
-    triangles. A component whose faces are wound inward is a cavity if it lies inside another component. This
-    is checked for meshes of up to a quarter of a million triangles. `RigidBody.provenance` lists the checks
-    that were made.
-
-    Parameters
-    ----------
-    path : str or os.PathLike
-        See :func:`read_mesh`.
-    density, mass : float or Uncertain, optional
-        Exactly one of them.
-    scale : float, optional
-        Length of one unit of the coordinates, in the unit of the result. By default it is the unit of
-        the file in metres, if the file or its format states the unit, and 1 otherwise.
-    weld, index_base
-        See :func:`read_mesh`.
-    closure : {"caps", "hull"}, optional
-        How to close an open mesh, see :meth:`polhode.RigidBody.from_mesh`. By default an open mesh is an
-        error.
-    orient : bool
-        Whether to turn triangles that face inward. By default they are an error.
-    repair : bool
-        Whether to mend the mesh where there is need: weld corners, drop duplicate faces, turn faces so that
-        all are wound alike, and fill holes. ``MeshSolid.steps`` tells what was done. It takes the place of
-        `closure` and `orient`.
-    progress : callable, optional
-        A function that is called now and then with the fraction of the file that has been read.
-
-    Returns
-    -------
-    MeshSolid
-
-    Raises
-    ------
-    FileFormatError
-        If the file is not what its name says, damaged or empty.
-    MeshError
-        If the mesh does not bound a solid.
-    OSError
-        If the file cannot be read.
-    """
-    loaded = load(path, index_base=index_base)
-    warn_of_overlaps(loaded)
-    own = 1.0 if loaded.unit is None else metres_per(loaded.unit)
-    if scale is not None and scale != own and loaded.states_unit:
-        raise PolhodeError(
-            f"scale: {os.fspath(path)} says itself that its unit is {loaded.unit!r}; leave it out"
-        )
-    return solid_of(
-        loaded,
-        density=density,
-        mass=mass,
-        scale=own if scale is None else scale,
-        weld=weld,
-        closure=closure,
-        orient=orient,
-        repair=repair,
-        progress=progress,
-    )
 
 
 def solid_of(
@@ -230,12 +148,6 @@ def solid_of(
     welded = joined + corners - len(mesh.vertices)
     count = len(mesh.vertices)
     return MeshSolid(body._welded(welded), mesh.format, count, len(mesh.faces), volume, area, welded)
-
-
-def warn_of_overlaps(loaded: Loaded) -> None:
-    """Warn of solids of CAD that share matter, for a caller who sees no notes."""
-    for line in () if loaded.cad is None else loaded.cad.overlaps:
-        warnings.warn(f"{loaded.path}: {line}", stacklevel=3)
 
 
 def _joined(loaded: Loaded, mesh: Mesh, orient: bool) -> Loaded:

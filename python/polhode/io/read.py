@@ -1,4 +1,7 @@
-"""What a file of matter holds: a triangle mesh or a molecule, opened and recognised once.
+"""The one reader of bodies: every file that holds one is opened, recognised and made a body here.
+
+A file of matter holds a triangle mesh, solids of CAD or a molecule (:func:`load`). A file that is whole holds
+a saved body, a report of one, or an assembly (:func:`read_whole`). :func:`body_from_file` takes all of them.
 
 Nothing is repaired and nothing is guessed: a file is what its name says and whole, or it is an error.
 The one exception is exact: corners at bit-equal coordinates are one vertex, because STL stores each
@@ -8,9 +11,12 @@ triangle's corners anew.
 from __future__ import annotations
 
 import os
+import warnings
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO, Final
+from typing import TYPE_CHECKING, Any, BinaryIO, Final, Literal, NamedTuple
 
 import numpy as np
 
@@ -19,17 +25,44 @@ from polhode.errors import FileFormatError, PolhodeError
 from polhode.io.cad_geometry import check_occt
 from polhode.io.content import EXPECTED_CONTENT, MOLECULE_SUFFIXES, Content, is_molecule, opened, unread
 from polhode.io.mesh import Mesh, check_faces, weld, weld_within
+from polhode.io.mesh_solid import MeshSolid, naming_file, solid_of
 from polhode.io.plates import read_numbered_plates
 from polhode.io.reading import Budget, check_ordinary, naming, status_of, whole_of
+from polhode.io.saved import read_body, read_report
 from polhode.io.unpacked import inner_suffix, unpacked
 from polhode.units import METRES, metres_per
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from polhode._core import RigidBody
+    from polhode._typing import SupportsSigma
     from polhode.io.cad_files import CadFile
     from polhode.io.molecules import Molecule
+    from polhode.molecules import Isotope
+    from polhode.molecules.nuclides import Masses
 
-__all__ = ["CAD_SUFFIXES", "Loaded", "load", "read_mesh"]
+    Number = float | _core.Uncertain | SupportsSigma
 
+__all__ = [
+    "CAD_SUFFIXES",
+    "SAVED_SUFFIXES",
+    "Loaded",
+    "Whole",
+    "body_from_file",
+    "body_of_molecule",
+    "check_arguments",
+    "is_whole",
+    "load",
+    "molecule_isotopes",
+    "read_mesh",
+    "read_whole",
+    "solid_from_file",
+]
+
+SAVED_SUFFIXES: Final = (".json", ".npz")
+"""Of bodies that ``RigidBody.save`` wrote, and of reports."""
+_ASSEMBLY_SUFFIX: Final = ".toml"
 CAD_SUFFIXES: Final = (".step", ".stp", ".igs", ".iges")
 _METRE: Final = ("m", "metre", "meter")
 _OF_EXTRAS: Final = (*CAD_SUFFIXES, ".vtk", ".vtu", ".vtp")
@@ -366,3 +399,284 @@ def read_mesh(path: str | os.PathLike[str], *, index_base: int = 1, weld: float 
 
 def _is_binary_ply(content: Content, suffix: str) -> bool:
     return suffix == ".ply" and content.format == "PLY" and b"\nformat binary" in content.head
+
+
+def body_from_file(
+    path: str | os.PathLike[str],
+    *,
+    density: Number | Mapping[str, Number] | None = None,
+    mass: float | _core.Uncertain | SupportsSigma | None = None,
+    length_unit: str | None = None,
+    weld: float = 0.0,
+    closure: Literal["caps", "hull"] | None = None,
+    orient: bool = False,
+    union: bool = False,
+    repair: bool = False,
+    index_base: int = 1,
+    masses: Masses = "most_common",
+    progress: Callable[[float], object] | None = None,
+) -> RigidBody:
+    """Read the body a file describes: what ``RigidBody.from_file`` does.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        A mesh, a molecule or solids of CAD; :func:`load` lists the formats.
+    density, mass : float or Uncertain, optional
+        Exactly one of them for a mesh, neither for a molecule. CAD solids whose materials have densities need
+        neither. A mapping of names to densities gives each component of a mesh its own: by the
+        names of its parts in the file, or by numbers from 1, as ``polhode report`` lists them.
+    length_unit : str, optional
+        Unit of the coordinates (see :mod:`polhode.units`). They are converted to metres, and the masses of a
+        molecule to kilograms. Without it, coordinates are converted to metres if the file or its format
+        states their unit (STEP, IGES, DAE, 3MF, glTF, GLB). All others stay as they are, and a molecule is in
+        u and angstrom. A unit that differs from the one in the file is an error.
+    weld, closure, orient, repair, index_base
+        Of a mesh; see :func:`solid_from_file`.
+    union : bool
+        Whether to join overlapping components of a mesh, so that the common volume counts once; by manifold3d
+        (extra ``union``). The join moves corners by about 1e-12 of the size of the mesh. No error bound
+        includes this.
+    masses : {"most_common", "average"}
+        Masses of the atoms of a molecule; see :func:`polhode.molecules.isotopes`.
+    progress : callable, optional
+        A function that is called now and then with the fraction of a large mesh file that has been read. An
+        exception that it raises ends the reading.
+
+    Returns
+    -------
+    RigidBody
+
+    Warns
+    -----
+    UserWarning
+        If solids in a CAD file overlap: the message tells the mass that counts twice. Components of a mesh
+        are not searched for overlaps; ``polhode report`` does that. If bonds or fragments of a molecule cross
+        a side of the cell in its file: the moments are then those of the pieces.
+
+    Raises
+    ------
+    FileFormatError
+        If the file is not what its name says, damaged or empty.
+    MeshError
+        If the mesh does not bound a solid.
+    OSError
+        If the file cannot be read.
+    """
+    for name, value in (("density", density), ("mass", mass)):
+        _check_amount(name, value, path)
+    if length_unit is not None:
+        metres_per(length_unit)
+    if not is_molecule(Path(path)):
+        if masses != "most_common":
+            raise PolhodeError(f"masses: {os.fspath(path)} is a mesh, not a molecule; leave masses out")
+        loaded = load(path, index_base=index_base)
+        warn_of_overlaps(loaded)
+        unit = loaded.length(length_unit)
+        if isinstance(density, Mapping):
+            from polhode.io.named_densities import body_by_names
+
+            return body_by_names(
+                loaded,
+                density,
+                scale=1.0 if unit is None else metres_per(unit),
+                weld=weld,
+                orient=orient,
+                progress=progress,
+                mass=mass is not None,
+                closure=closure,
+                union=union,
+                repair=repair,
+            )
+        return solid_of(
+            loaded,
+            density=density,
+            mass=mass,
+            scale=1.0 if unit is None else metres_per(unit),
+            weld=weld,
+            closure=closure,
+            orient=orient,
+            union=union,
+            repair=repair,
+            progress=progress,
+        ).body
+    check_molecule_options(
+        path,
+        density=density is not None,
+        mass=mass is not None,
+        weld=weld != 0.0,
+        closure=closure is not None,
+        orient=orient,
+        union=union,
+        repair=repair,
+        index_base=index_base != 1,
+    )
+    body, _, crossed = body_of_molecule(path, length_unit, masses)
+    for note in crossed:
+        warnings.warn(f"{os.fspath(path)}: {note}", stacklevel=2)
+    return body
+
+
+def body_of_molecule(
+    path: str | os.PathLike[str], length_unit: str | None = None, masses: Masses = "most_common"
+) -> tuple[RigidBody, tuple[str, ...], list[str]]:
+    """Read the body of a molecule, with the notes of its file and words for what crosses its cell.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+    length_unit : str, optional
+        As in :func:`body_from_file`.
+    masses : {"most_common", "average"}
+    """
+    molecule = load(path).molecule
+    atoms = molecule_isotopes(path, molecule, masses)
+    metres, one = (1.0, 1.0) if length_unit is None else (metres_per(length_unit), ATOMIC_MASS_CONSTANT)
+    found = [isotope.mass * one for isotope in atoms]
+    with naming_file(path), np.errstate(over="ignore"):
+        at = molecule.scaled(metres)
+        body = body_of_atoms(found, at.positions, source=masses, rounding=at.rounding)
+    crossed: list[str] = []
+    if at.cell is not None:
+        in_angstrom = 1.0 if length_unit is None else 1.0 / METRES["angstrom"]
+        _, crossed = crossings_of(atoms, at.positions * in_angstrom, at.cell * in_angstrom)
+    return body, molecule.notes, crossed
+
+
+def check_molecule_options(path: str | os.PathLike[str], *, prefix: str = "", **given: bool) -> None:
+    """Refuse options that only a mesh has, where the file is a molecule.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        The molecule.
+    prefix : str
+        What stands before the name of an option where it is typed; its words are then joined by hyphens.
+    **given : bool
+        For each option of a mesh, whether it is given.
+    """
+    name = next((name for name, is_given in given.items() if is_given), None)
+    if name is None:
+        return
+    reason = "whose atoms have their own masses" if name in ("density", "mass") else "not a mesh"
+    shown = f"{prefix}{name.replace('_', '-')}" if prefix else name
+    raise PolhodeError(f"{shown}: {os.fspath(path)} is a molecule, {reason}; leave it out")
+
+
+def molecule_isotopes(
+    path: str | os.PathLike[str], molecule: Molecule, masses: Masses = "most_common"
+) -> list[Isotope]:
+    """Find the nuclides of a molecule's atoms; an error names the file.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        Where the molecule comes from.
+    molecule : Molecule
+        What was read.
+    masses : {"most_common", "average"}
+        See :func:`polhode.molecules.isotopes`.
+
+    Returns
+    -------
+    list of Isotope
+        In the order of the atoms.
+    """
+    try:
+        return isotopes(molecule.labels, masses)
+    except PolhodeError as error:
+        raise FileFormatError(f"{os.fspath(path)}: {error}") from None
+
+
+def _check_amount(name: str, value: object, path: str | os.PathLike[str]) -> None:
+    if isinstance(value, str):
+        raise TypeError(
+            f"{name}: expected a number, got {value!r}; units are read on the command line: "
+            f'polhode report {os.fspath(path)} --{name} "{value}"'
+        )
+
+
+def solid_from_file(
+    path: str | os.PathLike[str],
+    *,
+    density: Number | None = None,
+    mass: Number | None = None,
+    scale: float | None = None,
+    weld: float = 0.0,
+    closure: Literal["caps", "hull"] | None = None,
+    orient: bool = False,
+    repair: bool = False,
+    index_base: int = 1,
+    progress: Callable[[float], object] | None = None,
+) -> MeshSolid:
+    """Make a solid from the mesh in a file; errors name the file.
+
+    Binary STL and binary PLY are read block by block, so that a file may be larger than the memory. Of a PLY
+    file only the vertices are kept in memory, since faces refer to them in any order. Other formats are read
+    into memory as a whole. The same holds if corners are welded within a length, or if holes are closed.
+
+    To find duplicate faces, a file that is read in blocks is read once more for every eight million
+    triangles. A component whose faces are wound inward is a cavity if it lies inside another component. This
+    is checked for meshes of up to a quarter of a million triangles. `RigidBody.provenance` lists the checks
+    that were made.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        See :func:`read_mesh`.
+    density, mass : float or Uncertain, optional
+        Exactly one of them.
+    scale : float, optional
+        Length of one unit of the coordinates, in the unit of the result. By default it is the unit of
+        the file in metres, if the file or its format states the unit, and 1 otherwise.
+    weld, index_base
+        See :func:`read_mesh`.
+    closure : {"caps", "hull"}, optional
+        How to close an open mesh, see :meth:`polhode.RigidBody.from_mesh`. By default an open mesh is an
+        error.
+    orient : bool
+        Whether to turn triangles that face inward. By default they are an error.
+    repair : bool
+        Whether to mend the mesh where there is need: weld corners, drop duplicate faces, turn faces so that
+        all are wound alike, and fill holes. ``MeshSolid.steps`` tells what was done. It takes the place of
+        `closure` and `orient`.
+    progress : callable, optional
+        A function that is called now and then with the fraction of the file that has been read.
+
+    Returns
+    -------
+    MeshSolid
+
+    Raises
+    ------
+    FileFormatError
+        If the file is not what its name says, damaged or empty.
+    MeshError
+        If the mesh does not bound a solid.
+    OSError
+        If the file cannot be read.
+    """
+    loaded = load(path, index_base=index_base)
+    warn_of_overlaps(loaded)
+    own = 1.0 if loaded.unit is None else metres_per(loaded.unit)
+    if scale is not None and scale != own and loaded.states_unit:
+        raise PolhodeError(
+            f"scale: {os.fspath(path)} says itself that its unit is {loaded.unit!r}; leave it out"
+        )
+    return solid_of(
+        loaded,
+        density=density,
+        mass=mass,
+        scale=own if scale is None else scale,
+        weld=weld,
+        closure=closure,
+        orient=orient,
+        repair=repair,
+        progress=progress,
+    )
+
+
+def warn_of_overlaps(loaded: Loaded) -> None:
+    """Warn of solids of CAD that share matter, for a caller who sees no notes."""
+    for line in () if loaded.cad is None else loaded.cad.overlaps:
+        warnings.warn(f"{loaded.path}: {line}", stacklevel=3)

@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use crate::arrays::{Argument, floats, read, read_or, write};
 use crate::body::PyRigidBody;
 use crate::elsewhere::{handed_over, is_any};
-use crate::errors::{at_row, to_py};
+use crate::errors::{at_label, at_row, to_py};
 use crate::figure::{Outline, alone};
 use crate::interrupt::watched;
 use crate::particles::{ParticleArrays, read_labels};
@@ -163,8 +163,7 @@ impl PyRigidBody {
             Err((Some(label), error)) => {
                 let way_out = way_out_of_label(&error);
                 let error = to_py(py, &error);
-                let message = format!("label {label}: {}{way_out}", error.value(py));
-                Err(PyErr::from_type(error.get_type(py), message))
+                Err(at_label(py, label, way_out, &error))
             }
             Ok(bodies) => stack(py, vec![bodies.len()], Ok(bodies)),
         }
