@@ -33,7 +33,7 @@ class TestBodies:
         path = tmp_path / f"body{suffix}"
         body = BODIES[name]
         body.save(path)
-        again = RigidBody.load(path)
+        again = RigidBody.from_file(path)
         assert again == body
         assert again.shape == body.shape
         assert np.array_equal(again.principal.axes, body.principal.axes)
@@ -43,7 +43,7 @@ class TestBodies:
     def test_an_empty_stack(self, tmp_path: Path) -> None:
         empty = solids.box(np.ones((2, 0, 3)), mass=1.0)
         empty.save(tmp_path / "body.npz")
-        assert RigidBody.load(tmp_path / "body.npz").shape == (2, 0)
+        assert RigidBody.from_file(tmp_path / "body.npz").shape == (2, 0)
         with pytest.raises(ValueError, match=r"shape of an empty stack; save it as \.npz"):
             empty.save(tmp_path / "body.json")
 
@@ -63,7 +63,7 @@ class TestBodies:
         )
         for name in ("body.json", "body.npz"):
             brick.save(tmp_path / name)
-            again: Any = RigidBody.load(tmp_path / name)
+            again: Any = RigidBody.from_file(tmp_path / name)
             assert again == brick
             assert np.array_equal(again.covariance_with(brick), brick.covariance)
         fields = json.loads((tmp_path / "body.json").read_text("utf-8"))
@@ -72,13 +72,13 @@ class TestBodies:
         del fields["numbers"]
         (tmp_path / "spoilt.json").write_text(json.dumps(fields), "utf-8")
         with pytest.raises(FileFormatError, match="uncertainty"):
-            RigidBody.load(tmp_path / "spoilt.json")
+            RigidBody.from_file(tmp_path / "spoilt.json")
 
     def test_one_written_by_hand(self, tmp_path: Path) -> None:
         fields = {"format": "polhode.RigidBody/1", "mass": 2, "center_of_mass": [0, 0, 1]}
         path = tmp_path / "body.json"
         path.write_text(json.dumps(fields | {"inertia": np.diag([1.0, 2.0, 2.5]).tolist()}), "utf-8")
-        assert RigidBody.load(path) == RigidBody(2.0, np.diag([1.0, 2.0, 2.5]), (0, 0, 1))
+        assert RigidBody.from_file(path) == RigidBody(2.0, np.diag([1.0, 2.0, 2.5]), (0, 0, 1))
 
     @pytest.mark.parametrize(
         ("change", "message"),
@@ -96,17 +96,17 @@ class TestBodies:
         BODIES["box"].save(path)
         path.write_text(json.dumps(json.loads(path.read_text("utf-8")) | change), "utf-8")
         with pytest.raises(FileFormatError, match=message):
-            RigidBody.load(path)
+            RigidBody.from_file(path)
 
     def test_impossible_bodies_and_broken_files(self, tmp_path: Path) -> None:
         path = tmp_path / "body.json"
         fields = {"format": "polhode.RigidBody/1", "mass": 2, "center_of_mass": [0, 0, 1]}
         path.write_text(json.dumps(fields | {"inertia": np.diag([1.0, 1.0, 3.0]).tolist()}), "utf-8")
         with pytest.raises(FileFormatError, match="triangle inequality"):
-            RigidBody.load(path)
+            RigidBody.from_file(path)
         path.write_text(json.dumps(fields), "utf-8")
         with pytest.raises(FileFormatError, match="inertia is missing"):
-            RigidBody.load(path)
+            RigidBody.from_file(path)
         for name, content in (
             ("a.json", b"{"),
             ("b.json", b"\xff"),
@@ -116,8 +116,8 @@ class TestBodies:
         ):
             (tmp_path / name).write_bytes(content)
             with pytest.raises(FileFormatError, match=name):
-                RigidBody.load(tmp_path / name)
-        for act in (BODIES["box"].save, RigidBody.load):
+                RigidBody.from_file(tmp_path / name)
+        for act in (BODIES["box"].save, RigidBody.from_file):
             with pytest.raises(ValueError, match=r"does not end in \.json or \.npz"):
                 act(tmp_path / "body.csv")
 

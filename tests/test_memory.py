@@ -38,7 +38,7 @@ SIZELESS = {
     "RigidBody.from_atoms",
     "RigidBody.from_file",
     "RigidBody.from_mesh_object",
-    "RigidBody.load",
+    "RigidBody.from_file",
     "RigidBody.plot",
     "RigidBody.save",
     "RigidBody.stack",

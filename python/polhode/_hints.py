@@ -31,7 +31,7 @@ _OF_MODULES: Final = {
     "polhode": {
         "Body": "RigidBody is the class of bodies",
         "Inertia": "RigidBody is the class of bodies",
-        "load": "RigidBody.from_file reads a file, RigidBody.load what save wrote",
+        "load": "RigidBody.from_file reads a file",
         "read": "RigidBody.from_file reads a file",
         "from_file": "RigidBody.from_file reads a file",
         "simulate": "simulate is a method of a body",

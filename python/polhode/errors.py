@@ -6,7 +6,9 @@ message names the argument, the row of a stack, the bad number, the law that it 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
+
+from polhode._format import Argument, in_words
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -15,7 +17,6 @@ if TYPE_CHECKING:
     from polhode.motion.trajectory import Trajectory
 
 __all__ = [
-    "Argument",
     "FileFormatError",
     "IntegrationError",
     "InvalidInertiaError",
@@ -26,30 +27,11 @@ __all__ = [
 ]
 
 
-class Argument(NamedTuple):
-    """An argument in a message: the command line and the files of assemblies write it in their own way.
-
-    Attributes
-    ----------
-    name : str
-    value : object
-        The value to pass; None names the argument alone.
-    """
-
-    name: str
-    value: object = None
-
-    def __str__(self) -> str:
-        if self.value is None:
-            return self.name
-        return f'{self.name}="{self.value}"' if isinstance(self.value, str) else f"{self.name}={self.value}"
-
-
 class PolhodeError(ValueError):
     """Base class of the errors that polhode raises about physics and data.
 
-    Its `args` are the pieces of the message: texts, and an :class:`Argument` where an argument is named. They
-    become words when the message is printed.
+    Its `args` are the pieces of the message: texts, and objects where an argument is named. They become words
+    when the message is printed.
 
     Attributes
     ----------
@@ -57,16 +39,22 @@ class PolhodeError(ValueError):
         What is wrong, where the command line has a remedy of its own; else ``""``.
     way_out : str
         The remedy at the end of a message of the core; ``""`` where there is none.
-    row : int or None
-        Place in the flattened stack of the value at fault, where the message begins with it.
+    stack_row : int or None
+        Row of the flattened stack that is at fault, where the first piece of the message names it.
+    label : int or None
+        Label of the particles at fault, where the second piece of the message is it.
     """
 
     kind: str = ""
     way_out: str = ""
-    row: int | None = None
+    stack_row: int | None = None
+    label: int | None = None
 
     def __str__(self) -> str:
         return self.words()
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({str(self)!r})"
 
     def words(self, name: Callable[[Argument], str] = str) -> str:
         """Return the message.
@@ -76,12 +64,17 @@ class PolhodeError(ValueError):
         name : callable, optional
             A function that writes an argument; as Python does by default.
         """
-        return "".join(name(part) if isinstance(part, Argument) else str(part) for part in self.args)
+        return in_words(self.args, name)
+
+    def leave_row_out(self) -> None:
+        """Take the row out of the message, for a caller to whom it is none of a stack's."""
+        if self.stack_row is not None:
+            self.args, self.stack_row = self.args[1:], None
 
     @property
     def fault(self) -> str:
         """The message without the remedy, for a caller that has another one."""
-        return str(self).removesuffix(self.way_out).rstrip("; :")
+        return in_words(self.args[:-1] if self.way_out else self.args)
 
 
 class InvalidInertiaError(PolhodeError):
@@ -101,6 +94,18 @@ class MeshError(PolhodeError):
     """
 
     law: str = ""
+    _last: tuple[object, ...] = ()
+
+    def end_with(self, *remedy: object) -> None:
+        """Put a remedy, of pieces, in the place of the one at the end of the message."""
+        before = self.args[: -len(self._last)] if self._last else (*self.args[:-1], "; ")
+        self.args, self._last = (*before, *remedy), remedy
+        self.way_out = "".join(map(str, remedy))
+
+    def offer(self, *remedy: object) -> None:
+        """Put another remedy, of pieces, into the message, before that at its end."""
+        before = self.args[: len(self.args) - len(self._last)]
+        self.args = (*before, *remedy, "; or ", *self._last) if self._last else (*before, " (", *remedy, ")")
 
 
 class FileFormatError(PolhodeError):

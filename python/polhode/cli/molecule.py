@@ -26,9 +26,8 @@ from polhode.cli.tables import (
     trust_fields,
 )
 from polhode.errors import PolhodeError
-from polhode.io.read import molecule_isotopes
 from polhode.io.content import EXPECTED_CONTENT, MOLECULE_SUFFIXES, is_molecule, unread
-from polhode.io.read import load
+from polhode.io.read import load, molecule_isotopes
 from polhode.io.unpacked import inner_suffix
 from polhode.molecules import (
     Isotope,

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
 import numpy as np
 
 from polhode import _core
+from polhode._format import Argument
 from polhode.errors import FileFormatError, MeshError, PolhodeError
 from polhode.io.mesh import weld_within
 from polhode.io.repair import RepairStep, repaired, resolution_of, spanned_volume
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from polhode._typing import SupportsSigma
     from polhode.io.cad_files import CadFile, SolidPart
@@ -99,7 +100,12 @@ def solid_of(
     if repair:
         for name in ("closure", "orient"):
             if asked[name]:
-                raise PolhodeError(f"{name}: repair closes and orients by itself; leave one of the two out")
+                raise PolhodeError(
+                    Argument(name),
+                    ": ",
+                    Argument("repair"),
+                    " closes and orients by itself; leave one of the two out",
+                )
         with naming_file(file):
             first = _repaired_solid(loaded.mesh, density, mass, scale, weld)
             return _united(loaded, first, weld, density, mass, scale) if union else first
@@ -118,9 +124,9 @@ def solid_of(
             if file.stat().st_size <= _SMALL_FILE:
                 # Of a file that another reader refuses there is no way out to tell.
                 with suppress(FileFormatError):
-                    if error.law == "closed" and loaded.format == "binary STL":
-                        _offer_weld(error, loaded.mesh)
-                    _offer_repair(error, loaded.mesh, scale)
+                    is_welded = error.kind == "open" and loaded.format == "binary STL"
+                    is_welded = is_welded and _offer_weld(error, loaded.mesh)
+                    _offer_repair(error, loaded.mesh, scale, is_welded=is_welded)
             raise
         return MeshSolid(body, loaded.format, None, faces, volume, area, 0)
     mesh = loaded.mesh
@@ -141,9 +147,9 @@ def solid_of(
             volume = float(body.mass) / _value(density) if density is not None else float(solid(1.0).mass)
             area = _core.surface_area(vertices, mesh.faces)
     except MeshError as error:
-        _offer_weld(error, mesh)
+        is_welded = _offer_weld(error, mesh)
         if closure is None:
-            _offer_repair(error, mesh, scale)
+            _offer_repair(error, mesh, scale, is_welded=is_welded)
         raise
     welded = joined + corners - len(mesh.vertices)
     count = len(mesh.vertices)
@@ -161,7 +167,9 @@ def _joined(loaded: Loaded, mesh: Mesh, orient: bool) -> Loaded:
         if inward is not None and not orient:
             raise MeshError(
                 f"component {inward} of the mesh is inside out, and lies in no other as a cavity; reverse "
-                "the order of its vertices, or pass orient=True to turn it"
+                "the order of its vertices, or pass ",
+                Argument("orient", True),
+                " to turn it",
             )
         joined = united([(part.vertices, part.faces) for part in parts], mesh.format)
     return replace(loaded, is_stream=False, _mesh=joined)
@@ -175,7 +183,7 @@ def _cad_solid(
 
     name = next((name for name, value in asked.items() if value), None)
     if name is not None:
-        raise PolhodeError(f"{name}: {loaded.path} holds solids, not a mesh; leave it out")
+        raise PolhodeError(Argument(name), f": {loaded.path} holds solids, not a mesh; leave it out")
     with naming_file(loaded.path):
         body, parts = solids_of(cad, density, mass)
     area = sum(part.moments.area for part in cad.parts) * 1e-6
@@ -196,7 +204,9 @@ def naming_file(path: str | os.PathLike[str]) -> Iterator[None]:
     try:
         yield
     except PolhodeError as error:
-        error.args = (f"{os.fspath(path)}: {error}",)
+        if isinstance(error, MeshError):
+            _name_arguments(error)
+        error.args = (f"{os.fspath(path)}: ", *error.args)
         raise
 
 
@@ -252,54 +262,69 @@ def _united(
     )
 
 
-def _offer_repair(error: MeshError, mesh: Mesh, scale: float) -> None:
-    """Offer what mends a mesh, where it does: repair, else the convex hull."""
+def _offer_repair(error: MeshError, mesh: Mesh, scale: float, *, is_welded: bool) -> None:
+    """Offer what mends a mesh, where it does: repair, else the convex hull.
+
+    `is_welded` says that welding is offered already.
+    """
     if len(mesh.faces) > _MOST_TRIED:
         return
-    if error.law == "closed":
-        _offer_what_closes(error, mesh, scale)
+    if error.kind == "open":
+        _end_open(error, _serving(mesh, scale))
     try:
         steps = _repaired_solid(mesh, 1.0, None, scale, 0.0).steps
     except (MeshError, ValueError):
         with suppress(MeshError, ValueError, ModuleNotFoundError):
             _core.RigidBody.from_mesh(mesh.vertices * scale, mesh.faces, density=1.0, closure="hull")
-            if error.law != "closed":  # of an open mesh the message offers it
-                error.offer('closure="hull" takes the convex hull instead')
+            if error.kind != "open":  # of an open mesh the message offers it
+                error.offer(Argument("closure", "hull"), " takes the convex hull instead")
         return
     change = sum(step.change for step in steps)
-    if [step.name for step in steps] == ["weld"] and "weld=" in str(error):
-        return  # which is offered by itself
-    if steps:
+    if steps and not (is_welded and [step.name for step in steps] == ["weld"]):
         names = ", ".join(dict.fromkeys(step.name for step in steps))
-        error.offer(f"repair=True mends it ({names}; volume changed by {change:.2g} %)")
+        error.offer(Argument("repair", True), f" mends it ({names}; volume changed by {change:.2g} %)")
 
 
-def _offer_what_closes(error: MeshError, mesh: Mesh, scale: float) -> None:
-    """Take the closures out of the message that leave no solid."""
+def _name_arguments(error: MeshError) -> None:
+    """Name the arguments in the remedy with which a message of the core ends."""
+    if any(isinstance(piece, Argument) for piece in error.args):
+        return
+    if error.kind == "open":
+        _end_open(error, _CLOSURES)
+    elif error.kind in ("inverted", "inside out"):
+        turned = " to turn them all" if error.kind == "inverted" else " to turn them"
+        error.args = (*error.args[:-1], ", or pass ", Argument("orient", True), turned)
+
+
+def _end_open(error: MeshError, closures: Sequence[str]) -> None:
+    close = ("close the mesh (", Argument("closure", tuple(closures)), "), or ") if closures else ()
+    error.end_with(*close, "model a thin shell instead")
+
+
+def _serving(mesh: Mesh, scale: float) -> list[str]:
+    """Find the closures that leave a solid."""
     serving = []
     for closure in _CLOSURES:
         with suppress(MeshError, ValueError):
             with suppress(ModuleNotFoundError):  # whether it would serve is not known
                 _core.RigidBody.from_mesh(mesh.vertices * scale, mesh.faces, density=1.0, closure=closure)
-            serving.append(f'"{closure}"')
-    if len(serving) < len(_CLOSURES):
-        every = 'close the mesh (closure="caps" or "hull"), or '
-        left = f"close the mesh (closure={serving[0]}), or " if serving else ""
-        error.args = (str(error).replace(every, left),)
-        error.way_out = error.way_out.replace(every, left)
+            serving.append(closure)
+    return serving
 
 
-def _offer_weld(error: MeshError, mesh: Mesh) -> None:
+def _offer_weld(error: MeshError, mesh: Mesh) -> bool:
     """Offer to weld, as the first way out, where corners are closer than 32-bit coordinates resolve."""
     in_range = not mesh.faces.size or (mesh.faces.min() >= 0 and mesh.faces.max() < len(mesh.vertices))
     resolution = resolution_of(mesh)
     if not (resolution > 0.0 and in_range):
-        return
+        return False
     try:
         near = len(mesh.vertices) - len(weld_within(mesh, resolution).vertices)
     except ValueError:
-        return
+        return False
     if near == 0:
-        return
+        return False
     lie, them = ("corner lies", "it") if near == 1 else ("corners lie", "them")
-    error.offer(f"{near} {lie} within {resolution:g} of another, weld={resolution:g} joins {them}")
+    weld = Argument("weld", float(f"{resolution:g}"))
+    error.offer(f"{near} {lie} within {resolution:g} of another, ", weld, f" joins {them}")
+    return True

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Final, Literal, NamedTuple
 import numpy as np
 
 from polhode import _core
+from polhode._format import Argument
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.io.cad_geometry import check_occt
 from polhode.io.content import EXPECTED_CONTENT, MOLECULE_SUFFIXES, Content, is_molecule, opened, unread
@@ -33,7 +34,7 @@ from polhode.io.unpacked import inner_suffix, unpacked
 from polhode.units import METRES, metres_per
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from polhode._core import RigidBody
     from polhode._typing import SupportsSigma
@@ -63,6 +64,8 @@ __all__ = [
 SAVED_SUFFIXES: Final = (".json", ".npz")
 """Of bodies that ``RigidBody.save`` wrote, and of reports."""
 _ASSEMBLY_SUFFIX: Final = ".toml"
+_OF_MESHES: Final = ("density", "mass", "weld", "closure", "orient", "union", "repair", "index_base")
+_OF_MOLECULES: Final = ("masses", "bond_sigma", "mass_sigmas")
 CAD_SUFFIXES: Final = (".step", ".stp", ".igs", ".iges")
 _METRE: Final = ("m", "metre", "meter")
 _OF_EXTRAS: Final = (*CAD_SUFFIXES, ".vtk", ".vtu", ".vtp")
@@ -160,8 +163,10 @@ class Loaded:
         metres_per(length_unit)
         if self.states_unit and length_unit != self.unit:
             raise PolhodeError(
-                f"length_unit: {self.path} says itself that its unit is {self.unit!r}, not {length_unit!r}; "
-                "leave length_unit out, or export the file in the right unit"
+                Argument("length_unit"),
+                f": {self.path} says itself that its unit is {self.unit!r}, not {length_unit!r}; leave ",
+                Argument("length_unit"),
+                " out, or export the file in the right unit",
             )
         return length_unit
 
@@ -223,9 +228,11 @@ def load(path: str | os.PathLike[str], *, index_base: int = 1) -> Loaded:
     file = Path(path)
     suffix = inner_suffix(file)
     if index_base not in (0, 1):
-        raise ValueError(f"index_base: expected 0 or 1, got {index_base!r}")
+        raise PolhodeError(Argument("index_base"), f": expected 0 or 1, got {index_base!r}")
     if index_base != 1 and suffix not in _TEXT_SUFFIXES:
-        raise ValueError(f"index_base: {file} is not v/f text (.obj, .tab, .txt); leave index_base out")
+        raise PolhodeError(
+            Argument("index_base"), f": {file} is not v/f text (.obj, .tab, .txt); leave it out"
+        )
     if suffix in CAD_SUFFIXES:
         check_occt(f"{file}: reading CAD files (STEP, IGES)")  # told of any such name
     if file.suffix.lower() == ".gz" and suffix not in EXPECTED_CONTENT:
@@ -416,91 +423,16 @@ def body_from_file(
     masses: Masses = "most_common",
     progress: Callable[[float], object] | None = None,
 ) -> RigidBody:
-    """Read the body a file describes: what ``RigidBody.from_file`` does.
+    """Read the body that a file holds: what ``RigidBody.from_file`` does, with its parameters.
 
-    Parameters
-    ----------
-    path : str or os.PathLike
-        A mesh, a molecule or solids of CAD; :func:`load` lists the formats.
-    density, mass : float or Uncertain, optional
-        Exactly one of them for a mesh, neither for a molecule. CAD solids whose materials have densities need
-        neither. A mapping of names to densities gives each component of a mesh its own: by the
-        names of its parts in the file, or by numbers from 1, as ``polhode report`` lists them.
-    length_unit : str, optional
-        Unit of the coordinates (see :mod:`polhode.units`). They are converted to metres, and the masses of a
-        molecule to kilograms. Without it, coordinates are converted to metres if the file or its format
-        states their unit (STEP, IGES, DAE, 3MF, glTF, GLB). All others stay as they are, and a molecule is in
-        u and angstrom. A unit that differs from the one in the file is an error.
-    weld, closure, orient, repair, index_base
-        Of a mesh; see :func:`solid_from_file`.
-    union : bool
-        Whether to join overlapping components of a mesh, so that the common volume counts once; by manifold3d
-        (extra ``union``). The join moves corners by about 1e-12 of the size of the mesh. No error bound
-        includes this.
-    masses : {"most_common", "average"}
-        Masses of the atoms of a molecule; see :func:`polhode.molecules.isotopes`.
-    progress : callable, optional
-        A function that is called now and then with the fraction of a large mesh file that has been read. An
-        exception that it raises ends the reading.
-
-    Returns
-    -------
-    RigidBody
-
-    Warns
-    -----
-    UserWarning
-        If solids in a CAD file overlap: the message tells the mass that counts twice. Components of a mesh
-        are not searched for overlaps; ``polhode report`` does that. If bonds or fragments of a molecule cross
-        a side of the cell in its file: the moments are then those of the pieces.
-
-    Raises
-    ------
-    FileFormatError
-        If the file is not what its name says, damaged or empty.
-    MeshError
-        If the mesh does not bound a solid.
-    OSError
-        If the file cannot be read.
+    The compiled library calls it. Components of a mesh are not searched for overlaps; ``polhode report`` does
+    that.
     """
     for name, value in (("density", density), ("mass", mass)):
         _check_amount(name, value, path)
     if length_unit is not None:
         metres_per(length_unit)
-    if not is_molecule(Path(path)):
-        if masses != "most_common":
-            raise PolhodeError(f"masses: {os.fspath(path)} is a mesh, not a molecule; leave masses out")
-        loaded = load(path, index_base=index_base)
-        warn_of_overlaps(loaded)
-        unit = loaded.length(length_unit)
-        if isinstance(density, Mapping):
-            from polhode.io.named_densities import body_by_names
-
-            return body_by_names(
-                loaded,
-                density,
-                scale=1.0 if unit is None else metres_per(unit),
-                weld=weld,
-                orient=orient,
-                progress=progress,
-                mass=mass is not None,
-                closure=closure,
-                union=union,
-                repair=repair,
-            )
-        return solid_of(
-            loaded,
-            density=density,
-            mass=mass,
-            scale=1.0 if unit is None else metres_per(unit),
-            weld=weld,
-            closure=closure,
-            orient=orient,
-            union=union,
-            repair=repair,
-            progress=progress,
-        ).body
-    check_molecule_options(
+    check_arguments(
         path,
         density=density is not None,
         mass=mass is not None,
@@ -510,11 +442,137 @@ def body_from_file(
         union=union,
         repair=repair,
         index_base=index_base != 1,
+        masses=masses != "most_common",
+        length_unit=length_unit is not None,
     )
-    body, _, crossed = body_of_molecule(path, length_unit, masses)
-    for note in crossed:
-        warnings.warn(f"{os.fspath(path)}: {note}", stacklevel=2)
-    return body
+    if is_whole(path):
+        whole = read_whole(path, length_unit)
+        _warn(path, whole.overlaps)
+        return whole.body
+    if is_molecule(Path(path)):
+        body, _, crossed = body_of_molecule(path, length_unit, masses)
+        _warn(path, crossed)
+        return body
+    loaded = load(path, index_base=index_base)
+    _warn(path, () if loaded.cad is None else loaded.cad.overlaps)
+    unit = loaded.length(length_unit)
+    scale = 1.0 if unit is None else metres_per(unit)
+    if isinstance(density, Mapping):
+        from polhode.io.named_densities import body_by_names
+
+        return body_by_names(
+            loaded,
+            density,
+            scale=scale,
+            weld=weld,
+            orient=orient,
+            progress=progress,
+            mass=mass is not None,
+            closure=closure,
+            union=union,
+            repair=repair,
+        )
+    return solid_of(
+        loaded,
+        density=density,
+        mass=mass,
+        scale=scale,
+        weld=weld,
+        closure=closure,
+        orient=orient,
+        union=union,
+        repair=repair,
+        progress=progress,
+    ).body
+
+
+class Whole(NamedTuple):
+    """A body that a file holds whole.
+
+    Attributes
+    ----------
+    body : RigidBody
+        One, or a stack that was saved.
+    kind : str
+        ``"saved body"``, ``"report"`` or ``"assembly"``.
+    has_units : bool
+        Whether it is in kg and m; a saved body is in units that its file does not state.
+    notes : tuple of str
+        What is to be told of the parts of an assembly.
+    overlaps : tuple of str
+        Those of them that tell of parts that share matter.
+    """
+
+    body: RigidBody
+    kind: str
+    has_units: bool
+    notes: tuple[str, ...] = ()
+    overlaps: tuple[str, ...] = ()
+
+
+def is_whole(path: str | os.PathLike[str]) -> bool:
+    """Whether a file holds a body that needs no shape, by its name."""
+    return Path(path).suffix.lower() in (*SAVED_SUFFIXES, _ASSEMBLY_SUFFIX)
+
+
+def read_whole(path: str | os.PathLike[str], length_unit: str | None = None) -> Whole:
+    """Read a saved body, a report of one, or an assembly.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+    length_unit : str, optional
+        Unit of length of a saved body, which is then converted to metres.
+    """
+    file = Path(path)
+    if file.suffix.lower() == _ASSEMBLY_SUFFIX:
+        # By its name: an assembly reads files itself, so that its room stands on this one.
+        made: Any = import_module("polhode.assembly").read(file)
+        overlaps = import_module("polhode.assembly.overlaps").overlap_notes(made.overlaps)
+        return Whole(made.body, "assembly", True, made.notes, (*overlaps,))
+    body = read_report(file)
+    if body is not None:
+        if length_unit is not None:
+            raise PolhodeError(Argument("length_unit"), f": {file} is a report, in kg and m; leave it out")
+        return Whole(body, "report", True)
+    body = read_body(file)
+    if length_unit is None:
+        return Whole(body, "saved body", False)
+    return Whole(body.scaled(length=metres_per(length_unit)), "saved body", True)
+
+
+def check_arguments(path: str | os.PathLike[str], **given: bool) -> None:
+    """Refuse arguments that a file of this kind, by its name, cannot use.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+    **given : bool
+        For each argument, whether it is given.
+    """
+    file = Path(path)
+    suffix = file.suffix.lower()
+    unused: tuple[str, ...] = (*_OF_MESHES, *_OF_MOLECULES)
+    if suffix == _ASSEMBLY_SUFFIX:
+        what, unused = "an assembly, whose parts state theirs", (*unused, "length_unit")
+    elif suffix in SAVED_SUFFIXES:
+        what = "a saved body, whole as it is"
+    elif is_molecule(file):
+        what, unused = "a molecule, not a mesh", _OF_MESHES
+    else:
+        what, unused = "a mesh, not a molecule", _OF_MOLECULES
+    name = next((name for name, is_given in given.items() if is_given and name in unused), None)
+    if name is None:
+        return
+    if unused == _OF_MESHES and name in ("density", "mass"):
+        what = "a molecule, whose atoms have their own masses"
+    raise PolhodeError(Argument(name), f": {os.fspath(path)} is {what}; leave it out")
+
+
+def _warn(path: str | os.PathLike[str], lines: Iterable[str]) -> None:
+    """Warn a caller who sees no notes."""
+    for line in lines:
+        warnings.warn(f"{os.fspath(path)}: {line}", stacklevel=3)
 
 
 def body_of_molecule(
@@ -529,6 +587,9 @@ def body_of_molecule(
         As in :func:`body_from_file`.
     masses : {"most_common", "average"}
     """
+    from polhode.molecules import ATOMIC_MASS_CONSTANT, body_of_atoms
+    from polhode.molecules.bonding import crossings_of
+
     molecule = load(path).molecule
     atoms = molecule_isotopes(path, molecule, masses)
     metres, one = (1.0, 1.0) if length_unit is None else (metres_per(length_unit), ATOMIC_MASS_CONSTANT)
@@ -541,26 +602,6 @@ def body_of_molecule(
         in_angstrom = 1.0 if length_unit is None else 1.0 / METRES["angstrom"]
         _, crossed = crossings_of(atoms, at.positions * in_angstrom, at.cell * in_angstrom)
     return body, molecule.notes, crossed
-
-
-def check_molecule_options(path: str | os.PathLike[str], *, prefix: str = "", **given: bool) -> None:
-    """Refuse options that only a mesh has, where the file is a molecule.
-
-    Parameters
-    ----------
-    path : str or os.PathLike
-        The molecule.
-    prefix : str
-        What stands before the name of an option where it is typed; its words are then joined by hyphens.
-    **given : bool
-        For each option of a mesh, whether it is given.
-    """
-    name = next((name for name, is_given in given.items() if is_given), None)
-    if name is None:
-        return
-    reason = "whose atoms have their own masses" if name in ("density", "mass") else "not a mesh"
-    shown = f"{prefix}{name.replace('_', '-')}" if prefix else name
-    raise PolhodeError(f"{shown}: {os.fspath(path)} is a molecule, {reason}; leave it out")
 
 
 def molecule_isotopes(
@@ -582,6 +623,8 @@ def molecule_isotopes(
     list of Isotope
         In the order of the atoms.
     """
+    from polhode.molecules import isotopes
+
     try:
         return isotopes(molecule.labels, masses)
     except PolhodeError as error:
@@ -657,7 +700,7 @@ def solid_from_file(
         If the file cannot be read.
     """
     loaded = load(path, index_base=index_base)
-    warn_of_overlaps(loaded)
+    _warn(path, () if loaded.cad is None else loaded.cad.overlaps)
     own = 1.0 if loaded.unit is None else metres_per(loaded.unit)
     if scale is not None and scale != own and loaded.states_unit:
         raise PolhodeError(
@@ -674,9 +717,3 @@ def solid_from_file(
         repair=repair,
         progress=progress,
     )
-
-
-def warn_of_overlaps(loaded: Loaded) -> None:
-    """Warn of solids of CAD that share matter, for a caller who sees no notes."""
-    for line in () if loaded.cad is None else loaded.cad.overlaps:
-        warnings.warn(f"{loaded.path}: {line}", stacklevel=3)

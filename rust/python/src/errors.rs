@@ -54,7 +54,8 @@ fn kind(error: &Error) -> &'static str {
         Error::Mesh(MeshFault::InsideOut { .. }) => "inside out",
         Error::File(FileFault::IndexZero { .. }) => "index zero",
         Error::Body(fault @ BodyFault::TriangleInequality { .. }) if is_rounded(fault) => "rounded",
-        Error::Body(BodyFault::TriangleInequality { .. }) => "impossible",
+        Error::Body(BodyFault::TriangleInequality { is_given: true, .. }) => "impossible",
+        Error::Body(BodyFault::TriangleInequality { .. }) => "impossible matter",
         Error::Body(BodyFault::NotASymmetricTop { gap, .. }) if *gap <= NEARLY_EQUAL => {
             "nearly symmetric"
         }
@@ -121,7 +122,7 @@ pub(crate) fn at_row(shape: &[usize], row: usize, error: &PyErr, py: Python<'_>)
     };
     let raised = with_prefix(py, &format!("row {named}"), error);
     if let Ok(true) = raised.value(py).hasattr("way_out")
-        && let Err(error) = raised.value(py).setattr("row", row)
+        && let Err(error) = raised.value(py).setattr("stack_row", row)
     {
         return error;
     }
