@@ -12,8 +12,8 @@ from polhode.errors import PolhodeError
 from polhode.interop.printouts import from_printout
 from polhode.io.components import MOST_FACES, overlapping
 from polhode.io.content import is_molecule
+from polhode.io.loaded import SAVED_SUFFIXES, body_of_molecule, check_arguments, load, read_saved
 from polhode.io.mesh_solid import solid_of
-from polhode.io.read import SAVED_SUFFIXES, body_of_molecule, check_arguments, load, read_whole
 from polhode.io.reading import words_of
 from polhode.units import metres_per
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from polhode._core import RigidBody
     from polhode._format import Argument
     from polhode.assembly.tables import Scope
-    from polhode.io.read import Loaded
+    from polhode.io.loaded import Loaded
 
 __all__ = ["Matter", "body_of_part", "kind_of"]
 
@@ -197,7 +197,7 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
             raise PartError(
                 f"{scope.where}: {surplus}: {path.name} is a saved body, whole as it is; leave it out"
             )
-        body = read_whole(path).body
+        body = read_saved(path).body
         if body.shape:
             raise PartError(
                 f"{scope.where}: {path.name} holds a stack of bodies, of shape {body.shape}, not one; "

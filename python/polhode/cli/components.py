@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
     from polhode.cli.layout import Report
     from polhode.cli.options import BodyOptions
+    from polhode.io.loaded import Loaded
     from polhode.io.mesh_solid import MeshSolid
-    from polhode.io.read import Loaded
 
 __all__ = ["Components", "add_components", "components_of", "has_names", "overlaps_beside", "weighed"]
 

@@ -12,9 +12,9 @@ from polhode.cli.files import as_file
 from polhode.cli.terminal import reading_progress
 from polhode.errors import PolhodeError
 from polhode.io.content import is_molecule
+from polhode.io.loaded import check_arguments, load, molecule_isotopes
 from polhode.io.mesh import weld_within
 from polhode.io.mesh_solid import MeshSolid, solid_of
-from polhode.io.read import check_arguments, load, molecule_isotopes
 from polhode.molecules.bonding import crossings_of
 from polhode.units import METRES, amount, has_unit, metres_per, quantity
 
@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from polhode import RigidBody, Uncertain
     from polhode.cli.atoms import Atoms
     from polhode.cli.options import BodyOptions, LengthUnit
+    from polhode.io.loaded import Loaded
     from polhode.io.mesh import Mesh
     from polhode.io.molecules import Molecule
-    from polhode.io.read import Loaded
     from polhode.molecules import CellCrossings, Isotope
     from polhode.molecules.nuclides import Masses
 

@@ -17,10 +17,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from polhode.io.loaded import Loaded, load, read_mesh, solid_from_file
     from polhode.io.mesh import Mesh
     from polhode.io.mesh_solid import MeshSolid
     from polhode.io.molecules import Molecule, read_xyz
-    from polhode.io.read import Loaded, load, read_mesh, solid_from_file
     from polhode.io.saved import BODY_SCHEMA, TRAJECTORY_SCHEMA
 else:
 
@@ -40,15 +40,15 @@ else:
 
 _HOMES = {
     "BODY_SCHEMA": "saved",
-    "Loaded": "read",
+    "Loaded": "loaded",
     "Mesh": "mesh",
     "MeshSolid": "mesh_solid",
     "Molecule": "molecules",
     "TRAJECTORY_SCHEMA": "saved",
-    "load": "read",
-    "read_mesh": "read",
+    "load": "loaded",
+    "read_mesh": "loaded",
     "read_xyz": "molecules",
-    "solid_from_file": "read",
+    "solid_from_file": "loaded",
 }
 """In which file of this room each public name stands."""
 

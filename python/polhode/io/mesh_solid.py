@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
     from polhode._typing import SupportsSigma
     from polhode.io.cad_files import CadFile, SolidPart
+    from polhode.io.loaded import Loaded
     from polhode.io.mesh import Mesh
-    from polhode.io.read import Loaded
 
     Number = float | _core.Uncertain | SupportsSigma
 

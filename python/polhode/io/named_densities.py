@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from polhode._typing import SupportsSigma
     from polhode.io.components import Part
-    from polhode.io.read import Loaded
+    from polhode.io.loaded import Loaded
 
     Number = float | _core.Uncertain | SupportsSigma
 

@@ -11,8 +11,8 @@ from polhode import RigidBody, solids
 from polhode._format import Note
 from polhode.errors import PolhodeError
 from polhode.io.components import overlapping
+from polhode.io.loaded import load
 from polhode.io.mesh import Mesh, equal_rows, used_vertices
-from polhode.io.read import load
 from polhode.robots.mjcf import legacy_solid
 from polhode.robots.model import quoted, shortened
 from polhode.robots.room import MARKER
