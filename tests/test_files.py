@@ -117,9 +117,11 @@ class TestBodies:
             (tmp_path / name).write_bytes(content)
             with pytest.raises(FileFormatError, match=name):
                 RigidBody.from_file(tmp_path / name)
-        for act in (BODIES["box"].save, RigidBody.from_file):
-            with pytest.raises(ValueError, match=r"does not end in \.json or \.npz"):
-                act(tmp_path / "body.csv")
+        with pytest.raises(ValueError, match=r"does not end in \.json or \.npz"):
+            BODIES["box"].save(tmp_path / "body.csv")
+        (tmp_path / "body.csv").write_text("mass\n1\n", "utf-8")
+        with pytest.raises(FileFormatError, match=r"files named \.csv are not read"):
+            RigidBody.from_file(tmp_path / "body.csv")
 
 
 @pytest.fixture(params=["one", "stack"])

@@ -38,7 +38,6 @@ SIZELESS = {
     "RigidBody.from_atoms",
     "RigidBody.from_file",
     "RigidBody.from_mesh_object",
-    "RigidBody.from_file",
     "RigidBody.plot",
     "RigidBody.save",
     "RigidBody.stack",
