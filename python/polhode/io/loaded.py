@@ -225,9 +225,8 @@ def load(path: str | os.PathLike[str], *, index_base: int = 1) -> Loaded:
     if index_base not in (0, 1):
         raise PolhodeError(Argument("index_base"), f": expected 0 or 1, got {index_base!r}")
     if index_base != 1 and suffix not in _TEXT_SUFFIXES:
-        raise PolhodeError(
-            Argument("index_base"), f": {file} is not v/f text (.obj, .tab, .txt); leave it out"
-        )
+        base = Argument("index_base")
+        raise PolhodeError(base, f": {file} is not v/f text (.obj, .tab, .txt); leave ", base, " out")
     if suffix in CAD_SUFFIXES:
         check_occt(f"{file}: reading CAD files (STEP, IGES)")  # told of any such name
     if file.suffix.lower() == ".gz" and suffix not in EXPECTED_CONTENT:

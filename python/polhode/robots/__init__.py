@@ -164,7 +164,7 @@ def parse_robot(
     try:
         links = tuple(reader.links(root, sources))
     except ValueError as error:
-        raise FileFormatError(f"{name}: {error}") from None
+        raise FileFormatError(f"{name}: ", *error.args) from None
     if not links:
         if format_name == "MJCF" and any(root.all("body")):
             raise FileFormatError(

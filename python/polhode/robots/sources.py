@@ -111,7 +111,7 @@ class Sources:
                 source, str(path), file=address, above=at.depth, budget=self.budget, remarks=self.notes
             )
         except FileFormatError as error:
-            raise FileFormatError(f"{at.where}: {error}") from None
+            raise FileFormatError(f"{at.where}: ", *error.args) from None
 
     def count_copies(self, number: int, at: Element) -> None:
         """Count copies of elements, so that a small file does not become a boundless one."""
