@@ -30,7 +30,7 @@ else:
 
         home = _HOMES.get(name)
         if home is None:
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+            raise no_name(__name__, name, __all__)
         value = globals()[name] = getattr(import_module(f"{__name__}.{home}"), name)
         return value
 

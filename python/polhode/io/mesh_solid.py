@@ -303,7 +303,7 @@ def _end_open(error: MeshError, closures: Sequence[str]) -> None:
 
 def _serving(mesh: Mesh, scale: float) -> list[str]:
     """Find the closures that leave a solid."""
-    serving = []
+    serving: list[str] = []
     for closure in _CLOSURES:
         with suppress(MeshError, ValueError):
             with suppress(ModuleNotFoundError):  # whether it would serve is not known
