@@ -272,7 +272,10 @@ def test_the_limits_of_pictures_hold(tmp_path: Path) -> None:
 
 
 GUESSES = {
-    "give more digits": ({"cli/terminal.py"}, "test_a_tolerance_is_named_where_rounding_may_have_broken_the_law"),
+    "give more digits": (
+        {"cli/terminal.py"},
+        "test_a_tolerance_is_named_where_rounding_may_have_broken_the_law",
+    ),
     "check the path": (
         {
             "cli/outputs.py",

@@ -30,6 +30,8 @@ else:
 
         home = _HOMES.get(name)
         if home is None:
+            from polhode._hints import no_name
+
             raise no_name(__name__, name, __all__)
         value = globals()[name] = getattr(import_module(f"{__name__}.{home}"), name)
         return value
