@@ -284,3 +284,41 @@ class TestOtherLibraries:
         for _ in range(2):
             assert RigidBody.from_atoms(water).mass == pytest.approx(18.0105647, abs=1e-6)
             water.UpdatePropertyCache(strict=False)  # valences without bonds, which nobody stated
+
+
+class TestAnyBody:
+    """``RigidBody.from_file`` reads every file that holds a body, and refuses what it cannot use."""
+
+    def test_an_assembly_and_a_report(self, tmp_path: Path) -> None:
+        rows = '[[part]]\nname = "a"\nsolid = "sphere"\nradius = 2\nmass = 3\n'
+        (tmp_path / "a.toml").write_text(rows + rows.replace('"a"', '"b"'), "utf-8")
+        with pytest.warns(UserWarning, match=r"a\.toml: part b is the same as a, at the same place"):
+            whole = RigidBody.from_file(tmp_path / "a.toml")
+        assert whole.mass == 6.0
+        report = {
+            "units": {"mass": "kg", "center_of_mass": "m"},
+            "mass": 2.0,
+            "center_of_mass": [0, 0, 1],
+            "inertia_about_center_of_mass": [[1, 0, 0], [0, 2, 0], [0, 0, 2.5]],
+        }
+        (tmp_path / "r.json").write_text(json.dumps(report), "utf-8")
+        expected = RigidBody(2.0, np.diag([1.0, 2.0, 2.5]), (0, 0, 1))
+        assert RigidBody.from_file(tmp_path / "r.json") == expected
+        with pytest.raises(ValueError, match=r"length_unit: .* is a report, in kg and m; leave it out"):
+            RigidBody.from_file(tmp_path / "r.json", length_unit="mm")
+
+    def test_a_saved_body_in_a_unit(self, tmp_path: Path) -> None:
+        BODIES["box"].save(tmp_path / "b.json")
+        found = RigidBody.from_file(tmp_path / "b.json", length_unit="mm")
+        assert found == BODIES["box"].scaled(length=1e-3)
+
+    @pytest.mark.parametrize(
+        "name", ["density", "mass", "weld", "closure", "orient", "union", "repair", "index_base", "masses"]
+    )
+    def test_what_a_saved_body_cannot_use_is_refused_by_name(self, name: str, tmp_path: Path) -> None:
+        given: dict[str, Any] = {"closure": "caps", "masses": "average", "weld": 1e-3, "index_base": 0}
+        BODIES["box"].save(tmp_path / "b.npz")
+        with pytest.raises(PolhodeError, match=f"^{name}: .* is a saved body, whole as it is; leave it out"):
+            RigidBody.from_file(
+                tmp_path / "b.npz", **{name: given.get(name, name not in ("density", "mass") or 1.0)}
+            )

@@ -7,8 +7,7 @@ use polhode::Error;
 use polhode::error::{BodyFault, FileFault, MeshFault, MotionFault};
 
 /// The way out of an open mesh, with which its message ends.
-const CLOSE: &str =
-    "close the mesh (closure=\"caps\" or \"hull\"), or model a thin shell instead";
+const CLOSE: &str = "close the mesh (closure=\"caps\" or \"hull\"), or model a thin shell instead";
 
 /// What else can be done with a tensor that no body has.
 const NEAREST: &str = " (validity.nearest_valid finds the nearest tensor that a body has)";

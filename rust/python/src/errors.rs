@@ -132,7 +132,10 @@ pub(crate) fn at_row(shape: &[usize], row: usize, error: &PyErr, py: Python<'_>)
 /// The same exception with the label of particles in front, a piece of its own, and a remedy behind.
 pub(crate) fn at_label(py: Python<'_>, label: usize, remedy: &str, error: &PyErr) -> PyErr {
     let words = error.value(py);
-    let raised = PyErr::from_type(error.get_type(py), format!("label {label}: {words}{remedy}"));
+    let raised = PyErr::from_type(
+        error.get_type(py),
+        format!("label {label}: {words}{remedy}"),
+    );
     let value = raised.value(py);
     let told = match value.hasattr("way_out") {
         Ok(true) => (value.setattr("args", ("label ", label, format!(": {words}{remedy}"))))
