@@ -1,18 +1,22 @@
-"""How numbers and results print: beside their sigmas, as limits, and as one-line reprs."""
+"""How numbers, results and messages print: sigmas, limits, one-line reprs, and messages of pieces."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Iterable, Mapping
+    from typing import Self
 
 __all__ = [
+    "Argument",
+    "Note",
     "at_least",
     "at_most",
+    "in_words",
     "one_line",
     "short",
     "with_sigma",
@@ -120,3 +124,70 @@ def at_most(number: float, digits: int = 3) -> str:
         unit = 10.0 ** (math.floor(math.log10(number)) - digits + 1)
         text = f"{number - unit:.{digits}g}"
     return text
+
+
+class Argument(NamedTuple):
+    """An argument in a message: the command line and the files of assemblies write it in their own way.
+
+    Attributes
+    ----------
+    name : str
+    value : object
+        The value to pass, or a tuple to choose from; None names the argument alone.
+    """
+
+    name: str
+    value: object = None
+
+    def __str__(self) -> str:
+        if self.value is None:
+            return self.name
+        values = [f'"{value}"' if isinstance(value, str) else str(value) for value in self.values]
+        return f"{self.name}={' or '.join(values)}"
+
+    @property
+    def values(self) -> tuple[object, ...]:
+        """The values to choose from."""
+        return self.value if isinstance(self.value, tuple) else (self.value,)
+
+
+class Note(str):
+    """A remark: words for who reads it, and as data what it tells.
+
+    Parameters
+    ----------
+    *pieces
+        Texts, objects of :class:`Argument`, and other notes.
+    kind : str
+        What was found, for who gathers such notes.
+    subject : str
+        Of what it was found.
+    """
+
+    pieces: tuple[object, ...]
+    kind: str
+    subject: str
+
+    def __new__(cls, *pieces: object, kind: str = "", subject: str = "") -> Self:
+        """Join the pieces."""
+        note = super().__new__(cls, in_words(pieces))
+        note.pieces, note.kind, note.subject = pieces, kind, subject
+        return note
+
+    @classmethod
+    def after(cls, prefix: str, note: str) -> Self:
+        """Return a note, or one of words alone, with a prefix."""
+        if isinstance(note, Note):
+            return cls(prefix, note, kind=note.kind, subject=note.subject)
+        return cls(prefix, note)
+
+
+def in_words(pieces: Iterable[object], name: Callable[[Argument], str] = str) -> str:
+    """Join the pieces of a message, its arguments as `name` writes them."""
+    words = []
+    for piece in pieces:
+        if isinstance(piece, Note):
+            words.append(in_words(piece.pieces, name))
+        else:
+            words.append(name(piece) if isinstance(piece, Argument) else str(piece))
+    return "".join(words)

@@ -35,7 +35,7 @@ _OF_MODULES: Final = {
     "polhode": {
         "Body": "RigidBody is the class of bodies",
         "Inertia": "RigidBody is the class of bodies",
-        "load": "RigidBody.from_file reads a file, RigidBody.load what save wrote",
+        "load": "RigidBody.from_file reads a file",
         "read": "RigidBody.from_file reads a file",
         "from_file": "RigidBody.from_file reads a file",
         "simulate": "simulate is a method of a body",
@@ -50,6 +50,14 @@ _OF_MODULES: Final = {
         **dict.fromkeys(
             ("uncertain", "ufloat", "measurement"), "Uncertain(value, sigma) is a number with its sigma"
         ),
+    },
+    "polhode.io": {
+        "load_body": "RigidBody.from_file(path) reads one",
+        "load_trajectory": "Trajectory.from_file(path) reads one",
+        "save_body": "RigidBody.save(path) writes one",
+        "save_trajectory_json": "Trajectory.save(path) writes one",
+        "save_trajectory_npz": "Trajectory.save(path) writes one",
+        "body_from_file": "RigidBody.from_file(path) reads one",
     },
     "polhode.loads": {
         "torque": 'constant_torque((0, 0, 1), "body") is one, torque_callback(f) takes a function',
@@ -194,6 +202,7 @@ _OF_CLASSES: Final = {
         "t": "at(t) is the motion at these times; the start is 0",
     },
     "RigidBody": {
+        "load": "RigidBody.from_file(path) reads every file that holds a body",
         "energy": "kinetic_energy(omega) gives it, and its .total the sum",
         **dict.fromkeys(("com", "center", "centre_of_mass", "centroid", "cog"), "center_of_mass is it"),
         "moments": "principal_moments are they",

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, final
 import numpy as np
 
 from polhode import _core
-from polhode._format import one_line
+from polhode._format import Argument, one_line
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
@@ -337,7 +337,7 @@ def source(seed: int, name: str) -> Source:
     if isinstance(seed, bool) or not isinstance(seed, int | np.integer):
         raise TypeError(f"seed: expected an integer from 0 to 2**64 - 1, got {seed!r}")
     if not 0 <= seed < MOST:
-        raise ValueError(f"seed: expected an integer from 0 to 2**64 - 1, got {seed}")
+        raise PolhodeError(Argument("seed"), f": expected an integer from 0 to 2**64 - 1, got {seed}")
     digest = hashlib.blake2b(name.encode(), digest_size=8, person=b"polhode").digest()
     return Source(int(seed), int.from_bytes(digest, "little"))
 

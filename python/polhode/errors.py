@@ -8,7 +8,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from polhode._format import Argument, in_words
+
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from polhode._core import RigidBody
     from polhode.motion.trajectory import Trajectory
 
@@ -24,24 +28,57 @@ __all__ = [
 
 
 class PolhodeError(ValueError):
-    """Base class of the errors that polhode raises about physics and data."""
+    """Base class of the errors that polhode raises about physics and data.
 
-
-class InvalidInertiaError(PolhodeError):
-    """Mass properties that no real body can have.
+    Its `args` are the pieces of the message: texts, and objects where an argument is named. They become words
+    when the message is printed.
 
     Attributes
     ----------
+    kind : str
+        What is wrong, where the command line has a remedy of its own; else ``""``.
     way_out : str
-        The remedy at the end of the message; ``""`` where there is none.
+        The remedy at the end of a message of the core; ``""`` where there is none.
+    stack_row : int or None
+        Row of the flattened stack that is at fault, where the first piece of the message names it.
+    label : int or None
+        Label of the particles at fault, where the second piece of the message is it.
     """
 
+    kind: str = ""
     way_out: str = ""
+    stack_row: int | None = None
+    label: int | None = None
+
+    def __str__(self) -> str:
+        return self.words()
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({str(self)!r})"
+
+    def words(self, name: Callable[[Argument], str] = str) -> str:
+        """Return the message.
+
+        Parameters
+        ----------
+        name : callable, optional
+            A function that writes an argument; as Python does by default.
+        """
+        return in_words(self.args, name)
+
+    def leave_row_out(self) -> None:
+        """Take the row out of the message, for a caller to whom it is none of a stack's."""
+        if self.stack_row is not None:
+            self.args, self.stack_row = self.args[1:], None
 
     @property
     def fault(self) -> str:
         """The message without the remedy, for a caller that has another one."""
-        return str(self).removesuffix(self.way_out).rstrip("; :")
+        return in_words(self.args[:-1] if self.way_out else self.args)
+
+
+class InvalidInertiaError(PolhodeError):
+    """Mass properties that no real body can have."""
 
 
 class MeshError(PolhodeError):
@@ -54,17 +91,21 @@ class MeshError(PolhodeError):
     ----------
     law : str
         ``"closed"`` where the mesh is open; else ``""``.
-    way_out : str
-        The remedy at the end of the message; ``""`` if `law` is ``""``.
     """
 
     law: str = ""
-    way_out: str = ""
+    _last: tuple[object, ...] = ()
 
-    def offer(self, way_out: str) -> None:
-        """Put another remedy into the message, before the present one."""
-        fault = str(self).removesuffix(self.way_out)
-        self.args = (f"{fault}{way_out}; or {self.way_out}" if self.way_out else f"{fault} ({way_out})",)
+    def end_with(self, *remedy: object) -> None:
+        """Put a remedy, of pieces, in the place of the one at the end of the message."""
+        before = self.args[: -len(self._last)] if self._last else (*self.args[:-1], "; ")
+        self.args, self._last = (*before, *remedy), remedy
+        self.way_out = "".join(map(str, remedy))
+
+    def offer(self, *remedy: object) -> None:
+        """Put another remedy, of pieces, into the message, before that at its end."""
+        before = self.args[: len(self.args) - len(self._last)]
+        self.args = (*before, *remedy, "; or ", *self._last) if self._last else (*before, " (", *remedy, ")")
 
 
 class FileFormatError(PolhodeError):

@@ -7,13 +7,13 @@ contains the labels.
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from polhode._core import MassAccumulator, RigidBody, real_numbers
 from polhode._format import short
+from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -73,10 +73,10 @@ def bodies(masses: ArrayLike, positions: ArrayLike, labels: ArrayLike) -> Labell
     names, rows = _ranks(own)
     try:
         return Labelled(names, RigidBody.from_labelled_particles(weights, places, rows))
-    except ValueError as error:
-        ranked = re.match(r"label (\d+):", str(error))
-        if ranked is not None:  # it is the rank that is told
-            error.args = (f"label {names[int(ranked[1])]}:{str(error)[ranked.end() :]}",)
+    except PolhodeError as error:
+        if error.label is not None:  # it is the rank that is told
+            error.label = int(names[error.label])
+            error.args = (error.args[0], error.label, *error.args[2:])
         raise
 
 
@@ -143,8 +143,8 @@ class Accumulator:
         for name in names:
             try:
                 found.append(self._sums[name].finish())
-            except ValueError as error:
-                error.args = (f"label {name}: {error}",)
+            except PolhodeError as error:
+                error.args = (f"label {name}: ", *error.args)
                 raise
         return Labelled(np.array(names, np.int64), RigidBody.stack(found))
 

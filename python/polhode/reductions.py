@@ -49,6 +49,7 @@ __all__ = [
 Of: TypeAlias = str | Callable[[Any], Any]
 STATES: Final = ("omega", "quaternion", "position", "velocity")
 _RAISED: Final = "raised by the function of a reduction, of="
+_SHARED: Final = "all reductions share the states, which are read-only; change a copy, as motion.omega.copy()"
 MOST_CORRELATED: Final = 1000
 """Numbers of a member whose covariance is taken: its matrix has a million elements."""
 MODES: Final = ("long-axis", "short-axis", "separatrix", "steady", "symmetric", "spherical")
@@ -62,14 +63,10 @@ class Reduction(ABC):
         of: Of = self.__dict__["of"]
         try:
             found = getattr(trajectory, of) if isinstance(of, str) else of(trajectory)
-        except ValueError as error:
-            if "read-only" in str(error):
-                way = "all reductions share the states; change a copy, such as motion.omega.copy()"
-                raise ValueError(f"of: {error}: {way}") from error
-            error.add_note(_RAISED)
-            raise
         except Exception as error:
             error.add_note(_RAISED)
+            if type(error) is ValueError:  # as NumPy raises where an array is read-only
+                error.add_note(_SHARED)
             raise
         array = _core.real_numbers(found, "of")
         count = len(trajectory.omega)

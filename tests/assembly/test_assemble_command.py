@@ -67,7 +67,7 @@ class TestCommand:
         assert (code, err) == (0, "")
         assert "saved" in out
         assert files[0].read_bytes().startswith(b"\x89PNG")
-        assert np.array_equal(RigidBody.load(files[1]).inertia, assembly.read(cart).body.inertia)
+        assert np.array_equal(RigidBody.from_file(files[1]).inertia, assembly.read(cart).body.inertia)
         code, out, _ = run("ledger", files[2], "--overwrite", "--format", "json")
         assert code == 0
         assert json.loads(out)["nodes"][0]["mass"]["value"] == pytest.approx(34.21436948, rel=1e-12)

@@ -113,9 +113,7 @@ class TestWhatFunctionsSee:
             return last
 
         for bad in (spoil, spoil_a_part):
-            with pytest.raises(
-                ValueError, match=r"of: .*read-only: all reductions share the states; change a copy"
-            ):
+            with pytest.raises(ValueError, match=r"read-only[^:]*of=\nall .* change a copy"):
                 twisted(n, reduce={"a": reductions.mean(bad), "b": reductions.mean("omega")}).compute()
 
         def shifted(motion: Trajectory) -> Any:

@@ -77,7 +77,7 @@ def test_a_tolerance_is_named_where_rounding_may_have_broken_the_law() -> None:
         counts[found is not None] += 1
         if found is not None:
             RigidBody.from_principal(1.0, moments, rtol=float(found[1]))
-            assert in_options(str(error)).endswith("give more digits")
+            assert in_options(error).endswith("give more digits")
         else:
             assert error.way_out.startswith("check the numbers and their units")
         assert error.fault == str(error)[: -len(error.way_out)].rstrip("; ")

@@ -218,7 +218,7 @@ class TestSaved:
 
     def test_a_body_of_the_first_format(self, tmp_path: Path) -> None:
         (tmp_path / "b.json").write_text(self.BODY)
-        body = RigidBody.load(tmp_path / "b.json")
+        body = RigidBody.from_file(tmp_path / "b.json")
         assert (body.mass, body.inertia[0, 1]) == (2.0, 0.25)
 
     def test_a_motion_of_the_first_format(self, tmp_path: Path) -> None:
@@ -233,7 +233,7 @@ class TestSaved:
     def test_a_body_of_another_format(self, tmp_path: Path, number: str, told: str) -> None:
         (tmp_path / "b.json").write_text(self.BODY.replace("RigidBody/1", f"RigidBody/{number}"))
         with pytest.raises(FileFormatError, match=told):
-            RigidBody.load(tmp_path / "b.json")
+            RigidBody.from_file(tmp_path / "b.json")
 
 
 class TestRows:

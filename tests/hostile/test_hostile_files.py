@@ -35,7 +35,7 @@ READERS: dict[str, Callable[[Path], object]] = {
     "robots": lambda path: robots.check(robots.read_robot(path)),
     "assemblies": lambda path: assembly.read(path).body,
     "ledgers": ledger,
-    "bodies": RigidBody.load,
+    "bodies": RigidBody.from_file,
     "motions": Trajectory.from_file,
 }
 NEEDED = {"VTK": "pyvista", "CAD": "OCP", "meshes": "trimesh"}

@@ -39,7 +39,6 @@ SIZELESS = {
     "RigidBody.from_atoms",
     "RigidBody.from_file",
     "RigidBody.from_mesh_object",
-    "RigidBody.load",
     "RigidBody.plot",
     "RigidBody.save",
     "RigidBody.stack",

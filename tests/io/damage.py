@@ -104,7 +104,7 @@ def _numbers(body: RigidBody) -> tuple[object, ...]:
 
 
 def _body(path: Path) -> object:
-    return _numbers(RigidBody.load(path))
+    return _numbers(RigidBody.from_file(path))
 
 
 def _motion(path: Path) -> object:

@@ -12,7 +12,7 @@ from boxes import NESTED, SHARED, TWO, at, joined, written
 from command_line import run
 from polhode import RigidBody, solids
 from polhode.errors import MeshError
-from polhode.io import body_from_file, components
+from polhode.io import components
 from polhode.io.components import labels, overlaps, parts_of, winding
 from polhode.io.union import shared_volume, united
 
@@ -180,7 +180,7 @@ class TestUnion:
             path = written(
                 tmp_path / "boxes.obj", *(at(*each) for each in boxes), names=tuple(map(str, range(count)))
             )
-            body = body_from_file(path, density=1.0, union=True)
+            body = RigidBody.from_file(path, density=1.0, union=True)
             mass, first, inertia = true_union(boxes)
             assert float(body.mass) == pytest.approx(mass, rel=1e-12)
             np.testing.assert_allclose(body.center_of_mass, first / mass, rtol=1e-12, atol=1e-12)
@@ -191,7 +191,7 @@ class TestUnion:
         pytest.importorskip("manifold3d")
         hollow = (at((4, 4, 4), (0, 0, 0)), at((3, 3, 3), (0, 0, 0), inward=True), at((4, 1, 1), (3.9, 0, 0)))
         path = written(tmp_path / "h.obj", *hollow, names=("a", "b", "c"))
-        body = body_from_file(path, density=1.0, union=True)
+        body = RigidBody.from_file(path, density=1.0, union=True)
         # The bar reaches 0.1 into a wall of 0.5.
         assert float(body.mass) == pytest.approx(64 - 27 + 4 - 0.1, rel=1e-12)
 

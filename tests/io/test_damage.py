@@ -24,8 +24,8 @@ from polhode.io import read_mesh, read_xyz
 
 BOX = solids.box((3.0, 2.0, 1.0), mass=0.7)
 READERS: dict[str, tuple[str, Callable[[Path], object]]] = {
-    "body, JSON": (".json", RigidBody.load),
-    "body, npz": (".npz", RigidBody.load),
+    "body, JSON": (".json", RigidBody.from_file),
+    "body, npz": (".npz", RigidBody.from_file),
     "motion, JSON": (".json", Trajectory.from_file),
     "motion, npz": (".npz", Trajectory.from_file),
     "STL": (".stl", lambda path: RigidBody.from_file(path, density=1.0)),
@@ -146,7 +146,7 @@ class TestNpz:
     )
     def test_what_is_no_body(self, changes: dict[str, Any], message: str, tmp_path: Path) -> None:
         with pytest.raises(FileFormatError, match=message) as caught:
-            RigidBody.load(npz(tmp_path / "body.npz", **changes))
+            RigidBody.from_file(npz(tmp_path / "body.npz", **changes))
         assert "body.npz" in str(caught.value)
 
     def test_compressed_and_of_other_numbers(self, tmp_path: Path) -> None:
@@ -156,7 +156,7 @@ class TestNpz:
         with np.load(path) as archive:
             arrays = {name: archive[name] for name in archive}
         np.savez_compressed(path, **arrays)
-        body = RigidBody.load(path)
+        body = RigidBody.from_file(path)
         assert body == RigidBody(0.5, BOX.inertia, (1.0, 2.0, 3.0))
 
     @pytest.mark.timeout(20)
@@ -174,7 +174,7 @@ class TestNpz:
             FileFormatError,
             match=r"there are more than \d+ unpacked bytes, the most for \d+ bytes of file; unpack it",
         ):
-            RigidBody.load(path)
+            RigidBody.from_file(path)
         assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - used < 50_000
 
     def test_a_header_that_promises_too_much(self, tmp_path: Path) -> None:
@@ -183,7 +183,7 @@ class TestNpz:
         with zipfile.ZipFile(path, "w") as archive:
             archive.writestr("mass.npy", b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header)
         with pytest.raises(FileFormatError, match="but 0 bytes are there"):
-            RigidBody.load(path)
+            RigidBody.from_file(path)
 
     def test_times_of_any_shape(self, tmp_path: Path) -> None:
         """A closed form is asked at times of any shape, and comes back with it."""
@@ -214,7 +214,7 @@ class TestJson:
         path = tmp_path / "body.json"
         path.write_text(text, "utf-8")
         with pytest.raises(FileFormatError, match=message) as caught:
-            RigidBody.load(path)
+            RigidBody.from_file(path)
         assert "body.json" in str(caught.value)
 
     @pytest.mark.parametrize(
@@ -237,7 +237,7 @@ class TestJson:
             "utf-8",
         )
         with pytest.raises(FileFormatError, match=message):
-            RigidBody.load(path)
+            RigidBody.from_file(path)
 
     @pytest.mark.parametrize(
         ("name", "value", "message"),
@@ -265,7 +265,7 @@ class TestJson:
         path = tmp_path / "body.json"
         BOX.save(path)
         path.write_text(path.read_text("utf-8").replace("{", '{"comment": "by hand",', 1), "utf-8")
-        assert RigidBody.load(path) == BOX
+        assert RigidBody.from_file(path) == BOX
 
     def test_what_it_cannot_hold_is_not_written(self, tmp_path: Path) -> None:
         motion = BOX.free_motion((0.1, 1.0, 0.2)).at([0.0, 1.0])

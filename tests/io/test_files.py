@@ -33,7 +33,7 @@ class TestBodies:
         path = tmp_path / f"body{suffix}"
         body = BODIES[name]
         body.save(path)
-        again = RigidBody.load(path)
+        again = RigidBody.from_file(path)
         assert again == body
         assert again.shape == body.shape
         assert np.array_equal(again.principal.axes, body.principal.axes)
@@ -43,7 +43,7 @@ class TestBodies:
     def test_an_empty_stack(self, tmp_path: Path) -> None:
         empty = solids.box(np.ones((2, 0, 3)), mass=1.0)
         empty.save(tmp_path / "body.npz")
-        assert RigidBody.load(tmp_path / "body.npz").shape == (2, 0)
+        assert RigidBody.from_file(tmp_path / "body.npz").shape == (2, 0)
         with pytest.raises(ValueError, match=r"shape of an empty stack; save it as \.npz"):
             empty.save(tmp_path / "body.json")
 
@@ -63,7 +63,7 @@ class TestBodies:
         )
         for name in ("body.json", "body.npz"):
             brick.save(tmp_path / name)
-            again: Any = RigidBody.load(tmp_path / name)
+            again: Any = RigidBody.from_file(tmp_path / name)
             assert again == brick
             assert np.array_equal(again.covariance_with(brick), brick.covariance)
         fields = json.loads((tmp_path / "body.json").read_text("utf-8"))
@@ -72,13 +72,13 @@ class TestBodies:
         del fields["numbers"]
         (tmp_path / "spoilt.json").write_text(json.dumps(fields), "utf-8")
         with pytest.raises(FileFormatError, match="uncertainty"):
-            RigidBody.load(tmp_path / "spoilt.json")
+            RigidBody.from_file(tmp_path / "spoilt.json")
 
     def test_one_written_by_hand(self, tmp_path: Path) -> None:
         fields = {"format": "polhode.RigidBody/1", "mass": 2, "center_of_mass": [0, 0, 1]}
         path = tmp_path / "body.json"
         path.write_text(json.dumps(fields | {"inertia": np.diag([1.0, 2.0, 2.5]).tolist()}), "utf-8")
-        assert RigidBody.load(path) == RigidBody(2.0, np.diag([1.0, 2.0, 2.5]), (0, 0, 1))
+        assert RigidBody.from_file(path) == RigidBody(2.0, np.diag([1.0, 2.0, 2.5]), (0, 0, 1))
 
     @pytest.mark.parametrize(
         ("change", "message"),
@@ -96,17 +96,17 @@ class TestBodies:
         BODIES["box"].save(path)
         path.write_text(json.dumps(json.loads(path.read_text("utf-8")) | change), "utf-8")
         with pytest.raises(FileFormatError, match=message):
-            RigidBody.load(path)
+            RigidBody.from_file(path)
 
     def test_impossible_bodies_and_broken_files(self, tmp_path: Path) -> None:
         path = tmp_path / "body.json"
         fields = {"format": "polhode.RigidBody/1", "mass": 2, "center_of_mass": [0, 0, 1]}
         path.write_text(json.dumps(fields | {"inertia": np.diag([1.0, 1.0, 3.0]).tolist()}), "utf-8")
         with pytest.raises(FileFormatError, match="triangle inequality"):
-            RigidBody.load(path)
+            RigidBody.from_file(path)
         path.write_text(json.dumps(fields), "utf-8")
         with pytest.raises(FileFormatError, match="inertia is missing"):
-            RigidBody.load(path)
+            RigidBody.from_file(path)
         for name, content in (
             ("a.json", b"{"),
             ("b.json", b"\xff"),
@@ -116,10 +116,12 @@ class TestBodies:
         ):
             (tmp_path / name).write_bytes(content)
             with pytest.raises(FileFormatError, match=name):
-                RigidBody.load(tmp_path / name)
-        for act in (BODIES["box"].save, RigidBody.load):
-            with pytest.raises(ValueError, match=r"does not end in \.json or \.npz"):
-                act(tmp_path / "body.csv")
+                RigidBody.from_file(tmp_path / name)
+        with pytest.raises(ValueError, match=r"does not end in \.json or \.npz"):
+            BODIES["box"].save(tmp_path / "body.csv")
+        (tmp_path / "body.csv").write_text("mass\n1\n", "utf-8")
+        with pytest.raises(FileFormatError, match=r"files named \.csv are not read"):
+            RigidBody.from_file(tmp_path / "body.csv")
 
 
 @pytest.fixture(params=["one", "stack"])
@@ -282,3 +284,41 @@ class TestOtherLibraries:
         for _ in range(2):
             assert RigidBody.from_atoms(water).mass == pytest.approx(18.0105647, abs=1e-6)
             water.UpdatePropertyCache(strict=False)  # valences without bonds, which nobody stated
+
+
+class TestAnyBody:
+    """``RigidBody.from_file`` reads every file that holds a body, and refuses what it cannot use."""
+
+    def test_an_assembly_and_a_report(self, tmp_path: Path) -> None:
+        rows = '[[part]]\nname = "a"\nsolid = "sphere"\nradius = 2\nmass = 3\n'
+        (tmp_path / "a.toml").write_text(rows + rows.replace('"a"', '"b"'), "utf-8")
+        with pytest.warns(UserWarning, match=r"a\.toml: part b is the same as a, at the same place"):
+            whole = RigidBody.from_file(tmp_path / "a.toml")
+        assert whole.mass == 6.0
+        report = {
+            "units": {"mass": "kg", "center_of_mass": "m"},
+            "mass": 2.0,
+            "center_of_mass": [0, 0, 1],
+            "inertia_about_center_of_mass": [[1, 0, 0], [0, 2, 0], [0, 0, 2.5]],
+        }
+        (tmp_path / "r.json").write_text(json.dumps(report), "utf-8")
+        expected = RigidBody(2.0, np.diag([1.0, 2.0, 2.5]), (0, 0, 1))
+        assert RigidBody.from_file(tmp_path / "r.json") == expected
+        with pytest.raises(ValueError, match=r"length_unit: .* is a report, in kg and m; leave it out"):
+            RigidBody.from_file(tmp_path / "r.json", length_unit="mm")
+
+    def test_a_saved_body_in_a_unit(self, tmp_path: Path) -> None:
+        BODIES["box"].save(tmp_path / "b.json")
+        found = RigidBody.from_file(tmp_path / "b.json", length_unit="mm")
+        assert found == BODIES["box"].scaled(length=1e-3)
+
+    @pytest.mark.parametrize(
+        "name", ["density", "mass", "weld", "closure", "orient", "union", "repair", "index_base", "masses"]
+    )
+    def test_what_a_saved_body_cannot_use_is_refused_by_name(self, name: str, tmp_path: Path) -> None:
+        given: dict[str, Any] = {"closure": "caps", "masses": "average", "weld": 1e-3, "index_base": 0}
+        BODIES["box"].save(tmp_path / "b.npz")
+        with pytest.raises(PolhodeError, match=f"^{name}: .* is a saved body, whole as it is; leave it out"):
+            RigidBody.from_file(
+                tmp_path / "b.npz", **{name: given.get(name, name not in ("density", "mass") or 1.0)}
+            )

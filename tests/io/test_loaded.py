@@ -146,14 +146,14 @@ class TestErrors:
         vertices, faces = cube(2.0)
         with pytest.raises(MeshError) as caught:
             RigidBody.from_mesh(vertices, faces[1:], density=1.0)
-        assert caught.value.law == "closed"
+        assert (caught.value.law, caught.value.kind) == ("closed", "open")
         assert caught.value.way_out.startswith("close the mesh")
         assert str(caught.value).endswith(f"; {caught.value.way_out}")
         turned = faces.copy()
         turned[0] = turned[0][::-1]
         with pytest.raises(MeshError) as caught:
             RigidBody.from_mesh(vertices, turned, density=1.0)
-        assert (caught.value.law, caught.value.way_out) == ("", "")
+        assert (caught.value.law, caught.value.kind, caught.value.way_out) == ("", "", "")
 
     @pytest.mark.parametrize(("suffix", "writer"), [(".stl", binary_stl), (".obj", obj)])
     def test_another_way_out_goes_before_it(self, suffix: str, writer: Any, seen: Any) -> None:

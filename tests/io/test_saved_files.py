@@ -35,7 +35,7 @@ def test_there_are_files_of_this_minor_version_or_an_earlier_one() -> None:
 
 @EACH
 def test_bodies(file: Path) -> None:
-    body = RigidBody.load(of(file, "bodies"))
+    body = RigidBody.from_file(of(file, "bodies"))
     np.testing.assert_array_equal(body.mass, MASSES)
     np.testing.assert_array_equal(body.center_of_mass, [[1.0, 0.0, 0.0]] * 2)
     np.testing.assert_allclose(body.principal_moments, MOMENTS * [[1.0], [2.0]], rtol=4e-16)
@@ -44,7 +44,7 @@ def test_bodies(file: Path) -> None:
 
 @EACH
 def test_a_body_with_a_sigma(file: Path) -> None:
-    body = RigidBody.load(of(file, "uncertain"))
+    body = RigidBody.from_file(of(file, "uncertain"))
     assert body.mass == 12.0
     sigma = body.sigma
     assert sigma is not None

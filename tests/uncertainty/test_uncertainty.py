@@ -297,7 +297,7 @@ class TestKept:
         whole, part = block() + cloud(), block()
         both = RigidBody.stack([whole + part, part])
         both.save(tmp_path / "both.json")
-        loaded = RigidBody.load(tmp_path / "both.json")
+        loaded = RigidBody.from_file(tmp_path / "both.json")
         assert np.array_equal(loaded.covariance, both.covariance)
         assert np.array_equal(loaded[0].covariance_with(part), both[0].covariance_with(part))
 

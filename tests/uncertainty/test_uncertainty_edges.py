@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import polhode
 import pytest
-from polhode import Uncertain
-from polhode.io import load_trajectory
+from polhode import Trajectory, Uncertain
 from polhode.uncertainty import propagate
 from scipy.spatial.transform import Rotation
 from uncertain_bodies import RigidBody, laminae, solids
@@ -176,7 +175,7 @@ class TestStarts:
         run = body.simulate([0.0, 2.0], SPIN, START)
         for name in ("run.json", "run.npz"):
             run.save(tmp_path / name)
-            again = load_trajectory(tmp_path / name)
+            again = Trajectory.from_file(tmp_path / name)
             assert again.covariance == pytest.approx(run.covariance, rel=1e-15)
             with pytest.raises(ValueError, match="pickle"):
                 run.resume([2.0, 3.0]).save(tmp_path / name)

@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 import inspect
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from polhode import laminae, rods, solids
-from polhode._core import RigidBody
-from polhode.assembly.tables import COMMON, FILE, KINDS, PRINTED, check_keys, text_of
+from polhode.assembly.tables import COMMON, FILE, KINDS, PRINTED, PartError, check_keys, text_of
 from polhode.errors import PolhodeError
 from polhode.interop.printouts import from_printout
-from polhode.io.body import body_of_molecule, check_molecule_options
 from polhode.io.components import MOST_FACES, overlapping
 from polhode.io.content import is_molecule
-from polhode.io.loaded import load
+from polhode.io.loaded import SAVED_SUFFIXES, body_of_molecule, check_arguments, load, read_saved
 from polhode.io.mesh_solid import solid_of
 from polhode.io.reading import words_of
-from polhode.io.saved import read_report
 from polhode.units import metres_per
 
 if TYPE_CHECKING:
@@ -27,13 +23,13 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from polhode._core import RigidBody
+    from polhode._format import Argument
     from polhode.assembly.tables import Scope
     from polhode.io.loaded import Loaded
 
-__all__ = ["SAVED", "Matter", "body_of_part", "kind_of"]
+__all__ = ["Matter", "body_of_part", "kind_of"]
 
-SAVED: Final = (".json", ".npz")
-"""Of bodies that ``RigidBody.save`` wrote, and of reports."""
 _SHAPES: Final = {name: getattr(room, name) for room in (solids, laminae, rods) for name in room.__all__}
 _PARAMETERS: Final = {
     name: [key for key in inspect.signature(shape).parameters if key != "degrees"]  # numbers have units
@@ -42,7 +38,6 @@ _PARAMETERS: Final = {
 _NO_LENGTHS: Final = {"angle": "rad", "sides": "1"}
 """Arguments of shapes that are no lengths, with their units."""
 _SWITCHES: Final = ("orient", "union", "repair")
-_ARGUMENT: Final = re.compile(r"\b(weld|closure|orient|union|repair|index_base)=(\S+)")
 
 
 def kind_of(table: Mapping[str, Any], where: str) -> str:
@@ -58,7 +53,7 @@ def kind_of(table: Mapping[str, Any], where: str) -> str:
         }
         check_keys(table, sorted(every), where)
     found = f"got {' and '.join(kinds)}" if kinds else "got none"
-    raise PolhodeError(f"{where}: expected one of {', '.join(KINDS)}, {found}")
+    raise PartError(f"{where}: expected one of {', '.join(KINDS)}, {found}")
 
 
 class Matter(NamedTuple):
@@ -93,29 +88,32 @@ def body_of_part(kind: str, table: Mapping[str, Any], scope: Scope, folder: Path
             made = Matter(_printed(table, scope), scope.metres)
         else:
             made = _file(table, scope, folder)
+    except PartError:
+        raise
+    except PolhodeError as error:
+        error.args = (f"{scope.where}: ", error.words(_key))
+        raise
     except (ValueError, TypeError, OverflowError, OSError) as error:
-        if str(error).startswith(scope.where):
-            raise
-        what = words_of(error) if isinstance(error, OSError) else _in_keys(str(error))
-        kind_of_error = type(error) if isinstance(error, PolhodeError) else PolhodeError
-        raise kind_of_error(f"{scope.where}: {what}") from error
+        what = words_of(error) if isinstance(error, OSError) else error
+        raise PartError(f"{scope.where}: {what}") from error
     if made.body.shape:
-        raise PolhodeError(
+        raise PartError(
             f"{scope.where}: its numbers are of {made.body.shape[0]} bodies, not of one; give numbers, not "
             "rows of them"
         )
     return made._replace(notes=tuple(f"{scope.where}: {note}" for note in made.notes))
 
 
-def _in_keys(message: str) -> str:
-    """Write Python's arguments in the message of a reader as keys of the file."""
-    message = _ARGUMENT.sub(lambda found: f"{found[1]} = {found[2].lower()}", message)
-    return message.replace("leave length_unit out", "leave it out of the part")
+def _key(argument: Argument) -> str:
+    """Write an argument of a reader as a key of the file."""
+    if isinstance(argument.value, bool):
+        return f"{argument.name} = {str(argument.value).lower()}"
+    return str(argument).replace("=", " = ", 1)
 
 
 def _weight(table: Mapping[str, Any], scope: Scope, what: str) -> dict[str, Any]:
     if ("mass" in table) == ("density" in table):
-        raise PolhodeError(f"{scope.where}: {what} needs its mass or its density; state one of the two")
+        raise PartError(f"{scope.where}: {what} needs its mass or its density; state one of the two")
     if "mass" in table:
         return {"mass": scope.amount("mass", table["mass"], "kg")}
     return {"density": scope.amount("density", table["density"], "kg/m^3")}
@@ -124,7 +122,7 @@ def _weight(table: Mapping[str, Any], scope: Scope, what: str) -> dict[str, Any]
 def _solid(table: Mapping[str, Any], scope: Scope) -> Matter:
     name = text_of(table, "solid", scope.where)
     if name not in _SHAPES:
-        raise PolhodeError(
+        raise PartError(
             f"{scope.where}: solid: there is no {name!r}; write one of {', '.join(sorted(_SHAPES))}"
         )
     shape: Callable[..., RigidBody] = _SHAPES[name]
@@ -133,7 +131,7 @@ def _solid(table: Mapping[str, Any], scope: Scope) -> Matter:
     own = [key for key in taken if key not in ("mass", "density")]
     missing = [key for key in own if key not in table]
     if missing:
-        raise PolhodeError(f"{scope.where}: a {name} takes {', '.join(own)}; state {missing[0]}")
+        raise PartError(f"{scope.where}: a {name} takes {', '.join(own)}; state {missing[0]}")
     options = {
         key: scope.numbers(key, table[key], _NO_LENGTHS[key])
         if key in _NO_LENGTHS
@@ -145,21 +143,21 @@ def _solid(table: Mapping[str, Any], scope: Scope) -> Matter:
     try:
         return Matter(shape(**options, **_weight(table, scope, f"a {name}")), scope.metres, options)
     except TypeError as error:
-        raise PolhodeError(f"{scope.where}: {name}: {error}") from None
+        raise PartError(f"{scope.where}: {name}: {error}") from None
 
 
 def _printed(table: Mapping[str, Any], scope: Scope) -> RigidBody:
     given = table["inertia"]
     where = f"{scope.where}: inertia"
     if not isinstance(given, dict):
-        raise PolhodeError(
+        raise PartError(
             f"{where}: write a table, as in inertia = {{ mass = 2, com = [0, 0, 1], tensor = [3, 4, 5] }}"
         )
     check_keys(table, COMMON, scope.where)
     check_keys(given, PRINTED, where)
     for name in ("mass", "tensor"):
         if name not in given:
-            raise PolhodeError(f"{where}: it has no {name}; state it")
+            raise PartError(f"{where}: it has no {name}; state it")
     inner = type(scope)(where, scope.length_unit)
     rows = given["tensor"]
     flat = (
@@ -170,9 +168,10 @@ def _printed(table: Mapping[str, Any], scope: Scope) -> RigidBody:
     tensor = inner.numbers("tensor", flat, "kg m^2", scope.metres**2)
     com = inner.lengths("com", given["com"], 3) if "com" in given else (0.0, 0.0, 0.0)
     rtol = inner.numbers("rtol", given["rtol"], "1") if "rtol" in given else None
+    mass = inner.amount("mass", given["mass"], "kg")
     try:
         return from_printout(
-            inner.amount("mass", given["mass"], "kg"),
+            mass,
             com,
             tensor if isinstance(tensor, list) else [tensor],
             products=given.get("products"),
@@ -180,8 +179,7 @@ def _printed(table: Mapping[str, Any], scope: Scope) -> RigidBody:
             rtol=rtol,
         )
     except PolhodeError as error:
-        if not str(error).startswith(where):
-            error.args = (f"{where}: {error}",)
+        error.args = ("inertia: ", *error.args)
         raise
 
 
@@ -190,19 +188,18 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
     path = folder / text_of(table, "file", scope.where)
     suffix = path.suffix.lower()
     if suffix == ".toml":
-        raise PolhodeError(
+        raise PartError(
             f"{scope.where}: file: {path.name} is an assembly; write assembly = instead of file ="
         )
-    if suffix in SAVED:
+    if suffix in SAVED_SUFFIXES:
         surplus = next((key for key in (*FILE, "length_unit") if key in table), None)
         if surplus is not None:
-            raise PolhodeError(
+            raise PartError(
                 f"{scope.where}: {surplus}: {path.name} is a saved body, whole as it is; leave it out"
             )
-        reported = read_report(path)
-        body = RigidBody.load(path) if reported is None else reported
+        body = read_saved(path).body
         if body.shape:
-            raise PolhodeError(
+            raise PartError(
                 f"{scope.where}: {path.name} holds a stack of bodies, of shape {body.shape}, not one; "
                 "save one of them alone"
             )
@@ -210,7 +207,7 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
     options = {key: table[key] for key in FILE if key in table and key not in ("mass", "density", "weld")}
     for key in (key for key in _SWITCHES if key in table):
         if not isinstance(table[key], bool):
-            raise PolhodeError(
+            raise PartError(
                 f"{scope.where}: {key}: {repr(table[key])[:60]} is neither true nor false; write one of "
                 "them, without quotes"
             )
@@ -218,7 +215,7 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
         unit = str(table.get("length_unit", "angstrom"))
         options |= {key: table[key] for key in ("mass", "density", "weld") if key in table}
         none = {"weld": 0.0, "index_base": 1}
-        check_molecule_options(path, **{key: value != none.get(key, False) for key, value in options.items()})
+        check_arguments(path, **{key: value != none.get(key, False) for key, value in options.items()})
         body, notes, crossed = body_of_molecule(path, unit)
         return Matter(body, metres_per(unit), notes=(*crossed, *notes))
     loaded = load(path, index_base=options.pop("index_base", 1))
@@ -249,5 +246,5 @@ def _unit_of(loaded: Loaded, table: Mapping[str, Any], scope: Scope) -> str:
     unit = loaded.length(table.get("length_unit")) or scope.length_unit
     if unit is None:
         name = loaded.path.name
-        raise PolhodeError(f"{scope.where}: {name} does not say its unit of length; state length_unit")
+        raise PartError(f"{scope.where}: {name} does not say its unit of length; state length_unit")
     return unit

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from polhode._hints import with_hints
-from polhode.assembly.matter import SAVED
 from polhode.draw.shape import body_shape
 from polhode.draw.triangles import joined
 from polhode.io.content import is_molecule
-from polhode.io.loaded import CAD_SUFFIXES, load
+from polhode.io.loaded import CAD_SUFFIXES, SAVED_SUFFIXES, load
 from polhode.io.unpacked import inner_suffix
 from polhode.plot import body as draw_body
 from polhode.plot import principal_axes
@@ -78,4 +77,4 @@ def _surface(part: Member, most: int) -> tuple[Floats, NDArray[np.int64]]:
 
 def _is_mesh(file: Path) -> bool:
     """Return whether a file holds triangles: no atoms, no solids of CAD, no numbers alone."""
-    return not is_molecule(file) and inner_suffix(file) not in (*SAVED, *CAD_SUFFIXES)
+    return not is_molecule(file) and inner_suffix(file) not in (*SAVED_SUFFIXES, *CAD_SUFFIXES)

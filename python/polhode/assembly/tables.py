@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -14,7 +15,7 @@ from polhode.errors import PolhodeError
 from polhode.units import amount, has_unit, metres_per, quantity, split
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
+    from collections.abc import Collection, Iterator, Mapping
 
     from numpy.typing import NDArray
 
@@ -28,6 +29,7 @@ __all__ = [
     "PRINTED",
     "REPEATED",
     "TOP",
+    "PartError",
     "Place",
     "Scope",
     "check_keys",
@@ -49,11 +51,24 @@ PRINTED: Final = ("mass", "com", "tensor", "products", "about", "rtol")
 """Of `inertia`, as CAD programs print it."""
 
 
+class PartError(PolhodeError):
+    """An error whose message begins with the part of which it tells."""
+
+
+@contextmanager
+def _as_part_error() -> Iterator[None]:
+    """Let errors of quantities be such errors: the name of a quantity begins with its part."""
+    try:
+        yield
+    except PolhodeError as error:
+        raise PartError(*error.args) from None
+
+
 def check_keys(table: Mapping[str, Any], known: Collection[str], where: str) -> None:
     """Refuse a key that is not known, with the nearest one that is."""
     for key in table:
         if key not in known:
-            raise PolhodeError(f"{where}: {unknown(str(key), known)}")
+            raise PartError(f"{where}: {unknown(str(key), known)}")
 
 
 def unknown(key: str, known: Collection[str]) -> str:
@@ -73,9 +88,7 @@ def text_of(table: Mapping[str, Any], key: str, where: str) -> str:
     """Return a text; "" where it is absent."""
     value = table.get(key, "")
     if not isinstance(value, str) or not value.isprintable():
-        raise PolhodeError(
-            f"{where}: {key}: {repr(value)[:60]} is not a line of text; write one between quotes"
-        )
+        raise PartError(f"{where}: {key}: {repr(value)[:60]} is not a line of text; write one between quotes")
     return value
 
 
@@ -108,13 +121,13 @@ class Scope:
         if length_unit is None:
             return Scope(where, self.length_unit)
         if not isinstance(length_unit, str):
-            raise PolhodeError(
+            raise PartError(
                 f"{where}: length_unit: {_shown(length_unit)} is not the name of a unit; write one, as 'mm'"
             )
         try:
             metres_per(length_unit)
         except PolhodeError as error:
-            raise PolhodeError(f"{where}: {error}") from None
+            raise PartError(f"{where}: {error}") from None
         return Scope(where, length_unit)
 
     def lengths(self, key: str, value: Any, count: int | None = None) -> Any:
@@ -143,7 +156,8 @@ class Scope:
         if isinstance(value, list | tuple):
             found = [self._number(option, item, unit, bare) for item in value]
         elif isinstance(value, str) and (count or "," in value or len(value.split()) > 1):
-            parts = split((value,), count, unit, option)
+            with _as_part_error():
+                parts = split((value,), count, unit, option)
             found = [self._number(option, part, unit, bare) for part in parts]
             if count is None and len(found) == 1:
                 return found[0]
@@ -152,33 +166,35 @@ class Scope:
             if count is None:
                 return found[0]
         if count is not None and len(found) != count:
-            raise PolhodeError(f"{option}: expected {count} numbers, got {len(found)} in {_shown(value)}")
+            raise PartError(f"{option}: expected {count} numbers, got {len(found)} in {_shown(value)}")
         return found
 
     def amount(self, key: str, value: Any, unit: str) -> float | _core.Uncertain:
         """Read a mass or a density, which may have a sigma."""
         option = self._option(key, value)
         if isinstance(value, str):
-            return amount(value, unit, option)
+            with _as_part_error():
+                return amount(value, unit, option)
         return self._number(option, value, unit, 1.0)
 
     def _option(self, key: str, value: Any) -> str:
         option = f"{self.where}: {key}" if self.where else key
         if isinstance(value, str) and len(value) > _LONGEST:
-            raise PolhodeError(f"{option}: {_shown(value)} has more than {_LONGEST} letters; write a number")
+            raise PartError(f"{option}: {_shown(value)} has more than {_LONGEST} letters; write a number")
         return option
 
     def _number(self, option: str, value: Any, unit: str, bare: float) -> float:
         if isinstance(value, str):
-            return quantity(value, unit, option) * (1.0 if has_unit(value) else bare)
+            with _as_part_error():
+                return quantity(value, unit, option) * (1.0 if has_unit(value) else bare)
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise PolhodeError(f"{option}: {_shown(value)} is not a number; write one, as in 2.5")
+            raise PartError(f"{option}: {_shown(value)} is not a number; write one, as in 2.5")
         try:
             number = float(value) * bare
         except OverflowError:
             number = math.inf
         if not math.isfinite(number):
-            raise PolhodeError(f"{option}: {_shown(value)} is not finite; write one that is")
+            raise PartError(f"{option}: {_shown(value)} is not finite; write one that is")
         return number
 
 
@@ -226,13 +242,13 @@ def copies(table: Mapping[str, Any], scope: Scope) -> list[Place]:
     """Read how often a part is there: by how much each copy is moved, the first by nothing."""
     count = table.get("count", 1)
     if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MOST_COPIES:
-        raise PolhodeError(
+        raise PartError(
             f"{scope.where}: count: {str(count)[:40]!r} is not a whole number from 1 to {MOST_COPIES}; "
             "write one"
         )
     moved = next((key for key in ("step", "turn") if key in table), None)
     if moved is not None and count == 1:
-        raise PolhodeError(f"{scope.where}: {moved}: it is from one copy to the next; state count, 2 or more")
+        raise PartError(f"{scope.where}: {moved}: it is from one copy to the next; state count, 2 or more")
     step = Place(
         _rotation(table.get("turn"), "turn", scope),
         np.array(scope.lengths("step", table["step"], 3)) if "step" in table else np.zeros(3),
@@ -249,13 +265,13 @@ def _rotation(given: Any, key: str, scope: Scope) -> Floats:
         return np.eye(3)
     where = f"{scope.where}: {key}"
     if not isinstance(given, dict):
-        raise PolhodeError(
+        raise PartError(
             f"{where}: {str(given)[:40]!r} is not a table that says what it means; write {_EXAMPLE}"
         )
     check_keys(given, (*_FORMS, *_ANGLES), where)
     forms = [name for name in _FORMS if name in given]
     if len(forms) != 1:
-        raise PolhodeError(f"{where}: give one of {', '.join(_FORMS)}; for example {_EXAMPLE}")
+        raise PartError(f"{where}: give one of {', '.join(_FORMS)}; for example {_EXAMPLE}")
     form = forms[0]
     inner = type(scope)(where)
     if form in ("quaternion_xyzw", "matrix"):
@@ -263,20 +279,20 @@ def _rotation(given: Any, key: str, scope: Scope) -> Floats:
         return _quaternion(given[form], inner) if form == "quaternion_xyzw" else _matrix(given[form], inner)
     units = [name for name in _ANGLES if name in given]
     if len(units) != 1:
-        raise PolhodeError(
+        raise PartError(
             f"{where}: state the angle of {form} as degrees or as radians; for example {_EXAMPLE}"
         )
     if form == "axis":
         axis = np.array(inner.numbers("axis", given["axis"], "1", count=3))
         largest = float(np.abs(axis).max())
         if not largest > 0.0:
-            raise PolhodeError(f"{where}: axis: a rotation about 0 0 0 has no direction; name an axis")
+            raise PartError(f"{where}: axis: a rotation about 0 0 0 has no direction; name an axis")
         axis /= largest
         return _turn(axis / np.linalg.norm(axis), _angles(given, units[0], 1, inner)[0])
     sequence = given["sequence"]
     letters = sequence if isinstance(sequence, str) else ""
     if len(letters) != 3 or letters.upper().strip("XYZ") or letters not in (letters.upper(), letters.lower()):
-        raise PolhodeError(
+        raise PartError(
             f"{where}: sequence: expected three letters of XYZ (about the axes of the turning part) or of "
             f"xyz (about those that stand), got {str(sequence)[:40]!r}"
         )
@@ -316,7 +332,7 @@ def _quaternion(given: Any, scope: Scope) -> Floats:
     q = np.array(scope.numbers("quaternion_xyzw", given, "1", count=4))
     size = float(np.linalg.norm(q)) if np.abs(q).max() < 2.0 else np.inf
     if not abs(size - 1.0) <= _OFF_UNITY:
-        raise PolhodeError(f"{scope.where}: quaternion_xyzw: its length is {size:.9g}, expected 1")
+        raise PartError(f"{scope.where}: quaternion_xyzw: its length is {size:.9g}, expected 1")
     return _core.rotate(q / size, np.eye(3)).T
 
 
@@ -327,7 +343,7 @@ def _matrix(given: Any, scope: Scope) -> Floats:
         else None
     )
     if rows is None or rows.shape != (3, 3):
-        raise PolhodeError(f"{scope.where}: matrix: expected three rows of three numbers")
+        raise PartError(f"{scope.where}: matrix: expected three rows of three numbers")
     off = float(np.abs(rows @ rows.T - np.eye(3)).max()) if np.abs(rows).max() < 2.0 else np.inf
     if not off <= _OFF_UNITY or np.linalg.det(rows) < 0.0:
         what = (
@@ -335,7 +351,7 @@ def _matrix(given: Any, scope: Scope) -> Floats:
             if off > _OFF_UNITY
             else "it mirrors"
         )
-        raise PolhodeError(f"{scope.where}: matrix: {what}; a rotation keeps lengths and hands")
+        raise PartError(f"{scope.where}: matrix: {what}; a rotation keeps lengths and hands")
     if off == 0.0:
         return rows
     u, _, v = np.linalg.svd(rows)

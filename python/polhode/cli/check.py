@@ -8,12 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from polhode import robots
+from polhode._format import Note
 from polhode.cli.files import STDIN, check_outputs, shown
 from polhode.cli.layout import Column, Field, Report, Table
 from polhode.cli.terminal import in_options
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.io.reading import files_read
 from polhode.io.writing import write_bytes
+from polhode.robots.geometry import HULL, LOST
 from polhode.robots.sources import read_stream
 from polhode.robots.verdict import has_own_tensor, is_without_mass, replacement
 from polhode.units import quantity
@@ -26,8 +28,6 @@ if TYPE_CHECKING:
 __all__ = ["check_report"]
 
 _UNIT = "kg m^2"
-_NOT_FOUND = " was not found"
-_HULL = " does not bound a solid: its convex hull was taken"
 _PACKAGE = re.compile(r"(?:package|model):/+([^/]+)")
 _WAY_OUT = "--fix FILE with --density or --mass writes the mass that is missing, where a link has shapes"
 _COLUMNS = (
@@ -92,33 +92,24 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
 
 def _gathered(notes: Iterable[str]) -> list[str]:
     """Describe in one line each of all meshes that were not found, and of all whose hulls were taken."""
-    told: list[str] = []
-    lost: list[str] = []
-    hulls: list[str] = []
-    for note in notes:
-        for end, names in ((_NOT_FOUND, lost), (_HULL, hulls)):
-            if note.endswith(end):
-                names.append(note)
-                break
-        else:
-            told.append(note)
+    notes = [*notes]
+    told = [note for note in notes if not isinstance(note, Note) or note.kind not in (LOST, HULL)]
+    about = [note for note in notes if isinstance(note, Note)]
+    lost = {note.subject: note for note in reversed(about) if note.kind == LOST}
+    hulls = {note.subject: note for note in reversed(about) if note.kind == HULL}
     if lost:
-        names = _names(lost, _NOT_FOUND)
+        names = [*lost][::-1]
         packages = list(dict.fromkeys(m[1] for name in names if (m := _PACKAGE.match(name)) is not None))
         wanted = f"the folder that holds {_some(packages)}" if packages else "the folder of their package"
-        what = lost[0] if len(names) == 1 else f"{len(names)} meshes were not found: {_some(names)}"
+        what = lost[names[0]] if len(names) == 1 else f"{len(names)} meshes were not found: {_some(names)}"
         told.append(f"{what}; name {wanted} with --packages, or put them where the file says")
     if hulls:
-        names = _names(hulls, _HULL)
+        names = [*hulls][::-1]
         many = (
             f"{len(names)} meshes do not bound solids, so that their convex hulls were taken: {_some(names)}"
         )
-        told.append(hulls[0] if len(names) == 1 else many)
+        told.append(hulls[names[0]] if len(names) == 1 else many)
     return told
-
-
-def _names(notes: list[str], end: str) -> list[str]:
-    return list(dict.fromkeys(note.removesuffix(end).partition("mesh ")[2] for note in notes))
 
 
 def _some(names: list[str], most: int = 3) -> str:

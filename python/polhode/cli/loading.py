@@ -12,7 +12,7 @@ from polhode.cli.files import as_file
 from polhode.cli.terminal import reading_progress
 from polhode.errors import PolhodeError
 from polhode.io.content import is_molecule
-from polhode.io.loaded import load
+from polhode.io.loaded import check_arguments, load, molecule_isotopes
 from polhode.io.mesh import weld_within
 from polhode.io.mesh_solid import MeshSolid, solid_of
 from polhode.molecules.bonding import crossings_of
@@ -113,9 +113,7 @@ def load_body(
 
 
 def _load_mesh(file: Path, options: BodyOptions, with_shape: bool, with_components: bool) -> LoadedBody:
-    for option, is_given in (("--bond-sigma", options.bond_sigma), ("--mass-sigmas", options.mass_sigmas)):
-        if is_given:
-            raise PolhodeError(f"{option}: {file} is a mesh, not a molecule; leave it out")
+    check_arguments(file, bond_sigma=options.bond_sigma is not None, mass_sigmas=options.mass_sigmas)
     if options.density is not None and options.mass is not None:
         raise PolhodeError(
             "--density and --mass: give one of the two, since the other follows from the volume"
@@ -282,11 +280,9 @@ def _amount(text: str | None, si: str, option: str, unit: str | None) -> float |
 
 def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
     from polhode.cli.atoms import atoms_of
-    from polhode.io.body import check_molecule_options, molecule_isotopes
 
-    check_molecule_options(
+    check_arguments(
         file,
-        prefix="--",
         density=options.density is not None,
         mass=options.mass is not None,
         weld=options.weld is not None,

@@ -26,9 +26,8 @@ from polhode.cli.tables import (
     trust_fields,
 )
 from polhode.errors import PolhodeError
-from polhode.io.body import molecule_isotopes
 from polhode.io.content import EXPECTED_CONTENT, MOLECULE_SUFFIXES, is_molecule, unread
-from polhode.io.loaded import load
+from polhode.io.loaded import load, molecule_isotopes
 from polhode.io.unpacked import inner_suffix
 from polhode.molecules import (
     Isotope,

@@ -269,7 +269,7 @@ def run(arguments: list[str]) -> int:
     except MemoryError as error:
         return _fail(f"there is not enough memory ({error})")
     except (ValueError, ModuleNotFoundError) as error:
-        return _fail(str(error))
+        return _fail(in_options(error))
     except KeyboardInterrupt:
         return _fail("interrupted", code=INTERRUPTED)
     return code if isinstance(code, int) else 0
@@ -294,5 +294,5 @@ def _as_value(argument: str) -> str:
 def _fail(message: str, code: int = BAD_INPUT) -> int:
     if sys.stderr is not None:
         with suppress(OSError):  # nobody reads it: the exit code remains
-            print("polhode:", printable(in_options(" ".join(message.split()))), file=sys.stderr, flush=True)
+            print("polhode:", printable(" ".join(message.split())), file=sys.stderr, flush=True)
     return code

@@ -268,6 +268,12 @@ def _gyrostat_motion(loaded: LoadedBody, axes: Floats, spin: SpinOptions) -> Gyr
             "--omega: its sigma is not followed through the motion of a body with wheels; write the numbers "
             "alone, or leave out --wheel"
         )
+    least = float(loaded.body.principal_moments[0])
+    if not least > 0.0:
+        raise PolhodeError(
+            f"--wheel: all principal moments must be positive, got {least:g}: the momentum inside would turn "
+            "the body infinitely fast; leave out --wheel"
+        )
     return loaded.body.gyrostat(inside).free_motion(omega, _attitude(spin))
 
 

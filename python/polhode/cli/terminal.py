@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import os
-import re
 import sys
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, Final, TextIO, cast
+
+from polhode._format import Note, in_words
+from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
     from pathlib import Path
 
     from rich.console import Console
+
+    from polhode._format import Argument
 
 __all__ = [
     "ReaderLeft",
@@ -25,45 +29,34 @@ __all__ = [
     "write",
 ]
 
-_WAYS_OUT: Final = (
-    ('closure="caps" or "hull"', "--closure caps or --closure hull"),
-    ("pass orient=True", "pass --orient"),
-    ("repair=True mends it", "--repair mends it"),
-    ("repair closes and orients by itself", "--repair closes and orients by itself"),
-    ("leave index_base out", "leave --index-base out"),
-    ("leave length_unit out", "leave --length-unit out"),
-    ("pass density= instead", "pass --density instead"),
-    ("pass allow_outside=True", "pass --allow-outside"),
-    (" (validity.nearest_valid finds the nearest tensor that a body has)", ""),
-    ("move the body with translated()", "correct --center-of-mass"),
-    ("index_base=0", "--index-base 0"),
-    ("pass overwrite=True", "pass --overwrite"),
-    ("pass ignore= with its name", "pass --ignore with its name"),
-    ("pass the edges as tree=", "pass the edges as --tree"),
-    ("give the body a thickness, or nothing inside", "leave out --wheel"),
-    ("integrate with simulate()", "integrate with RigidBody.simulate in Python"),
-)
-_NAMED: Final = re.compile(
-    r"^(weld|closure|orient|union|repair|index_base|length_unit|mass|density|seed|chunk)(?=: )"
-)
-"""Of arguments that are options by the same names."""
-_CLOSURE: Final = re.compile(r'\bclosure="(caps|hull)"(?=\)| takes)')
-_WELD: Final = re.compile(r"\bweld=(?=\S+ joins)")
-_RTOL: Final = (
-    (re.compile(r"\bpass rtol=\S+ if the table was printed to few digits"), "give more digits"),
-    (re.compile(r"\bpass rtol=\S+ to take them as equal"), "give equal moments"),
-)
+_REMEDIES: Final = {
+    "impossible": "; check the numbers and their units",
+    "impossible matter": "; check matter for surfaces that cross, or take another tensor",
+    "index zero": ": --index-base 0",
+    "nearly symmetric": "; give equal moments, or integrate with RigidBody.simulate in Python",
+    "not symmetric": "; integrate with RigidBody.simulate in Python",
+    "pivot off axis": "; correct --center-of-mass, or integrate with RigidBody.simulate in Python",
+    "rounded": "; give more digits",
+}
+"""Remedies of the command line in the place of Python's, at the end of an error of the core, by its kind."""
 
 
-def in_options(message: str) -> str:
-    """Replace the names of Python's arguments in a message by the options of the command line."""
-    for argument, option in _WAYS_OUT:
-        message = message.replace(argument, option)
-    for pattern, option in _RTOL:
-        message = pattern.sub(option, message)
-    message = _NAMED.sub(lambda found: f"--{found[1].replace('_', '-')}", message)
-    message = _CLOSURE.sub(r"--closure \1", message)
-    return _WELD.sub("--weld ", message)
+def in_options(message: str | Exception) -> str:
+    """Write a note or an error in words, with options where Python has arguments."""
+    if isinstance(message, Note):
+        return in_words(message.pieces, _option)
+    if not isinstance(message, PolhodeError):
+        return str(message)
+    if message.kind in _REMEDIES:
+        return in_words(message.args[:-1], _option) + _REMEDIES[message.kind]
+    return message.words(_option)
+
+
+def _option(argument: Argument) -> str:
+    name = f"--{argument.name.replace('_', '-')}"
+    if argument.value in (None, True):
+        return name
+    return " or ".join(f"{name} {value}" for value in argument.values)
 
 
 def printable(text: str) -> str:

@@ -8,7 +8,6 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import TYPE_CHECKING, Final
 
-from polhode import RigidBody
 from polhode.cli.files import shown
 from polhode.cli.layout import Field, Report
 from polhode.cli.loading import LoadedBody, load_body
@@ -23,25 +22,19 @@ from polhode.cli.tables import (
     trust_fields,
 )
 from polhode.errors import PolhodeError
-from polhode.io.saved import read_report
-from polhode.units import amount, has_unit, metres_per, quantities, split, vector
+from polhode.io.loaded import check_arguments
+from polhode.io.read import is_whole, read_whole
+from polhode.units import amount, has_unit, quantities, split, vector
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["any_body", "body_sections", "check_moments_alone", "is_whole", "whole_report"]
+__all__ = ["any_body", "body_sections", "check_moments_alone", "whole_report"]
 
-_WHOLE: Final = (".json", ".npz", ".toml")
-"""Endings of such files."""
 _OF_MESHES: Final = ("weld", "closure", "orient", "union", "repair", "index_base")
 _OF_SHAPES: Final = ("density", "mass", *_OF_MESHES, "bond_sigma", "mass_sigmas")
 _OF_PRINTOUTS: Final = ("inertia", "center_of_mass", "products", "inertia_about")
 _PLAIN: Final = BodyOptions()
-
-
-def is_whole(file: Path | None) -> bool:
-    """Whether this is no file with a shape."""
-    return file is None or file.suffix.lower() in _WHOLE
 
 
 def any_body(file: Path | None, options: BodyOptions, **how: bool) -> LoadedBody:
@@ -55,33 +48,14 @@ def any_body(file: Path | None, options: BodyOptions, **how: bool) -> LoadedBody
 
 def _whole_body(file: Path, options: BodyOptions) -> LoadedBody:
     """Read a saved body or an assembly."""
-    is_assembly = file.suffix.lower() == ".toml"
-    kind = "assembly" if is_assembly else "saved body"
-    for name in (*_OF_SHAPES, *(("length_unit",) if is_assembly else ())):
-        if _is_given(options, name):
-            reason = "whose parts state theirs" if is_assembly else "whole as it is"
-            raise PolhodeError(
-                f"--{name.replace('_', '-')}: {file} is {_article(kind)}, {reason}; leave it out"
-            )
-    if is_assembly:
-        from polhode.assembly import read
-
-        made = read(file)
-        return LoadedBody(made.body, [], "kg", "m", notes=made.notes, kind=kind)
-    reported = read_report(file)
-    body = RigidBody.load(file) if reported is None else reported
+    check_arguments(file, **{name: _is_given(options, name) for name in (*_OF_SHAPES, "length_unit")})
+    body, kind, has_units, notes, _ = read_whole(file, options.length_unit)
     if body.shape:
         raise PolhodeError(
             f"{file}: it holds a stack of bodies, of shape {body.shape}, not one; save one of them alone"
         )
-    unit = options.length_unit
-    if reported is not None:
-        if unit is not None:
-            raise PolhodeError(f"--length-unit: {file} is a report, in kg and m; leave it out")
-        return LoadedBody(body, [], "kg", "m", kind="report")
-    if unit is None:
-        return LoadedBody(body, [], "mass", "unit", kind=kind)
-    return LoadedBody(body.scaled(length=metres_per(unit)), [], "kg", "m", kind=kind)
+    mass_unit, length = ("kg", "m") if has_units else ("mass", "unit")
+    return LoadedBody(body, [], mass_unit, length, notes=notes, kind=kind)
 
 
 def _printed(file: Path | None, options: BodyOptions) -> LoadedBody:
@@ -188,7 +162,3 @@ def check_moments_alone(options: BodyOptions, *taken: str) -> None:
 def _is_given(options: BodyOptions, name: str) -> bool:
     """Whether an option differs from what holds without it."""
     return bool(getattr(options, name) != getattr(_PLAIN, name))
-
-
-def _article(kind: str) -> str:
-    return f"an {kind}" if kind[0] in "aeiou" else f"a {kind}"

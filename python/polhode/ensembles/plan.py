@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
+from copy import copy
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 
@@ -324,7 +325,7 @@ def value(node: Node, drawn: Mapping[str, Any], rows: Rows) -> Any:
         values = [found[row] for row in rows]
         for one in values:
             if isinstance(one, Refusal):
-                raise type(one.error)(*one.error.args)
+                raise copy(one.error)
         return values
     if isinstance(node, Make):
         args = [value(part, drawn, rows) for part in node.args]

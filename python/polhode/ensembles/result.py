@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
 import numpy as np
 
 from polhode import _core
-from polhode._format import short
+from polhode._format import Argument, short
 from polhode._optional import require
 from polhode._progress import watched
 from polhode.ensembles.checkpoints import Checkpoint
@@ -20,6 +20,7 @@ from polhode.ensembles.plan import bytes_of_member, coordinates, draws, layout
 from polhode.ensembles.reduce import BLOCK, nodes_of_chunk, tree_of
 from polhode.ensembles.running import arrays_of_chunk
 from polhode.ensembles.stores import NpzStore, ZarrStore, opened
+from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -280,9 +281,12 @@ class Ensemble:
         """Refuse chunks that this machine has no memory for, before any of them is run."""
         plan = self.plan
         if may_be_done and plan.chunks > _MOST_CHUNKS:
-            raise ValueError(
-                f"chunk: {plan.n} members in chunks of {plan.chunk} are {plan.chunks} chunks, more than "
-                f"{_MOST_CHUNKS}; give chunk={-(-plan.n // (_MOST_CHUNKS * BLOCK)) * BLOCK} or more"
+            raise PolhodeError(
+                Argument("chunk"),
+                f": {plan.n} members in chunks of {plan.chunk} are {plan.chunks} chunks, more than "
+                f"{_MOST_CHUNKS}; give ",
+                Argument("chunk", -(-plan.n // (_MOST_CHUNKS * BLOCK)) * BLOCK),
+                " or more",
             )
         needed, room = self.memory.worker, _room()
         if self.client is None and room is not None and needed > room:

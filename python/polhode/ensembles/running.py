@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import re
+from copy import copy
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
@@ -23,15 +23,13 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Rows = NDArray[np.intp]
 
-__all__ = ["REFUSED", "ROW", "Run", "arrays_of_chunk", "run_members"]
+__all__ = ["REFUSED", "Run", "arrays_of_chunk", "run_members"]
 
 T = TypeVar("T")
 
 REFUSED: Final = "refused"
 """The status of a member that has no motion: its numbers make no body, load or state."""
 FAILED: Final = ("failed", REFUSED)
-ROW: Final = re.compile(r"row [\d, ()]+: ")
-"""How errors of stacks name a row of theirs, which is none of the ensemble's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,11 +181,10 @@ def _each(
     try:
         return rows, attempt(rows), {}
     except PolhodeError as error:
-        named = ROW.match(str(error))
-        if is_run and not named:
+        if is_run and error.stack_row is None:
             raise
         if len(rows) == 1:
-            error.args = (ROW.sub("", str(error), count=1),)
+            error.leave_row_out()
             return rows[:0], None, {int(rows[0]): error}
     half = len(rows) // 2
     able: Rows = rows[:0]
@@ -208,8 +205,9 @@ def _raise_first(run: Run, faults: dict[int, PolhodeError]) -> None:
     row = int(failed[0])
     member = run.inputs.first + row
     fault = faults[row] if row in faults else _failure(run, row)
-    told = type(fault)(f"member {member}: {ROW.sub('', str(fault), count=1)}")
-    told.__dict__.update(vars(fault))
+    told = copy(fault)
+    told.leave_row_out()
+    told.args = (f"member {member}: ", *told.args)
     raise told
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from polhode.ensembles.plan import draws, is_each_alone
-from polhode.ensembles.running import ROW, admitted, output
+from polhode.ensembles.running import admitted, output
 from polhode.errors import IntegrationError, PolhodeError
 
 if TYPE_CHECKING:
@@ -65,8 +65,9 @@ def trial_of(plan: Plan) -> tuple[Rows, Trajectory]:
             first = trial
     if first is None:
         row, fault = min(faults.items())
-        what = ROW.sub("", str(fault), count=1)
-        raise type(fault)(f"none of the first {inputs.count} members can begin; member {row}: {what}")
+        fault.leave_row_out()
+        begin = f"none of the first {inputs.count} members can begin; member {row}: "
+        raise type(fault)(begin, *fault.args)
     return np.array(begun), first
 
 

@@ -1,11 +1,11 @@
 """Reading and writing: bodies from meshes, molecules and CAD, and bodies and motions that keep every bit.
 
-:func:`load` opens a file that holds a mesh, a molecule or solids of CAD; :meth:`polhode.RigidBody.from_file`
-makes a body of it.
+:meth:`polhode.RigidBody.from_file` reads every file that holds a body. :func:`load` opens one that holds a
+mesh, a molecule or solids of CAD, without making a body of it.
 
 :meth:`polhode.RigidBody.save` and :meth:`polhode.Trajectory.save` write JSON and NumPy's npz;
-:meth:`polhode.RigidBody.load` and :meth:`polhode.Trajectory.from_file` read them. :data:`BODY_SCHEMA` and
-:data:`TRAJECTORY_SCHEMA` describe the JSON files, as JSON Schema.
+:meth:`polhode.RigidBody.from_file` and :meth:`polhode.Trajectory.from_file` read them. :data:`BODY_SCHEMA`
+and :data:`TRAJECTORY_SCHEMA` describe the JSON files, as JSON Schema.
 
 A *v/f text* is a text file whose lines ``v x y z`` give the vertices and whose lines ``f i j k`` give the
 triangles by the numbers of their vertices. OBJ files have this form, and so have the plate models of
@@ -17,22 +17,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from os import PathLike
-
-    from polhode.io.body import body_from_file
-    from polhode.io.loaded import Loaded, load, read_mesh
+    from polhode.io.loaded import Loaded, load, read_mesh, solid_from_file
     from polhode.io.mesh import Mesh
-    from polhode.io.mesh_solid import MeshSolid, solid_from_file
+    from polhode.io.mesh_solid import MeshSolid
     from polhode.io.molecules import Molecule, read_xyz
-    from polhode.io.saved import (
-        BODY_SCHEMA,
-        TRAJECTORY_SCHEMA,
-        load_body,
-        save_body,
-        save_trajectory_json,
-        save_trajectory_npz,
-    )
-    from polhode.motion.trajectory import Trajectory
+    from polhode.io.saved import BODY_SCHEMA, TRAJECTORY_SCHEMA
 else:
 
     def __getattr__(name):
@@ -41,7 +30,9 @@ else:
 
         home = _HOMES.get(name)
         if home is None:
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+            from polhode._hints import no_name
+
+            raise no_name(__name__, name, __all__)
         value = globals()[name] = getattr(import_module(f"{__name__}.{home}"), name)
         return value
 
@@ -56,15 +47,10 @@ _HOMES = {
     "MeshSolid": "mesh_solid",
     "Molecule": "molecules",
     "TRAJECTORY_SCHEMA": "saved",
-    "body_from_file": "body",
     "load": "loaded",
-    "load_body": "saved",
     "read_mesh": "loaded",
     "read_xyz": "molecules",
-    "save_body": "saved",
-    "save_trajectory_json": "saved",
-    "save_trajectory_npz": "saved",
-    "solid_from_file": "mesh_solid",
+    "solid_from_file": "loaded",
 }
 """In which file of this room each public name stands."""
 
@@ -75,27 +61,8 @@ __all__ = [
     "Mesh",
     "MeshSolid",
     "Molecule",
-    "body_from_file",
     "load",
-    "load_body",
-    "load_trajectory",
     "read_mesh",
     "read_xyz",
-    "save_body",
-    "save_trajectory_json",
-    "save_trajectory_npz",
     "solid_from_file",
 ]
-
-
-def load_trajectory(path: str | PathLike[str]) -> Trajectory:
-    """Read a motion: what ``Trajectory.from_file`` does.
-
-    Parameters
-    ----------
-    path : str or os.PathLike
-        Ends in ``.json`` or ``.npz``.
-    """
-    from polhode.motion.trajectory import Trajectory
-
-    return Trajectory.from_file(path)

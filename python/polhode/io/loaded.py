@@ -1,4 +1,4 @@
-"""What a file of matter holds: a triangle mesh or a molecule, opened and recognised once.
+"""What a file holds: a triangle mesh, solids of CAD or a molecule, opened and recognised once; a saved body.
 
 Nothing is repaired and nothing is guessed: a file is what its name says and whole, or it is an error.
 The one exception is exact: corners at bit-equal coordinates are one vertex, because STL stores each
@@ -8,28 +8,59 @@ triangle's corners anew.
 from __future__ import annotations
 
 import os
+import warnings
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO, Final
+from typing import TYPE_CHECKING, BinaryIO, Final, Literal, NamedTuple
 
 import numpy as np
 
 from polhode import _core
+from polhode._format import Argument
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.io.cad_geometry import check_occt
 from polhode.io.content import EXPECTED_CONTENT, MOLECULE_SUFFIXES, Content, is_molecule, opened, unread
 from polhode.io.mesh import Mesh, check_faces, weld, weld_within
+from polhode.io.mesh_solid import MeshSolid, naming_file, solid_of
 from polhode.io.plates import read_numbered_plates
 from polhode.io.reading import Budget, check_ordinary, naming, status_of, whole_of
+from polhode.io.saved import read_body, read_report
 from polhode.io.unpacked import inner_suffix, unpacked
 from polhode.units import METRES, metres_per
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from polhode._core import RigidBody
+    from polhode._typing import SupportsSigma
     from polhode.io.cad_files import CadFile
     from polhode.io.molecules import Molecule
+    from polhode.molecules import Isotope
+    from polhode.molecules.nuclides import Masses
 
-__all__ = ["CAD_SUFFIXES", "Loaded", "load", "read_mesh"]
+    Number = float | _core.Uncertain | SupportsSigma
 
+__all__ = [
+    "ASSEMBLY_SUFFIX",
+    "CAD_SUFFIXES",
+    "SAVED_SUFFIXES",
+    "Loaded",
+    "Whole",
+    "body_of_molecule",
+    "check_arguments",
+    "load",
+    "molecule_isotopes",
+    "read_mesh",
+    "read_saved",
+    "solid_from_file",
+    "warn",
+]
+
+SAVED_SUFFIXES: Final = (".json", ".npz")
+"""Of bodies that ``RigidBody.save`` wrote, and of reports."""
+ASSEMBLY_SUFFIX: Final = ".toml"
+_OF_MESHES: Final = ("density", "mass", "weld", "closure", "orient", "union", "repair", "index_base")
+_OF_MOLECULES: Final = ("masses", "bond_sigma", "mass_sigmas")
 CAD_SUFFIXES: Final = (".step", ".stp", ".igs", ".iges")
 _METRE: Final = ("m", "metre", "meter")
 _OF_EXTRAS: Final = (*CAD_SUFFIXES, ".vtk", ".vtu", ".vtp")
@@ -127,8 +158,10 @@ class Loaded:
         metres_per(length_unit)
         if self.states_unit and length_unit != self.unit:
             raise PolhodeError(
-                f"length_unit: {self.path} says itself that its unit is {self.unit!r}, not {length_unit!r}; "
-                "leave length_unit out, or export the file in the right unit"
+                Argument("length_unit"),
+                f": {self.path} says itself that its unit is {self.unit!r}, not {length_unit!r}; leave ",
+                Argument("length_unit"),
+                " out, or export the file in the right unit",
             )
         return length_unit
 
@@ -190,9 +223,10 @@ def load(path: str | os.PathLike[str], *, index_base: int = 1) -> Loaded:
     file = Path(path)
     suffix = inner_suffix(file)
     if index_base not in (0, 1):
-        raise ValueError(f"index_base: expected 0 or 1, got {index_base!r}")
+        raise PolhodeError(Argument("index_base"), f": expected 0 or 1, got {index_base!r}")
     if index_base != 1 and suffix not in _TEXT_SUFFIXES:
-        raise ValueError(f"index_base: {file} is not v/f text (.obj, .tab, .txt); leave index_base out")
+        base = Argument("index_base")
+        raise PolhodeError(base, f": {file} is not v/f text (.obj, .tab, .txt); leave ", base, " out")
     if suffix in CAD_SUFFIXES:
         check_occt(f"{file}: reading CAD files (STEP, IGES)")  # told of any such name
     if file.suffix.lower() == ".gz" and suffix not in EXPECTED_CONTENT:
@@ -366,3 +400,218 @@ def read_mesh(path: str | os.PathLike[str], *, index_base: int = 1, weld: float 
 
 def _is_binary_ply(content: Content, suffix: str) -> bool:
     return suffix == ".ply" and content.format == "PLY" and b"\nformat binary" in content.head
+
+
+class Whole(NamedTuple):
+    """A body that a file holds whole.
+
+    Attributes
+    ----------
+    body : RigidBody
+        One, or a stack that was saved.
+    kind : str
+        ``"saved body"``, ``"report"`` or ``"assembly"``.
+    has_units : bool
+        Whether it is in kg and m; a saved body is in units that its file does not state.
+    notes : tuple of str
+        What is to be told of the parts of an assembly.
+    overlaps : tuple of str
+        Those of them that tell of parts that share matter.
+    """
+
+    body: RigidBody
+    kind: str
+    has_units: bool
+    notes: tuple[str, ...] = ()
+    overlaps: tuple[str, ...] = ()
+
+
+def read_saved(path: str | os.PathLike[str], length_unit: str | None = None) -> Whole:
+    """Read a saved body or a report of one.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+    length_unit : str, optional
+        Unit of length of a saved body, which is then converted to metres.
+    """
+    file = Path(path)
+    body = read_report(file)
+    if body is not None:
+        if length_unit is not None:
+            raise PolhodeError(Argument("length_unit"), f": {file} is a report, in kg and m; leave it out")
+        return Whole(body, "report", True)
+    body = read_body(file)
+    if length_unit is None:
+        return Whole(body, "saved body", False)
+    return Whole(body.scaled(length=metres_per(length_unit)), "saved body", True)
+
+
+def check_arguments(path: str | os.PathLike[str], **given: bool) -> None:
+    """Refuse arguments that a file of this kind, by its name, cannot use.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+    **given : bool
+        For each argument, whether it is given.
+    """
+    file = Path(path)
+    suffix = file.suffix.lower()
+    unused: tuple[str, ...] = (*_OF_MESHES, *_OF_MOLECULES)
+    if suffix == ASSEMBLY_SUFFIX:
+        what, unused = "an assembly, whose parts state theirs", (*unused, "length_unit")
+    elif suffix in SAVED_SUFFIXES:
+        what = "a saved body, whole as it is"
+    elif is_molecule(file):
+        what, unused = "a molecule, not a mesh", _OF_MESHES
+    else:
+        what, unused = "a mesh, not a molecule", _OF_MOLECULES
+    name = next((name for name, is_given in given.items() if is_given and name in unused), None)
+    if name is None:
+        return
+    if unused == _OF_MESHES and name in ("density", "mass"):
+        what = "a molecule, whose atoms have their own masses"
+    raise PolhodeError(Argument(name), f": {os.fspath(path)} is {what}; leave it out")
+
+
+def warn(path: str | os.PathLike[str], lines: Iterable[str]) -> None:
+    """Warn a caller who sees no notes."""
+    for line in lines:
+        warnings.warn(f"{os.fspath(path)}: {line}", stacklevel=4)
+
+
+def body_of_molecule(
+    path: str | os.PathLike[str], length_unit: str | None = None, masses: Masses = "most_common"
+) -> tuple[RigidBody, tuple[str, ...], list[str]]:
+    """Read the body of a molecule, with the notes of its file and words for what crosses its cell.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+    length_unit : str, optional
+        As in :func:`body_from_file`.
+    masses : {"most_common", "average"}
+    """
+    from polhode.molecules import ATOMIC_MASS_CONSTANT, body_of_atoms
+    from polhode.molecules.bonding import crossings_of
+
+    molecule = load(path).molecule
+    atoms = molecule_isotopes(path, molecule, masses)
+    metres, one = (1.0, 1.0) if length_unit is None else (metres_per(length_unit), ATOMIC_MASS_CONSTANT)
+    found = [isotope.mass * one for isotope in atoms]
+    with naming_file(path), np.errstate(over="ignore"):
+        at = molecule.scaled(metres)
+        body = body_of_atoms(found, at.positions, source=masses, rounding=at.rounding)
+    crossed: list[str] = []
+    if at.cell is not None:
+        in_angstrom = 1.0 if length_unit is None else 1.0 / METRES["angstrom"]
+        _, crossed = crossings_of(atoms, at.positions * in_angstrom, at.cell * in_angstrom)
+    return body, molecule.notes, crossed
+
+
+def molecule_isotopes(
+    path: str | os.PathLike[str], molecule: Molecule, masses: Masses = "most_common"
+) -> list[Isotope]:
+    """Find the nuclides of a molecule's atoms; an error names the file.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        Where the molecule comes from.
+    molecule : Molecule
+        What was read.
+    masses : {"most_common", "average"}
+        See :func:`polhode.molecules.isotopes`.
+
+    Returns
+    -------
+    list of Isotope
+        In the order of the atoms.
+    """
+    from polhode.molecules import isotopes
+
+    try:
+        return isotopes(molecule.labels, masses)
+    except PolhodeError as error:
+        raise FileFormatError(f"{os.fspath(path)}: {error}") from None
+
+
+def solid_from_file(
+    path: str | os.PathLike[str],
+    *,
+    density: Number | None = None,
+    mass: Number | None = None,
+    scale: float | None = None,
+    weld: float = 0.0,
+    closure: Literal["caps", "hull"] | None = None,
+    orient: bool = False,
+    repair: bool = False,
+    index_base: int = 1,
+    progress: Callable[[float], object] | None = None,
+) -> MeshSolid:
+    """Make a solid from the mesh in a file; errors name the file.
+
+    Binary STL and binary PLY are read block by block, so that a file may be larger than the memory. Of a PLY
+    file only the vertices are kept in memory, since faces refer to them in any order. Other formats are read
+    into memory as a whole. The same holds if corners are welded within a length, or if holes are closed.
+
+    To find duplicate faces, a file that is read in blocks is read once more for every eight million
+    triangles. A component whose faces are wound inward is a cavity if it lies inside another component. This
+    is checked for meshes of up to a quarter of a million triangles. `RigidBody.provenance` lists the checks
+    that were made.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        See :func:`read_mesh`.
+    density, mass : float or Uncertain, optional
+        Exactly one of them.
+    scale : float, optional
+        Length of one unit of the coordinates, in the unit of the result. By default it is the unit of
+        the file in metres, if the file or its format states the unit, and 1 otherwise.
+    weld, index_base
+        See :func:`read_mesh`.
+    closure : {"caps", "hull"}, optional
+        How to close an open mesh, see :meth:`polhode.RigidBody.from_mesh`. By default an open mesh is an
+        error.
+    orient : bool
+        Whether to turn triangles that face inward. By default they are an error.
+    repair : bool
+        Whether to mend the mesh where there is need: weld corners, drop duplicate faces, turn faces so that
+        all are wound alike, and fill holes. ``MeshSolid.steps`` tells what was done. It takes the place of
+        `closure` and `orient`.
+    progress : callable, optional
+        A function that is called now and then with the fraction of the file that has been read.
+
+    Returns
+    -------
+    MeshSolid
+
+    Raises
+    ------
+    FileFormatError
+        If the file is not what its name says, damaged or empty.
+    MeshError
+        If the mesh does not bound a solid.
+    OSError
+        If the file cannot be read.
+    """
+    loaded = load(path, index_base=index_base)
+    warn(path, () if loaded.cad is None else loaded.cad.overlaps)
+    own = 1.0 if loaded.unit is None else metres_per(loaded.unit)
+    if scale is not None and scale != own and loaded.states_unit:
+        raise PolhodeError(
+            f"scale: {os.fspath(path)} says itself that its unit is {loaded.unit!r}; leave it out"
+        )
+    return solid_of(
+        loaded,
+        density=density,
+        mass=mass,
+        scale=own if scale is None else scale,
+        weld=weld,
+        closure=closure,
+        orient=orient,
+        repair=repair,
+        progress=progress,
+    )

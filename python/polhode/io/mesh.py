@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from polhode._format import short
-from polhode.errors import MeshError
+from polhode._format import Argument, short
+from polhode.errors import MeshError, PolhodeError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -77,7 +77,9 @@ def weld_within(mesh: Mesh, length: float) -> Mesh:
         chain of others between them.
     """
     if not (np.isfinite(length) and length > 0.0):
-        raise ValueError(f"weld: {length} is not a positive length; leave it out to join equal corners")
+        raise PolhodeError(
+            Argument("weld"), f": {length} is not a positive length; leave it out to join equal corners"
+        )
     if not np.isfinite(mesh.vertices).all():
         return mesh  # to be refused as it is, with the number of the vertex
     cells = np.empty(mesh.vertices.shape, dtype=np.int64)
@@ -88,7 +90,9 @@ def weld_within(mesh: Mesh, length: float) -> Mesh:
     welded = _merged(mesh, cells)
     moved = np.abs(welded.vertices[welded.faces] - mesh.vertices[mesh.faces]).max(initial=0.0)
     if moved > 2.0 * length:
-        raise ValueError(f"weld: {length:g} would join corners up to {moved:g} apart; give a smaller length")
+        raise PolhodeError(
+            Argument("weld"), f": {length:g} would join corners up to {moved:g} apart; give a smaller length"
+        )
     return welded
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import warnings
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
@@ -11,22 +10,22 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
 import numpy as np
 
 from polhode import _core
+from polhode._format import Argument
 from polhode.errors import FileFormatError, MeshError, PolhodeError
-from polhode.io.loaded import Loaded, load
 from polhode.io.mesh import weld_within
 from polhode.io.repair import RepairStep, repaired, resolution_of, spanned_volume
-from polhode.units import metres_per
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from polhode._typing import SupportsSigma
     from polhode.io.cad_files import CadFile, SolidPart
+    from polhode.io.loaded import Loaded
     from polhode.io.mesh import Mesh
 
     Number = float | _core.Uncertain | SupportsSigma
 
-__all__ = ["MeshSolid", "naming_file", "solid_from_file", "solid_of", "warn_of_overlaps"]
+__all__ = ["MeshSolid", "naming_file", "solid_of"]
 
 _SMALL_FILE: Final = 1 << 28
 """Bytes of a file that is read whole for a hint in an error."""
@@ -77,86 +76,6 @@ class MeshSolid(NamedTuple):
     steps: tuple[RepairStep, ...] = ()
 
 
-def solid_from_file(
-    path: str | os.PathLike[str],
-    *,
-    density: Number | None = None,
-    mass: Number | None = None,
-    scale: float | None = None,
-    weld: float = 0.0,
-    closure: Literal["caps", "hull"] | None = None,
-    orient: bool = False,
-    repair: bool = False,
-    index_base: int = 1,
-    progress: Callable[[float], object] | None = None,
-) -> MeshSolid:
-    """Make a solid from the mesh in a file; errors name the file.
-
-    Binary STL and binary PLY are read block by block, so that a file may be larger than the memory. Of a PLY
-    file only the vertices are kept in memory, since faces refer to them in any order. Other formats are read
-    into memory as a whole. The same holds if corners are welded within a length, or if holes are closed.
-
-    To find duplicate faces, a file that is read in blocks is read once more for every eight million
-    triangles. A component whose faces are wound inward is a cavity if it lies inside another component. This
-    is checked for meshes of up to a quarter of a million triangles. `RigidBody.provenance` lists the checks
-    that were made.
-
-    Parameters
-    ----------
-    path : str or os.PathLike
-        See :func:`read_mesh`.
-    density, mass : float or Uncertain, optional
-        Exactly one of them.
-    scale : float, optional
-        Length of one unit of the coordinates, in the unit of the result. By default it is the unit of
-        the file in metres, if the file or its format states the unit, and 1 otherwise.
-    weld, index_base
-        See :func:`read_mesh`.
-    closure : {"caps", "hull"}, optional
-        How to close an open mesh, see :meth:`polhode.RigidBody.from_mesh`. By default an open mesh is an
-        error.
-    orient : bool
-        Whether to turn triangles that face inward. By default they are an error.
-    repair : bool
-        Whether to mend the mesh where there is need: weld corners, drop duplicate faces, turn faces so that
-        all are wound alike, and fill holes. ``MeshSolid.steps`` tells what was done. It takes the place of
-        `closure` and `orient`.
-    progress : callable, optional
-        A function that is called now and then with the fraction of the file that has been read.
-
-    Returns
-    -------
-    MeshSolid
-
-    Raises
-    ------
-    FileFormatError
-        If the file is not what its name says, damaged or empty.
-    MeshError
-        If the mesh does not bound a solid.
-    OSError
-        If the file cannot be read.
-    """
-    loaded = load(path, index_base=index_base)
-    warn_of_overlaps(loaded)
-    own = 1.0 if loaded.unit is None else metres_per(loaded.unit)
-    if scale is not None and scale != own and loaded.states_unit:
-        raise PolhodeError(
-            f"scale: {os.fspath(path)} says itself that its unit is {loaded.unit!r}; leave it out"
-        )
-    return solid_of(
-        loaded,
-        density=density,
-        mass=mass,
-        scale=own if scale is None else scale,
-        weld=weld,
-        closure=closure,
-        orient=orient,
-        repair=repair,
-        progress=progress,
-    )
-
-
 def solid_of(
     loaded: Loaded,
     *,
@@ -181,7 +100,12 @@ def solid_of(
     if repair:
         for name in ("closure", "orient"):
             if asked[name]:
-                raise PolhodeError(f"{name}: repair closes and orients by itself; leave one of the two out")
+                raise PolhodeError(
+                    Argument(name),
+                    ": ",
+                    Argument("repair"),
+                    " closes and orients by itself; leave one of the two out",
+                )
         with naming_file(file):
             first = _repaired_solid(loaded.mesh, density, mass, scale, weld)
             return _united(loaded, first, weld, density, mass, scale) if union else first
@@ -200,9 +124,9 @@ def solid_of(
             if file.stat().st_size <= _SMALL_FILE:
                 # Of a file that another reader refuses there is no way out to tell.
                 with suppress(FileFormatError):
-                    if error.law == "closed" and loaded.format == "binary STL":
-                        _offer_weld(error, loaded.mesh)
-                    _offer_repair(error, loaded.mesh, scale)
+                    is_welded = error.kind == "open" and loaded.format == "binary STL"
+                    is_welded = is_welded and _offer_weld(error, loaded.mesh)
+                    _offer_repair(error, loaded.mesh, scale, is_welded=is_welded)
             raise
         return MeshSolid(body, loaded.format, None, faces, volume, area, 0)
     mesh = loaded.mesh
@@ -223,19 +147,13 @@ def solid_of(
             volume = float(body.mass) / _value(density) if density is not None else float(solid(1.0).mass)
             area = _core.surface_area(vertices, mesh.faces)
     except MeshError as error:
-        _offer_weld(error, mesh)
+        is_welded = _offer_weld(error, mesh)
         if closure is None:
-            _offer_repair(error, mesh, scale)
+            _offer_repair(error, mesh, scale, is_welded=is_welded)
         raise
     welded = joined + corners - len(mesh.vertices)
     count = len(mesh.vertices)
     return MeshSolid(body._welded(welded), mesh.format, count, len(mesh.faces), volume, area, welded)
-
-
-def warn_of_overlaps(loaded: Loaded) -> None:
-    """Warn of solids of CAD that share matter, for a caller who sees no notes."""
-    for line in () if loaded.cad is None else loaded.cad.overlaps:
-        warnings.warn(f"{loaded.path}: {line}", stacklevel=3)
 
 
 def _joined(loaded: Loaded, mesh: Mesh, orient: bool) -> Loaded:
@@ -249,7 +167,9 @@ def _joined(loaded: Loaded, mesh: Mesh, orient: bool) -> Loaded:
         if inward is not None and not orient:
             raise MeshError(
                 f"component {inward} of the mesh is inside out, and lies in no other as a cavity; reverse "
-                "the order of its vertices, or pass orient=True to turn it"
+                "the order of its vertices, or pass ",
+                Argument("orient", True),
+                " to turn it",
             )
         joined = united([(part.vertices, part.faces) for part in parts], mesh.format)
     return replace(loaded, is_stream=False, _mesh=joined)
@@ -263,7 +183,7 @@ def _cad_solid(
 
     name = next((name for name, value in asked.items() if value), None)
     if name is not None:
-        raise PolhodeError(f"{name}: {loaded.path} holds solids, not a mesh; leave it out")
+        raise PolhodeError(Argument(name), f": {loaded.path} holds solids, not a mesh; leave it out")
     with naming_file(loaded.path):
         body, parts = solids_of(cad, density, mass)
     area = sum(part.moments.area for part in cad.parts) * 1e-6
@@ -284,7 +204,9 @@ def naming_file(path: str | os.PathLike[str]) -> Iterator[None]:
     try:
         yield
     except PolhodeError as error:
-        error.args = (f"{os.fspath(path)}: {error}",)
+        if isinstance(error, MeshError):
+            _name_arguments(error)
+        error.args = (f"{os.fspath(path)}: ", *error.args)
         raise
 
 
@@ -340,54 +262,69 @@ def _united(
     )
 
 
-def _offer_repair(error: MeshError, mesh: Mesh, scale: float) -> None:
-    """Offer what mends a mesh, where it does: repair, else the convex hull."""
+def _offer_repair(error: MeshError, mesh: Mesh, scale: float, *, is_welded: bool) -> None:
+    """Offer what mends a mesh, where it does: repair, else the convex hull.
+
+    `is_welded` says that welding is offered already.
+    """
     if len(mesh.faces) > _MOST_TRIED:
         return
-    if error.law == "closed":
-        _offer_what_closes(error, mesh, scale)
+    if error.kind == "open":
+        _end_open(error, _serving(mesh, scale))
     try:
         steps = _repaired_solid(mesh, 1.0, None, scale, 0.0).steps
     except (MeshError, ValueError):
         with suppress(MeshError, ValueError, ModuleNotFoundError):
             _core.RigidBody.from_mesh(mesh.vertices * scale, mesh.faces, density=1.0, closure="hull")
-            if error.law != "closed":  # of an open mesh the message offers it
-                error.offer('closure="hull" takes the convex hull instead')
+            if error.kind != "open":  # of an open mesh the message offers it
+                error.offer(Argument("closure", "hull"), " takes the convex hull instead")
         return
     change = sum(step.change for step in steps)
-    if [step.name for step in steps] == ["weld"] and "weld=" in str(error):
-        return  # which is offered by itself
-    if steps:
+    if steps and not (is_welded and [step.name for step in steps] == ["weld"]):
         names = ", ".join(dict.fromkeys(step.name for step in steps))
-        error.offer(f"repair=True mends it ({names}; volume changed by {change:.2g} %)")
+        error.offer(Argument("repair", True), f" mends it ({names}; volume changed by {change:.2g} %)")
 
 
-def _offer_what_closes(error: MeshError, mesh: Mesh, scale: float) -> None:
-    """Take the closures out of the message that leave no solid."""
-    serving = []
+def _name_arguments(error: MeshError) -> None:
+    """Name the arguments in the remedy with which a message of the core ends."""
+    if any(isinstance(piece, Argument) for piece in error.args):
+        return
+    if error.kind == "open":
+        _end_open(error, _CLOSURES)
+    elif error.kind in ("inverted", "inside out"):
+        turned = " to turn them all" if error.kind == "inverted" else " to turn them"
+        error.args = (*error.args[:-1], ", or pass ", Argument("orient", True), turned)
+
+
+def _end_open(error: MeshError, closures: Sequence[str]) -> None:
+    close = ("close the mesh (", Argument("closure", tuple(closures)), "), or ") if closures else ()
+    error.end_with(*close, "model a thin shell instead")
+
+
+def _serving(mesh: Mesh, scale: float) -> list[str]:
+    """Find the closures that leave a solid."""
+    serving: list[str] = []
     for closure in _CLOSURES:
         with suppress(MeshError, ValueError):
             with suppress(ModuleNotFoundError):  # whether it would serve is not known
                 _core.RigidBody.from_mesh(mesh.vertices * scale, mesh.faces, density=1.0, closure=closure)
-            serving.append(f'"{closure}"')
-    if len(serving) < len(_CLOSURES):
-        every = 'close the mesh (closure="caps" or "hull"), or '
-        left = f"close the mesh (closure={serving[0]}), or " if serving else ""
-        error.args = (str(error).replace(every, left),)
-        error.way_out = error.way_out.replace(every, left)
+            serving.append(closure)
+    return serving
 
 
-def _offer_weld(error: MeshError, mesh: Mesh) -> None:
+def _offer_weld(error: MeshError, mesh: Mesh) -> bool:
     """Offer to weld, as the first way out, where corners are closer than 32-bit coordinates resolve."""
     in_range = not mesh.faces.size or (mesh.faces.min() >= 0 and mesh.faces.max() < len(mesh.vertices))
     resolution = resolution_of(mesh)
     if not (resolution > 0.0 and in_range):
-        return
+        return False
     try:
         near = len(mesh.vertices) - len(weld_within(mesh, resolution).vertices)
     except ValueError:
-        return
+        return False
     if near == 0:
-        return
+        return False
     lie, them = ("corner lies", "it") if near == 1 else ("corners lie", "them")
-    error.offer(f"{near} {lie} within {resolution:g} of another, weld={resolution:g} joins {them}")
+    weld = Argument("weld", float(f"{resolution:g}"))
+    error.offer(f"{near} {lie} within {resolution:g} of another, ", weld, f" joins {them}")
+    return True

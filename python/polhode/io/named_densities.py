@@ -7,6 +7,7 @@ import warnings
 from typing import TYPE_CHECKING
 
 from polhode import _core
+from polhode._format import Argument
 from polhode.errors import PolhodeError
 from polhode.io.components import groups_of, overlaps, parts_of, told
 from polhode.io.mesh import weld_within
@@ -84,11 +85,14 @@ def body_by_names(
     where = os.fspath(loaded.path)
     if loaded.cad is not None:
         raise PolhodeError(
-            f"density: {where} holds solids, which have the densities of their materials; give one number "
-            "for those without, or leave it out"
+            Argument("density"),
+            f": {where} holds solids, which have the densities of their materials; give one number "
+            "for those without, or leave it out",
         )
     if (name := next((name for name, value in left_out.items() if value), None)) is not None:
-        raise PolhodeError(f"{name}: components have densities of their own, by their names; leave it out")
+        raise PolhodeError(
+            Argument(name), ": components have densities of their own, by their names; leave it out"
+        )
     # What is wrong with the mesh as a whole is said first.
     solid_of(loaded, density=1.0, scale=scale, weld=weld, orient=orient, progress=progress)
     parts = named_parts(loaded, scale, weld)
@@ -97,11 +101,14 @@ def body_by_names(
     for name in densities:
         if name not in names:
             raise PolhodeError(
-                f"density: {where} has no component {name!r}; give one density for each of {known}"
+                Argument("density"),
+                f": {where} has no component {name!r}; give one density for each of {known}",
             )
     absent = next((name for name in names if name not in densities), None)
     if absent is not None:
-        raise PolhodeError(f"density: nothing is said of component {absent!r} of {where}; add it")
+        raise PolhodeError(
+            Argument("density"), f": nothing is said of component {absent!r} of {where}; add it"
+        )
     lines = told(overlaps(parts), sum(part.volume for part in parts))
     for line in [*lines, *([OVERLAPPING] if lines else [])]:
         warnings.warn(f"{where}: {line}", stacklevel=3)

@@ -43,13 +43,11 @@ __all__ = [
     "body_fields",
     "body_of",
     "check_has_bodies",
-    "load_body",
+    "read_body",
     "read_motion",
     "read_report",
     "save_body",
     "save_trajectory",
-    "save_trajectory_json",
-    "save_trajectory_npz",
     "table_of",
 ]
 
@@ -113,8 +111,8 @@ def save_body(body: RigidBody, path: str | PathLike[str]) -> None:
         write_npz(file, _BODY_FORMAT, fields)
 
 
-def load_body(path: str | PathLike[str]) -> RigidBody:
-    """Read a body: what ``RigidBody.load`` does.
+def read_body(path: str | PathLike[str]) -> RigidBody:
+    """Read a body or a stack that ``RigidBody.save`` wrote.
 
     Parameters
     ----------
@@ -319,14 +317,14 @@ def save_trajectory(trajectory: Trajectory, path: str | PathLike[str]) -> None:
             "pickle keeps it, and .csv holds the states alone"
         )
     elif suffix == ".json":
-        save_trajectory_json(trajectory, file)
+        _save_json(trajectory, file)
     elif suffix == ".npz":
-        save_trajectory_npz(trajectory, file)
+        _save_npz(trajectory, file)
     else:
         raise ValueError(f"path: {file} does not end in .csv, .json or .npz; name it so")
 
 
-def save_trajectory_json(trajectory: Trajectory, path: Path) -> None:
+def _save_json(trajectory: Trajectory, path: Path) -> None:
     """Write a motion as JSON.
 
     Parameters
@@ -346,7 +344,7 @@ def save_trajectory_json(trajectory: Trajectory, path: Path) -> None:
     write_json(path, in_json(fields, path))
 
 
-def save_trajectory_npz(trajectory: Trajectory, path: Path) -> None:
+def _save_npz(trajectory: Trajectory, path: Path) -> None:
     """Write a motion as arrays of NumPy, together with those of its body.
 
     Parameters

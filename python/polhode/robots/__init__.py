@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from polhode._format import Argument
 from polhode._hints import check_kind
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.io.content import EXPECTED_CONTENT, content_format, rename
@@ -163,7 +164,7 @@ def parse_robot(
     try:
         links = tuple(reader.links(root, sources))
     except ValueError as error:
-        raise FileFormatError(f"{name}: {error}") from None
+        raise FileFormatError(f"{name}: ", *error.args) from None
     if not links:
         if format_name == "MJCF" and any(root.all("body")):
             raise FileFormatError(
@@ -235,8 +236,8 @@ def check(
             raise ValueError(f"{name}: expected a finite number above 0, got {value!r}")
     if density is not None and density > MARKER:
         raise PolhodeError(
-            f"density: {density:.6g} kg/m^3, and no matter has more than {MARKER:g}; state the one of the "
-            "material"
+            Argument("density"),
+            f": {density:.6g} kg/m^3, and no matter has more than {MARKER:g}; state the one of the material",
         )
     return judge(robot, GeometryReader(robot.folder, addresses), density, mass)
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from polhode import RigidBody, solids
+from polhode._format import Note
 from polhode.errors import PolhodeError
 from polhode.io.components import overlapping
 from polhode.io.loaded import load
@@ -30,10 +31,16 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 __all__ = [
+    "HULL",
+    "LOST",
     "Geometry",
     "GeometryReader",
     "sagitta",
 ]
+
+LOST: Final = "mesh not found"
+HULL: Final = "convex hull"
+"""Kinds of notes on meshes, whose subjects are their names."""
 
 _SOLIDS: Final[dict[str, Callable[[tuple[float, ...]], RigidBody]]] = {
     "box": lambda size: solids.box(size, density=1.0),
@@ -119,7 +126,7 @@ class GeometryReader:
         boxes = [self._box(shape, folder, notes) for shape in link.shapes]
         mass = link.inertial.mass if link.inertial is not None else 0.0
         body, volume, role, marker = self._whole(link, folder, notes, mass)
-        told = tuple(f"{where}: {note}" if where else note for note, where in notes.items())
+        told = tuple(Note.after(f"{where}: ", note) if where else note for note, where in notes.items())
         known = [box for box in boxes if box is not None]
         if not known or marker is not None:
             return Geometry(body, volume, role, None, None, len(boxes) - len(known), told, marker)
@@ -177,7 +184,7 @@ class GeometryReader:
                         continue
                     return sum((part for part, _ in parts[1:]), start=parts[0][0]), volume, role, None
             except PolhodeError as error:
-                notes.setdefault(f"the {role} shapes make no body: {error}", shapes[0].where)
+                notes.setdefault(Note(f"the {role} shapes make no body: ", *error.args), shapes[0].where)
         return None, 0.0, role, marker if np.isfinite(marker) else None
 
     def _body(self, shape: Shape, folder: Path, notes: dict[str, str]) -> tuple[RigidBody, float] | None:
@@ -226,7 +233,7 @@ class GeometryReader:
             hull = RigidBody.from_mesh(vertices, mesh.faces, density=1.0, closure="hull")
         except (ValueError, ModuleNotFoundError):
             return None, f"mesh {name}: {first}"
-        told = f"mesh {name} does not bound a solid: its convex hull was taken"
+        told = Note(f"mesh {name} does not bound a solid: its convex hull was taken", kind=HULL, subject=name)
         return hull, told if shape.counting != "convex" else ""
 
     def _mesh(self, address: str, folder: Path) -> _Read | str:
@@ -237,11 +244,13 @@ class GeometryReader:
 
     def _load(self, address: str, folder: Path) -> _Read | str:
         if not address:
-            return "mesh (without a name) was not found"
+            return Note("mesh (without a name) was not found", kind=LOST, subject="(without a name)")
         name = shortened(address)
         path, fault = self._addresses.find(address, folder)
         if path is None:
-            return f"mesh {name} {fault or 'was not found'}"
+            if fault:
+                return Note(f"mesh {name} ", fault)
+            return Note(f"mesh {name} was not found", kind=LOST, subject=name)
         if path.is_dir():
             return f"mesh {name} is a directory; name a file in it"
         try:
@@ -267,7 +276,7 @@ class GeometryReader:
         """Opposite corners of the box along the axes of the link around a shape."""
         rotation, position = shape.place
         if shape.problem:
-            notes.setdefault(f"{shape.problem}; this visual shape is left out", "")
+            notes.setdefault(Note(shape.problem, "; this visual shape is left out"), "")
             return None
         if shape.kind == "mesh":
             mesh = self._mesh(shape.mesh, folder)

@@ -12,6 +12,7 @@ import numpy as np
 
 from polhode import RigidBody, euler_angles
 from polhode._core import rotate
+from polhode._format import Note
 from polhode.errors import FileFormatError
 from polhode.interop.programs import mjcf_tensor
 from polhode.io.xml_source import Edit, Element, remove_attribute, set_attribute
@@ -147,7 +148,7 @@ class _Reader:
         except LimitError:
             raise
         except FileFormatError as error:
-            problem = problem or str(error)
+            problem = problem or Note(*error.args)
         reach = 0.0
         with suppress(FileFormatError):
             reach = float(np.linalg.norm(numbers(body, body.attributes.get("pos", "0 0 0"), 3, "pos")))
@@ -199,7 +200,7 @@ class _Reader:
         try:
             return self._place(element, attributes), ""
         except FileFormatError as error:
-            return Place.here(), str(error)
+            return Place.here(), Note(*error.args)
 
     def _copied(self, replicate: Element, tag: str, first: Member) -> Iterator[Member]:
         """Return the elements of every copy; bodies once, as they are the same in all."""

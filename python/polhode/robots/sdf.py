@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 import numpy as np
 
 from polhode._core import rotate
+from polhode._format import Note
 from polhode.errors import FileFormatError
 from polhode.io.xml_source import Edit, Element
 from polhode.robots import urdf
@@ -240,7 +241,7 @@ def _shapes(link: Element) -> Iterator[Shape]:
         except FileFormatError as error:
             if role == "collision":
                 raise
-            yield Shape(form.tag, (), Place.here(), role, where=form.where, problem=str(error))
+            yield Shape(form.tag, (), Place.here(), role, where=form.where, problem=Note(*error.args))
 
 
 def _shape(element: Element, form: Element, role: Literal["collision", "visual"]) -> Shape:
@@ -335,7 +336,7 @@ def included(include: Element, sources: Sources, scope: Scope, read_links: Reade
             return
         name = sources.name(scope.prefix, f"(include of {include.where})", include)
         is_static = scope.is_static or is_true(include, "static")
-        yield Link(name, include.line, None, str(error), file=include.file, is_static=is_static)
+        yield Link(name, include.line, None, Note(*error.args), file=include.file, is_static=is_static)
         return
     with sources.inside(path, uri, include):
         model = next(root.descendants("model"), root)
@@ -377,7 +378,7 @@ def _located(include: Element, uri: str, sources: Sources, folder: Path) -> Path
             path, fault = sources.addresses.find("model.sdf", home)
     if path is None or not path.is_file():
         reason = fault or "was not found; name the folder that holds it with --packages"
-        raise FileFormatError(f"{include.where}: {shortened(uri)} {reason}")
+        raise FileFormatError(f"{include.where}: {shortened(uri)} ", reason)
     return path
 
 

@@ -13,6 +13,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+from polhode._format import Argument, Note
 from polhode.errors import FileFormatError
 from polhode.io.reading import LIMITS, Budget, LimitError, note_read, status_of
 from polhode.io.xml_source import Element, parse_xml
@@ -82,7 +83,7 @@ class Sources:
         """
         path, fault = self.addresses.find(address, folder)
         if fault:
-            raise FileFormatError(f"{at.where}: {shortened(address)} {fault}")
+            raise FileFormatError(f"{at.where}: {shortened(address)} ", fault)
         if path is None or not path.is_file():
             name = shortened(address)
             raise FileFormatError(f"{at.where}: there is no file {name}; put it at {folder / name}")
@@ -110,7 +111,7 @@ class Sources:
                 source, str(path), file=address, above=at.depth, budget=self.budget, remarks=self.notes
             )
         except FileFormatError as error:
-            raise FileFormatError(f"{at.where}: {error}") from None
+            raise FileFormatError(f"{at.where}: ", *error.args) from None
 
     def count_copies(self, number: int, at: Element) -> None:
         """Count copies of elements, so that a small file does not become a boundless one."""
@@ -268,9 +269,10 @@ class Addresses:
             if not self._allow_outside and _is_outside(path, roots):
                 # Of folders that merely might be meant, only one that is there is worth telling.
                 if "://" not in address or address.startswith("file:") or _kind(path)[0] is not None:
-                    fault = fault or (
+                    fault = fault or Note(
                         f"lies outside {roots[0]}, where the model's files are, and is not read; "
-                        "name the folder of its package with --packages, or pass allow_outside=True"
+                        "name the folder of its package with --packages, or pass ",
+                        Argument("allow_outside", True),
                     )
                 continue
             is_readable, reason = _kind(path)

@@ -11,6 +11,7 @@ import numpy as np
 
 from polhode import euler_angles
 from polhode._core import rotate
+from polhode._format import Note
 from polhode.errors import FileFormatError
 from polhode.io.xml_source import Edit, Element, blanks_of
 from polhode.robots.edits import attribute, first_child, indented, number_text
@@ -57,7 +58,7 @@ class LinkReader(NamedTuple):
             inertial = None if declared is None or inferred else self.inertial(declared)
             shapes = tuple(self.shapes(element))
         except FileFormatError as error:
-            problem = str(error)
+            problem = Note(*error.args)
         return Link(
             name=sources.name(prefix, element.attributes.get("name", "(without a name)"), element),
             line=element.line,
@@ -168,7 +169,7 @@ def _shapes(link: Element) -> Iterator[Shape]:
         except FileFormatError as error:
             if role == "collision":
                 raise
-            yield Shape(form.tag, (), Place.here(), role, where=form.where, problem=str(error))
+            yield Shape(form.tag, (), Place.here(), role, where=form.where, problem=Note(*error.args))
 
 
 def _shape(element: Element, form: Element, role: Literal["collision", "visual"]) -> Shape:

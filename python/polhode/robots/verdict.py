@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 import numpy as np
 
 from polhode import RigidBody, principal_moments
+from polhode._format import Argument
 from polhode.errors import InvalidInertiaError, PolhodeError
 from polhode.interop.programs import LEAST_MOMENT, inside_edge
 from polhode.robots.mjcf import as_compiled
@@ -402,14 +403,18 @@ def _filled(
     ]
     if mass is not None and unread:
         raise PolhodeError(
-            f"mass: the shape of {unread[0]}, which has no mass, tells no volume, so that its share is not "
-            "known; pass density= instead"
+            Argument("mass"),
+            f": the shape of {unread[0]}, which has no mass, tells no volume, so that its share is not "
+            "known; pass ",
+            Argument("density"),
+            " instead",
         )
     if mass is not None and mass > MARKER * volume > 0.0:
         raise PolhodeError(
-            f"mass: {mass:.6g} kg in the shapes of links without mass would be {mass / volume:.3g} kg/m^3, "
+            Argument("mass"),
+            f": {mass:.6g} kg in the shapes of links without mass would be {mass / volume:.3g} kg/m^3, "
             f"and no matter has more than {MARKER:g}: the shapes are markers, or their lengths are wrong; "
-            "correct the file, or pass less"
+            "correct the file, or pass less",
         )
     for i, body in without.items():
         weighed = body.scaled(mass=density if density is not None else (mass or 0.0) / volume)

@@ -1,20 +1,19 @@
 //! The way out of an error of the core in the words of the Python package: which keyword or function mends it.
 //!
-//! The core says law and numbers, and what mends them where that needs no name of Python's. The command line puts its options
-//! in the place of these keywords (`cli/text.py`).
+//! The core says law and numbers, and what mends them where that needs no name of Python's. The command line and the readers of
+//! files have remedies of their own for the kinds that `errors` states.
 
 use polhode::Error;
 use polhode::error::{BodyFault, FileFault, MeshFault, MotionFault};
 
-/// The way out of an open mesh, with which its message ends: a reader of files names another one before it.
-pub(crate) const CLOSE: &str =
-    "close the mesh (closure=\"caps\" or \"hull\"), or model a thin shell instead";
+/// The way out of an open mesh, with which its message ends.
+const CLOSE: &str = "close the mesh (closure=\"caps\" or \"hull\"), or model a thin shell instead";
 
 /// What else can be done with a tensor that no body has.
 const NEAREST: &str = " (validity.nearest_valid finds the nearest tensor that a body has)";
 
 /// Moments that differ by more of the largest are not taken as equal by a tolerance.
-const NEARLY_EQUAL: f64 = 0.01;
+pub(crate) const NEARLY_EQUAL: f64 = 0.01;
 
 /// The message for a user of Python.
 pub(crate) fn in_words(error: &Error) -> String {
@@ -22,7 +21,7 @@ pub(crate) fn in_words(error: &Error) -> String {
 }
 
 /// What follows the core's own words.
-fn advice(error: &Error) -> String {
+pub(crate) fn advice(error: &Error) -> String {
     match error {
         Error::Body(fault) => of_body(fault),
         Error::Mesh(MeshFault::Open { .. }) => format!("; {CLOSE}"),
@@ -36,18 +35,26 @@ fn advice(error: &Error) -> String {
     }
 }
 
+/// Whether a tolerance may admit moments that break the triangle inequality.
+pub(crate) fn is_rounded(fault: &BodyFault) -> bool {
+    match fault {
+        BodyFault::TriangleInequality {
+            moments,
+            deficit,
+            is_given: true,
+            ..
+        } => may_be_rounded(moments, *deficit),
+        _ => false,
+    }
+}
+
 /// What follows the words of the core on a body that cannot be.
-pub(crate) fn of_body(fault: &BodyFault) -> String {
+fn of_body(fault: &BodyFault) -> String {
     match fault {
         BodyFault::NotSymmetric { .. } => {
             "; put one number in both places, such as their mean".to_owned()
         }
-        BodyFault::TriangleInequality {
-            moments,
-            deficit,
-            relative,
-            is_given: true,
-        } if may_be_rounded(moments, *deficit) => {
+        BodyFault::TriangleInequality { relative, .. } if is_rounded(fault) => {
             let rtol = rounded_up(*relative);
             format!("; pass rtol={rtol} if the table was printed to few digits")
         }

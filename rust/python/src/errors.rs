@@ -1,17 +1,17 @@
 //! Errors of the core as exceptions of `polhode.errors`.
 
 use polhode::Error;
-use polhode::error::{Kind, MeshFault};
-use pyo3::exceptions::{PyMemoryError, PyValueError};
+use polhode::error::{BodyFault, FileFault, Kind, MeshFault, MotionFault};
+use pyo3::exceptions::{PyBaseException, PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::PyType;
+use pyo3::types::{PyTuple, PyType};
 
-use crate::advice::{CLOSE, in_words, of_body};
+use crate::advice::{NEARLY_EQUAL, advice, in_words, is_rounded};
 use crate::hints;
 use crate::shape::tuple;
 
-/// The exception for an error of the core.
+/// The exception for an error of the core: its words are pieces, and the remedy is one by itself.
 pub(crate) fn to_py(py: Python<'_>, error: &Error) -> PyErr {
     let name = match error.kind() {
         Kind::Inertia => "InvalidInertiaError",
@@ -23,21 +23,45 @@ pub(crate) fn to_py(py: Python<'_>, error: &Error) -> PyErr {
         Kind::Memory => return PyMemoryError::new_err(in_words(error)),
         _ => "PolhodeError",
     };
-    let exception = new(py, name, in_words(error));
-    let value = exception.value(py);
-    let told = match error {
-        Error::Mesh(MeshFault::Open { .. }) => {
-            (value.setattr("law", "closed")).and_then(|()| value.setattr("way_out", CLOSE))
-        }
-        Error::Body(fault) if fault.kind() == Kind::Inertia => value.setattr(
-            "way_out",
-            of_body(fault).trim_start_matches([';', ':', ' ']),
-        ),
-        _ => Ok(()),
-    };
-    match told {
+    let exception = new(py, name, error.to_string());
+    match set_data(exception.value(py), error) {
         Ok(()) => exception,
         Err(error) => error,
+    }
+}
+
+/// Adds the remedy to the pieces of the message, and says as data what is wrong.
+fn set_data(value: &Bound<'_, PyBaseException>, error: &Error) -> PyResult<()> {
+    let remedy = advice(error);
+    if !remedy.is_empty() {
+        value.setattr("args", (error.to_string(), &remedy))?;
+        value.setattr("way_out", remedy.trim_start_matches([';', ':', ',', ' ']))?;
+    }
+    if let Error::Mesh(MeshFault::Open { .. }) = error {
+        value.setattr("law", "closed")?;
+    }
+    match kind(error) {
+        "" => Ok(()),
+        kind => value.setattr("kind", kind),
+    }
+}
+
+/// What is wrong, where files and the command line have remedies of their own.
+fn kind(error: &Error) -> &'static str {
+    match error {
+        Error::Mesh(MeshFault::Open { .. }) => "open",
+        Error::Mesh(MeshFault::Inverted { .. }) => "inverted",
+        Error::Mesh(MeshFault::InsideOut { .. }) => "inside out",
+        Error::File(FileFault::IndexZero { .. }) => "index zero",
+        Error::Body(fault @ BodyFault::TriangleInequality { .. }) if is_rounded(fault) => "rounded",
+        Error::Body(BodyFault::TriangleInequality { is_given: true, .. }) => "impossible",
+        Error::Body(BodyFault::TriangleInequality { .. }) => "impossible matter",
+        Error::Body(BodyFault::NotASymmetricTop { gap, .. }) if *gap <= NEARLY_EQUAL => {
+            "nearly symmetric"
+        }
+        Error::Body(BodyFault::NotASymmetricTop { .. }) => "not symmetric",
+        Error::Motion(MotionFault::PivotOffAxis { .. }) => "pivot off axis",
+        _ => "",
     }
 }
 
@@ -45,15 +69,28 @@ pub(crate) fn to_py(py: Python<'_>, error: &Error) -> PyErr {
 pub(crate) fn with_prefix(py: Python<'_>, prefix: &str, error: &PyErr) -> PyErr {
     let value = error.value(py);
     let raised = PyErr::from_type(error.get_type(py), format!("{prefix}: {value}"));
-    for name in ["law", "way_out"] {
-        // Not every error has them.
-        if let Ok(told) = value.getattr(name)
-            && let Err(error) = raised.value(py).setattr(name, told)
-        {
-            return error;
-        }
+    // Only errors of polhode have data, and words in pieces.
+    match copy_data(value, raised.value(py), prefix) {
+        Ok(()) => raised,
+        Err(error) => error,
     }
-    raised
+}
+
+fn copy_data(
+    from: &Bound<'_, PyBaseException>,
+    to: &Bound<'_, PyBaseException>,
+    prefix: &str,
+) -> PyResult<()> {
+    let Ok(data) = from.getattr("__dict__") else {
+        return Ok(());
+    };
+    if from.hasattr("way_out")? {
+        let pieces = from.getattr("args")?.cast_into::<PyTuple>()?;
+        let first = PyTuple::new(from.py(), [format!("{prefix}: ")])?;
+        to.setattr("args", first.add(pieces)?)?;
+    }
+    to.getattr("__dict__")?.call_method1("update", (data,))?;
+    Ok(())
 }
 
 /// An exception of `polhode.errors` by its name.
@@ -83,7 +120,29 @@ pub(crate) fn at_row(shape: &[usize], row: usize, error: &PyErr, py: Python<'_>)
         [one] => one.to_string(),
         _ => tuple(&index),
     };
-    with_prefix(py, &format!("row {named}"), error)
+    let raised = with_prefix(py, &format!("row {named}"), error);
+    if let Ok(true) = raised.value(py).hasattr("way_out")
+        && let Err(error) = raised.value(py).setattr("stack_row", row)
+    {
+        return error;
+    }
+    raised
+}
+
+/// The same exception with the label of particles in front, a piece of its own, and a remedy behind.
+pub(crate) fn at_label(py: Python<'_>, label: usize, remedy: &str, error: &PyErr) -> PyErr {
+    let words = error.value(py);
+    let raised = PyErr::from_type(
+        error.get_type(py),
+        format!("label {label}: {words}{remedy}"),
+    );
+    let value = raised.value(py);
+    let told = match value.hasattr("way_out") {
+        Ok(true) => (value.setattr("args", ("label ", label, format!(": {words}{remedy}"))))
+            .and_then(|()| value.setattr("label", label)),
+        _ => Ok(()),
+    };
+    told.err().unwrap_or(raised)
 }
 
 /// An argument of the wrong shape.

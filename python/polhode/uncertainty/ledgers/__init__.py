@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from polhode._format import Argument
 from polhode.errors import PolhodeError
 from polhode.uncertainty.ledgers.parts import COLUMNS, parts_of_bodies, read_parts
 from polhode.uncertainty.ledgers.results import Ledger, Part, Sigmas, frozen, tensors
@@ -213,7 +214,8 @@ def _edges(table: Table, tree: Any) -> tuple[list[str], list[str]]:
     if tree is None:
         if "parent" not in table:
             raise PolhodeError(
-                f"{table.name or 'table'}: there is no column 'parent'; add one, or pass the edges as tree="
+                f"{table.name or 'table'}: there is no column 'parent'; add one, or pass the edges as ",
+                Argument("tree"),
             )
         return ids, table.words("parent")
     edges = read_table(tree, ("child", "id", "parent"), argument="tree")

@@ -11,6 +11,7 @@ import numpy as np
 
 from polhode import laminae, rods, solids
 from polhode._core import RigidBody
+from polhode._format import Argument
 from polhode.errors import InvalidInertiaError, PolhodeError
 from polhode.uncertainty.ledgers.rollup import NUMBERS, own_moment, shift
 
@@ -166,7 +167,9 @@ def _refuse_own(table: Table, has_children: NDArray[np.bool_], where: Callable[[
             row = int(rows[0])
             raise PolhodeError(
                 f"{where(row)}: has children, and {name} = {cells[row]:g} of its own; leave it empty, give "
-                "it to a part below, or pass overwrite=True to roll up over it"
+                "it to a part below, or pass ",
+                Argument("overwrite", True),
+                " to roll up over it",
             )
     for name in ("file", "solid"):
         words = table.words(name) if name in table else ()

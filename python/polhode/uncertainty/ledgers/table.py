@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
+from polhode._format import Argument
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.io.reading import Budget, read_text
 
@@ -194,7 +195,9 @@ def read_table(
         near = difflib.get_close_matches(unknown[0], known, n=1)
         hint = f"meant {near[0]!r}" if near else "words for the reader may stand in 'name' and 'comment'"
         raise PolhodeError(
-            f"{where}: nobody knows the column {unknown[0][:40]!r}; {hint}; or pass ignore= with its name"
+            f"{where}: nobody knows the column {unknown[0][:40]!r}; {hint}; or pass ",
+            Argument("ignore"),
+            " with its name",
         )
     if not read.count:
         raise PolhodeError(f"{where}: there are no rows")

@@ -28,7 +28,7 @@ use crate::arrays::{
 use crate::attitudes::read_rotation;
 use crate::body::PyRigidBody;
 use crate::depth::RecursionGuard;
-use crate::errors::{at_row, to_py};
+use crate::errors::{at_label, at_row, to_py};
 use crate::figure::{MOST_FACES, Outline, alone};
 use crate::hints::{no_faces, refuse_unknown};
 use crate::interrupt::{Beat, Interrupt, watched};
@@ -190,8 +190,9 @@ impl PyRigidBody {
         Self::with_uncertainty(bodies, uncertainties).possible(py)
     }
 
-    /// Body from a file: a mesh (STL, OBJ, PLY, OFF, DAE, 3MF, glTF, GLB, VTK, plate models), solids of CAD (STEP, IGES) or a
-    /// molecule (XYZ, PDB, MOL, SDF); each may be packed with gzip.
+    /// Body from any file that holds one: a mesh (STL, OBJ, PLY, OFF, DAE, 3MF, glTF, GLB, VTK, plate models), solids of CAD
+    /// (STEP, IGES), a molecule (XYZ, PDB, MOL, SDF), each also packed with gzip; a body that `save` wrote (JSON, npz), with every
+    /// bit of it; a report of the command line (JSON); an assembly (TOML). An argument that the file cannot use is refused.
     ///
     /// Parameters
     /// ----------
@@ -204,7 +205,8 @@ impl PyRigidBody {
     ///     Unit of the coordinates, such as ``"mm"``. They are converted to metres, and the masses of a
     ///     molecule to kilograms. Without it, coordinates are converted to metres if the file or its format
     ///     states their unit (STEP, IGES, DAE, 3MF, glTF, GLB). All others stay as they are, and a molecule is
-    ///     in u and angstrom. A unit that differs from the one in the file is an error.
+    ///     in u and angstrom. A saved body keeps the unit it was saved in. A unit that differs from the one in the
+    ///     file is an error.
     /// weld : float, optional
     ///     Corners at most this far from each other, in the unit of the file, are joined; by default only
     ///     equal corners. Some exporters write the same corner with different last digits in each triangle,
@@ -236,7 +238,7 @@ impl PyRigidBody {
     /// Warns
     /// -----
     /// UserWarning
-    ///     When solids of a CAD file overlap, or bonds or fragments of a molecule cross a side of the cell in its
+    ///     When solids of a CAD file or parts of an assembly overlap, or bonds or fragments of a molecule cross a side of the cell in its
     ///     file; see :func:`polhode.molecules.cell_crossings`.
     ///
     /// Raises
@@ -298,7 +300,7 @@ impl PyRigidBody {
         options.set_item("index_base", index_base)?;
         options.set_item("masses", masses)?;
         options.set_item("progress", progress)?;
-        py.import("polhode.io")?
+        py.import("polhode.io.read")?
             .call_method("body_from_file", (path,), Some(&options))
     }
 
@@ -845,8 +847,7 @@ impl PyRigidBody {
             Err((Some(label), error)) => {
                 let way_out = way_out_of_label(&error);
                 let error = to_py(py, &error);
-                let message = format!("label {label}: {}{way_out}", error.value(py));
-                Err(PyErr::from_type(error.get_type(py), message))
+                Err(at_label(py, label, way_out, &error))
             }
             Ok(bodies) => stack(py, vec![bodies.len()], Ok(bodies)),
         }

@@ -117,36 +117,12 @@ impl PyRigidBody {
     ///
     /// See Also
     /// --------
-    /// RigidBody.load : reads it.
+    /// RigidBody.from_file : reads it.
     #[pyo3(signature = (path))]
     fn save<'py>(slf: &Bound<'py, Self>, path: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         slf.py()
-            .import("polhode.io")?
+            .import("polhode.io.saved")?
             .call_method1("save_body", (slf, path))
-    }
-
-    /// Read a body or a stack that `save` wrote.
-    ///
-    /// Parameters
-    /// ----------
-    /// path : str or os.PathLike
-    ///     ``.json`` or ``.npz``.
-    ///
-    /// Returns
-    /// -------
-    /// RigidBody
-    ///     Equal to the one that was saved, bit for bit.
-    ///
-    /// Raises
-    /// ------
-    /// FileFormatError
-    ///     For a file that is not such a body.
-    #[staticmethod]
-    #[pyo3(signature = (path))]
-    fn load<'py>(path: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        path.py()
-            .import("polhode.io")?
-            .call_method1("load_body", (path,))
     }
 
     /// Draw the ellipsoid of inertia and the principal axes; needs matplotlib.
