@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     Tell: TypeAlias = Callable[[float], object]
     Progress: TypeAlias = bool | Tell | None
 
-__all__ = ["bar_of_core", "duration", "watched"]
+__all__ = ["bar_of_core", "duration", "progress_bar"]
 
 _SILENT: Final = 2.0
 """Seconds within which nothing is shown: most work is over by then."""
@@ -26,7 +26,7 @@ _under_way: Final[list[_Bar]] = []
 
 
 @contextmanager
-def watched(what: str, progress: Progress = None) -> Iterator[Tell | None]:
+def progress_bar(what: str, progress: Progress = None) -> Iterator[Tell | None]:
     """Return a function that takes the fraction done; None where nobody is told.
 
     Parameters

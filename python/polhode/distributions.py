@@ -35,13 +35,13 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Distribution",
-    "Made",
+    "FunctionOfDraws",
     "Normal",
     "PerMember",
     "Samples",
     "Uniform",
     "UniformRotation",
-    "made",
+    "apply",
     "normal",
     "per_member",
     "samples",
@@ -94,16 +94,16 @@ def normal(
     array([[0.04, 0.03],
            [0.03, 0.09]])
     """
-    middle = _fixed(mean, "mean")
+    middle = _freeze_finite(mean, "mean")
     if (covariance is None) == (sigma is None):
         raise TypeError("normal: give either covariance or sigma")
     _check_name(name)
     if sigma is not None:
-        widths = _fixed(sigma, "sigma")
+        widths = _freeze_finite(sigma, "sigma")
         if (widths < 0.0).any():
             raise ValueError(f"sigma: expected numbers that are zero or more, got {widths.min():.6g}")
-        return Normal(middle, _broadcast(widths, middle.shape, "sigma"), _kept(np.zeros((0, 0))), name)
-    matrix = _fixed(covariance, "covariance")
+        return Normal(middle, _broadcast(widths, middle.shape, "sigma"), _freeze(np.zeros((0, 0))), name)
+    matrix = _freeze_finite(covariance, "covariance")
     if matrix.shape != (middle.size, middle.size):
         size = middle.size
         raise ValueError(
@@ -118,8 +118,10 @@ def normal(
         raise PolhodeError(f"{error}; the least eigenvalue of the matrix is {least:.3g}") from None
     if not np.count_nonzero(matrix - np.diag(np.diagonal(matrix))):
         factor = np.zeros((0, 0))
-        return Normal(middle, _kept(np.sqrt(np.diagonal(matrix)).reshape(middle.shape)), _kept(factor), name)
-    return Normal(middle, None, _kept(factor), name)
+        return Normal(
+            middle, _freeze(np.sqrt(np.diagonal(matrix)).reshape(middle.shape)), _freeze(factor), name
+        )
+    return Normal(middle, None, _freeze(factor), name)
 
 
 def uniform(low: ArrayLike, high: ArrayLike, *, name: str | None = None) -> Uniform:
@@ -143,7 +145,7 @@ def uniform(low: ArrayLike, high: ArrayLike, *, name: str | None = None) -> Unif
     array([2.414, 2.323, 2.658])
     """
     _check_name(name)
-    below, above = _fixed(low, "low"), _fixed(high, "high")
+    below, above = _freeze_finite(low, "low"), _freeze_finite(high, "high")
     try:
         shape = np.broadcast_shapes(below.shape, above.shape)
     except ValueError:
@@ -209,7 +211,7 @@ def samples(
     array([2., 1., 4.])
     """
     _check_name(name)
-    rows = _fixed(values, "values")
+    rows = _freeze_finite(values, "values")
     if not rows.ndim or not len(rows):
         raise ValueError(f"values: expected shape (rows, ...) with one row at least, got {rows.shape}")
     if order not in ("as given", "shuffled", "with replacement"):
@@ -248,7 +250,7 @@ def per_member(function: Callable[[np.random.Generator], Any], *, name: str | No
     return PerMember(function, name)
 
 
-def made(function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Made:
+def apply(function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> FunctionOfDraws:
     """Make bodies or loads from drawn numbers, by one call for all members of a chunk.
 
     Parameters
@@ -262,17 +264,19 @@ def made(function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Made:
 
     Returns
     -------
-    Made
+    FunctionOfDraws
 
     Examples
     --------
     >>> from polhode import RigidBody, distributions
-    >>> distributions.made(RigidBody.from_principal, 1.0, distributions.normal((1, 2, 2.5), sigma=0.01))
-    Made(RigidBody.from_principal, 1.0, Normal(mean=[1.0, 2.0, 2.5], sigma=[0.01, 0.01, 0.01]))
+    >>> distributions.apply(RigidBody.from_principal, 1.0, distributions.normal((1, 2, 2.5), sigma=0.01))
+    FunctionOfDraws(RigidBody.from_principal, 1.0, Normal(mean=[1.0, 2.0, 2.5], sigma=[0.01, 0.01, 0.01]))
     """
     if not callable(function):
         raise TypeError(f"function: expected a function that makes bodies or loads, got {function!r}")
-    return Made(function, tuple(map(_own, args)), {name: _own(part) for name, part in kwargs.items()})
+    return FunctionOfDraws(
+        function, tuple(map(_own, args)), {name: _own(part) for name, part in kwargs.items()}
+    )
 
 
 def _own(part: Any) -> Any:
@@ -284,16 +288,16 @@ def _own(part: Any) -> Any:
     return copy
 
 
-def _fixed(value: Any, name: str) -> Floats:
+def _freeze_finite(value: Any, name: str) -> Floats:
     """Return an array of finite numbers that stays as it is."""
     array = _core.real_numbers(value, name)
     wrong = ~np.isfinite(array)
     if wrong.any():
         raise ValueError(f"{name} must be finite, got {array[wrong][0]}")
-    return _kept(array)
+    return _freeze(array)
 
 
-def _kept(array: Floats) -> Floats:
+def _freeze(array: Floats) -> Floats:
     array = np.array(array, dtype=np.float64)
     array.setflags(write=False)
     return array
@@ -301,7 +305,7 @@ def _kept(array: Floats) -> Floats:
 
 def _broadcast(array: Floats, shape: tuple[int, ...], name: str) -> Floats:
     try:
-        return _kept(np.broadcast_to(array, shape))
+        return _freeze(np.broadcast_to(array, shape))
     except ValueError:
         raise ValueError(f"{name}: shape {array.shape} does not broadcast to {shape}") from None
 
@@ -452,7 +456,7 @@ class Normal(Distribution):
 
     def __repr__(self) -> str:
         spread = {"factor": self.factor} if self.sigma is None else {"sigma": self.sigma}
-        return one_line(self, {"mean": self.mean, **spread} | _named(self))
+        return one_line(self, {"mean": self.mean, **spread} | _name_argument(self))
 
 
 @final
@@ -477,7 +481,7 @@ class Uniform(Distribution):
         return found
 
     def __repr__(self) -> str:
-        return one_line(self, {"low": self.low, "high": self.high} | _named(self))
+        return one_line(self, {"low": self.low, "high": self.high} | _name_argument(self))
 
 
 @final
@@ -498,7 +502,7 @@ class UniformRotation(Distribution):
         return found
 
     def __repr__(self) -> str:
-        return one_line(self, _named(self))
+        return one_line(self, _name_argument(self))
 
 
 @final
@@ -526,7 +530,7 @@ class Samples(Distribution):
             return found
         self.check(first + count, "n")
         if self.order == "shuffled":
-            return self.values[_shuffled(source, size)[first : first + count]]
+            return self.values[_shuffle(source, size)[first : first + count]]
         return self.values[first : first + count]
 
     @property
@@ -535,7 +539,7 @@ class Samples(Distribution):
         return None if self.order == "with replacement" else len(self.values)
 
     def __repr__(self) -> str:
-        return one_line(self, {"values": self.values, "order": self.order} | _named(self))
+        return one_line(self, {"values": self.values, "order": self.order} | _name_argument(self))
 
 
 @dataclass(frozen=True)
@@ -571,18 +575,18 @@ class PerMember(Distribution):
                 # Of this member alone: whoever asks for its value is told.
                 found.append(Refusal(error))
             except Exception as error:
-                error.add_note(f"raised by {_called(self.function)} for member {member}")
+                error.add_note(f"raised by {_function_name(self.function)} for member {member}")
                 raise
         return found
 
     def __repr__(self) -> str:
-        return f"PerMember({_called(self.function)}{_and_name(self)})"
+        return f"PerMember({_function_name(self.function)}{_and_name(self)})"
 
 
 @final
 @dataclass(frozen=True, eq=False, repr=False)
-class Made:
-    """What a function makes of values that are drawn, see :func:`made`.
+class FunctionOfDraws:
+    """What a function makes of values that are drawn, see :func:`apply`.
 
     Attributes
     ----------
@@ -602,11 +606,11 @@ class Made:
     def __repr__(self) -> str:
         words = [repr(part) for part in self.args]
         words += [f"{name}={part!r}" for name, part in self.kwargs.items()]
-        return f"Made({', '.join([_called(self.function), *words])})"
+        return f"FunctionOfDraws({', '.join([_function_name(self.function), *words])})"
 
 
 @lru_cache(maxsize=4)
-def _shuffled(source: Source, size: int) -> NDArray[np.int64]:
+def _shuffle(source: Source, size: int) -> NDArray[np.int64]:
     words = _core.random_numbers("bits", *source, 0, size, 1)[:, 0]
     order: NDArray[np.int64] = np.argsort(words, kind="stable")
     return order
@@ -617,11 +621,11 @@ def _counter(member: int) -> NDArray[np.uint64]:
     return np.array([0, 0, member, 1], dtype=np.uint64)
 
 
-def _called(function: Any) -> str:
+def _function_name(function: Any) -> str:
     return str(getattr(function, "__qualname__", repr(function)))
 
 
-def _named(distribution: Distribution) -> dict[str, Any]:
+def _name_argument(distribution: Distribution) -> dict[str, Any]:
     return {} if distribution.name is None else {"name": distribution.name}
 
 

@@ -194,7 +194,7 @@ class SampledOrbit(Path):
             Arrays of shape (..., T..., 3): axes of the stack, axes of the times, components.
         """
         times = _core.real_numbers(t, "t")
-        return reshaped(_core.sampled_states(self.times, self.position, times.ravel()), times.shape)
+        return reshape_times(_core.sampled_states(self.times, self.position, times.ravel()), times.shape)
 
 
 @dataclass(frozen=True, eq=False)
@@ -227,13 +227,13 @@ class DipoleField:
         return _core.dipole_field(moment, self.orbit.at(t).position)
 
 
-def kept(numbers: Floats) -> Any:
+def freeze(numbers: Floats) -> Any:
     """Numbers that nobody changes; one as a float."""
     numbers.flags.writeable = False
     return float(numbers) if numbers.ndim == 0 else numbers
 
 
-def reshaped(states: tuple[Floats, Floats], times: tuple[int, ...]) -> OrbitState:
+def reshape_times(states: tuple[Floats, Floats], times: tuple[int, ...]) -> OrbitState:
     """Return states at a list of times those at times of a shape."""
     return OrbitState(*(one.reshape(*one.shape[:-2], *times, 3) for one in states))
 
@@ -375,7 +375,7 @@ class Orbit(Path):
                 self.pole,
                 times.ravel() - self.begins,
             )
-            return reshaped(found, times.shape)
+            return reshape_times(found, times.shape)
         new = (np.newaxis,) * times.ndim
         return OrbitState(
             *_core.kepler_states(
@@ -440,13 +440,13 @@ def kepler(
         raise ValueError(f"epoch: must be finite, got {when}")
     _core.kepler_states(mass, place, speed, np.zeros(()))  # checks them
     if j2 is None and radius is None:
-        return Orbit(kept(mass), place, speed, when)
+        return Orbit(freeze(mass), place, speed, when)
     if j2 is None or radius is None:
         raise TypeError("j2 and radius: give both of an oblate attractor, or none")
     bulge = np.array(_core.real_numbers(j2, "j2")), np.array(_core.real_numbers(radius, "radius"))
     axis = vector(pole, "pole")
     _core.oblate_states(mass, place, speed, *bulge, axis, np.zeros(1))  # checks them
-    return Orbit(kept(mass), place, speed, when, kept(bulge[0]), kept(bulge[1]), axis)
+    return Orbit(freeze(mass), place, speed, when, freeze(bulge[0]), freeze(bulge[1]), axis)
 
 
 def sampled(mu: ArrayLike, t: ArrayLike, position: ArrayLike) -> SampledOrbit:
@@ -484,7 +484,7 @@ def sampled(mu: ArrayLike, t: ArrayLike, position: ArrayLike) -> SampledOrbit:
     if not do_broadcast(mass, places[..., 0, 0]):
         raise ValueError(f"mu and position: shapes {mass.shape} and {places.shape} do not broadcast")
     times.flags.writeable = False
-    return SampledOrbit(kept(mass), times, places)
+    return SampledOrbit(freeze(mass), times, places)
 
 
 def from_elements(

@@ -81,15 +81,15 @@ class Reduction(ABC):
         return array
 
     @abstractmethod
-    def begun(self, values: Floats, n: int) -> Any:
+    def start(self, values: Floats, n: int) -> Any:
         """Return the state of a block with these values, of an ensemble with n members."""
 
     @abstractmethod
-    def merged(self, one: Any, other: Any, n: int) -> Any:
+    def merge(self, one: Any, other: Any, n: int) -> Any:
         """Merge the states of two neighbouring blocks, and give the state of both together."""
 
     @abstractmethod
-    def finished(self, state: Any, left_out: int) -> Any:
+    def finish(self, state: Any, left_out: int) -> Any:
         """Return the result. If there was no member, the state is None."""
 
     def __repr__(self) -> str:
@@ -100,7 +100,7 @@ class Reduction(ABC):
         return one_line(self, parts).removeprefix("_")
 
 
-class Kept(NamedTuple):
+class BlockState(NamedTuple):
     """A state, and the shape of what is reduced."""
 
     shape: Shape
@@ -116,13 +116,13 @@ def _flat(values: Floats) -> Floats:
 class _Mean(Reduction):
     of: Of
 
-    def begun(self, values: Floats, n: int) -> Kept:  # noqa: ARG002
-        return Kept(values.shape[1:], moments(_flat(values), products=False))
+    def start(self, values: Floats, n: int) -> BlockState:  # noqa: ARG002
+        return BlockState(values.shape[1:], moments(_flat(values), products=False))
 
-    def merged(self, one: Kept, other: Kept, n: int) -> Kept:  # noqa: ARG002
-        return Kept(one.shape, one.of.merged(other.of))
+    def merge(self, one: BlockState, other: BlockState, n: int) -> BlockState:  # noqa: ARG002
+        return BlockState(one.shape, one.of.merge(other.of))
 
-    def finished(self, state: Kept | None, left_out: int) -> Means:
+    def finish(self, state: BlockState | None, left_out: int) -> Means:
         if state is None:
             return Means(np.array(np.nan), 0, left_out)
         found: Moments = state.of
@@ -134,7 +134,7 @@ class _Mean(Reduction):
 class _Covariance(Reduction):
     of: Of
 
-    def begun(self, values: Floats, n: int) -> Kept:  # noqa: ARG002
+    def start(self, values: Floats, n: int) -> BlockState:  # noqa: ARG002
         rows = _flat(values)
         if not rows.shape[1]:
             raise ValueError(
@@ -145,12 +145,12 @@ class _Covariance(Reduction):
                 f"of: a covariance is of {MOST_CORRELATED} numbers of a member at most, got {rows.shape[1]}; "
                 "take those that matter, such as lambda motion: motion.omega[:, -1]"
             )
-        return Kept(values.shape[1:], moments(rows, products=True))
+        return BlockState(values.shape[1:], moments(rows, products=True))
 
-    def merged(self, one: Kept, other: Kept, n: int) -> Kept:  # noqa: ARG002
-        return Kept(one.shape, one.of.merged(other.of))
+    def merge(self, one: BlockState, other: BlockState, n: int) -> BlockState:  # noqa: ARG002
+        return BlockState(one.shape, one.of.merge(other.of))
 
-    def finished(self, state: Kept | None, left_out: int) -> MeansAndCovariance:
+    def finish(self, state: BlockState | None, left_out: int) -> MeansAndCovariance:
         if state is None:
             return MeansAndCovariance(np.full(0, np.nan), np.full((0, 0), np.nan), 0, left_out)
         found: Moments = state.of
@@ -165,19 +165,19 @@ class _Histogram(Reduction):
     bins: Floats
     of: Of
 
-    def begun(self, values: Floats, n: int) -> Kept:  # noqa: ARG002
+    def start(self, values: Floats, n: int) -> BlockState:  # noqa: ARG002
         rows, size = _flat(values), len(self.bins) - 1
         place = np.searchsorted(self.bins, rows, side="right")
         place[rows == self.bins[-1]] = size  # the last bin has both of its edges
         place[np.isnan(rows)] = size + 2
         columns = np.arange(rows.shape[1]) * (size + 3)
         counts = np.bincount((place + columns).ravel(), minlength=rows.shape[1] * (size + 3))
-        return Kept(values.shape[1:], (len(rows), counts.reshape(rows.shape[1], size + 3)))
+        return BlockState(values.shape[1:], (len(rows), counts.reshape(rows.shape[1], size + 3)))
 
-    def merged(self, one: Kept, other: Kept, n: int) -> Kept:  # noqa: ARG002
-        return Kept(one.shape, (one.of[0] + other.of[0], one.of[1] + other.of[1]))
+    def merge(self, one: BlockState, other: BlockState, n: int) -> BlockState:  # noqa: ARG002
+        return BlockState(one.shape, (one.of[0] + other.of[0], one.of[1] + other.of[1]))
 
-    def finished(self, state: Kept | None, left_out: int) -> HistogramCounts:
+    def finish(self, state: BlockState | None, left_out: int) -> HistogramCounts:
         size = len(self.bins) - 1
         shape, (count, counts) = (
             ((), (0, np.zeros((1, size + 3), dtype=np.int64))) if state is None else (state.shape, state.of)
@@ -193,16 +193,16 @@ class _Quantiles(Reduction):
     q: Floats
     of: Of
 
-    def begun(self, values: Floats, n: int) -> Kept:  # noqa: ARG002
+    def start(self, values: Floats, n: int) -> BlockState:  # noqa: ARG002
         rows = _flat(values)
-        return Kept(values.shape[1:], (len(rows), np.isnan(rows).any(axis=0), ordered(rows)))
+        return BlockState(values.shape[1:], (len(rows), np.isnan(rows).any(axis=0), sort_columns(rows)))
 
-    def merged(self, one: Kept, other: Kept, n: int) -> Kept:
+    def merge(self, one: BlockState, other: BlockState, n: int) -> BlockState:
         most = None if n <= MOST_EXACT else KEPT
         (count, strange, order), (more, others, beside) = one.of, other.of
-        return Kept(one.shape, (count + more, strange | others, order.merged(beside, most)))
+        return BlockState(one.shape, (count + more, strange | others, order.merge(beside, most)))
 
-    def finished(self, state: Kept | None, left_out: int) -> QuantileLevels:
+    def finish(self, state: BlockState | None, left_out: int) -> QuantileLevels:
         if state is None:
             return QuantileLevels(self.q, np.full(len(self.q), np.nan), 0.0, 0, left_out)
         order: Order
@@ -230,15 +230,15 @@ class _ModeChanges(Reduction):
             found.append([places[mode] for mode in modes])
         return np.array(found, dtype=float).T
 
-    def begun(self, values: Floats, n: int) -> Kept:  # noqa: ARG002
+    def start(self, values: Floats, n: int) -> BlockState:  # noqa: ARG002
         size = len(MODES)
         code = values[:, 0].astype(np.int64) * size + values[:, 1].astype(np.int64)
-        return Kept((), np.bincount(code, minlength=size * size).reshape(size, size))
+        return BlockState((), np.bincount(code, minlength=size * size).reshape(size, size))
 
-    def merged(self, one: Kept, other: Kept, n: int) -> Kept:  # noqa: ARG002
-        return Kept((), one.of + other.of)
+    def merge(self, one: BlockState, other: BlockState, n: int) -> BlockState:  # noqa: ARG002
+        return BlockState((), one.of + other.of)
 
-    def finished(self, state: Kept | None, left_out: int) -> ModeTable:
+    def finish(self, state: BlockState | None, left_out: int) -> ModeTable:
         size = len(MODES)
         table = np.zeros((size, size), dtype=np.int64) if state is None else state.of
         return ModeTable(MODES, table, int(table.sum()), left_out)
@@ -473,7 +473,7 @@ class ModeTable(NamedTuple):
         return short(self)
 
 
-def halved(rows: Floats) -> Floats:
+def sum_by_halves(rows: Floats) -> Floats:
     """Sum over the first axis, by halves."""
     while len(rows) > 1:
         half = len(rows) // 2
@@ -489,7 +489,7 @@ class Moments(NamedTuple):
     mean: Floats
     products: Floats | None
 
-    def merged(self, other: Moments) -> Moments:
+    def merge(self, other: Moments) -> Moments:
         """Those of both, after Chan, Golub and LeVeque."""
         count = self.members + other.members
         with np.errstate(invalid="ignore"):
@@ -511,11 +511,11 @@ def moments(values: Floats, *, products: bool) -> Moments:
     """
     count = len(values)
     with np.errstate(invalid="ignore"):
-        mean = halved(values) / count
+        mean = sum_by_halves(values) / count
         if not products:
             return Moments(count, mean, None)
         off = values - mean
-        rows = [halved(off[:, [k]] * off) for k in range(off.shape[1])]
+        rows = [sum_by_halves(off[:, [k]] * off) for k in range(off.shape[1])]
         return Moments(count, mean, np.stack(rows))
 
 
@@ -533,7 +533,7 @@ class Order(NamedTuple):
     buffers: dict[int, Floats]
     error: int = 0
 
-    def merged(self, other: Order, most: int | None) -> Order:
+    def merge(self, other: Order, most: int | None) -> Order:
         """Those of both; beyond `most` numbers of a weight every other one is left out."""
         buffers = dict(self.buffers)
         for weight, values in other.buffers.items():
@@ -543,15 +543,15 @@ class Order(NamedTuple):
                 values if held is None else np.sort(np.concatenate([held, values]), axis=0, kind="stable")
             )
         both = Order(buffers, self.error + other.error)
-        return both if most is None else compacted(both, most)
+        return both if most is None else compact(both, most)
 
 
-def ordered(values: Floats) -> Order:
+def sort_columns(values: Floats) -> Order:
     """Sort rows, shape (n, k), each column by itself."""
     return Order({1: np.sort(values, axis=0, kind="stable")})
 
 
-def compacted(order: Order, most: int) -> Order:
+def compact(order: Order, most: int) -> Order:
     """Leave out every other number where there are more than `most` of one weight.
 
     Of 2m numbers in order either those in odd or those in even places stay, with twice the weight: a rank is

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     Integers = NDArray[np.int64]
     Surface = tuple[Floats, Integers]
 
-__all__ = ["Form", "Placed", "find_overlaps", "overlap_notes"]
+__all__ = ["Form", "Instance", "find_overlaps", "overlap_notes"]
 
 _FINE, _COARSE = 64, 32
 """Facets around a round solid."""
@@ -139,7 +139,7 @@ class Form:
         return (low - more, high + more) if np.isfinite(low).all() and np.isfinite(high).all() else None
 
 
-class Placed(NamedTuple):
+class Instance(NamedTuple):
     """A part at its place."""
 
     name: str
@@ -148,12 +148,12 @@ class Placed(NamedTuple):
     form: Form | None
 
 
-def find_overlaps(parts: Sequence[Placed]) -> tuple[list[Overlap], list[str]]:
+def find_overlaps(parts: Sequence[Instance]) -> tuple[list[Overlap], list[str]]:
     """Find the parts that share space, and say which were not compared.
 
     Parameters
     ----------
-    parts : sequence of Placed
+    parts : sequence of Instance
 
     Returns
     -------
@@ -176,7 +176,7 @@ def find_overlaps(parts: Sequence[Placed]) -> tuple[list[Overlap], list[str]]:
     for i, k in pairs:
         pair = shown[i], shown[k]
         if (volume := _of_spheres(*pair)) is not None:
-            found += _told(*pair, volume, 0.0)
+            found += _describe_overlap(*pair, volume, 0.0)
             continue
         making = sum(not part.form.is_made for part in pair if part.form)
         if making > unmade:
@@ -200,7 +200,7 @@ def find_overlaps(parts: Sequence[Placed]) -> tuple[list[Overlap], list[str]]:
     return found, notes
 
 
-def _at_one_place(parts: Sequence[Placed]) -> tuple[list[Overlap], set[int]]:
+def _at_one_place(parts: Sequence[Instance]) -> tuple[list[Overlap], set[int]]:
     """Find parts that are the same as an earlier one, bit for bit, at the same place."""
     first: dict[tuple[object, ...], int] = {}
     found, twins = [], set()
@@ -218,7 +218,7 @@ def _at_one_place(parts: Sequence[Placed]) -> tuple[list[Overlap], set[int]]:
     return found, twins
 
 
-def _meeting(parts: Sequence[Placed]) -> tuple[list[tuple[int, int]], int]:
+def _meeting(parts: Sequence[Instance]) -> tuple[list[tuple[int, int]], int]:
     """Find pairs that may be near each other, by wide boxes along the axes of the whole; count the rest."""
     if not parts:
         return [], 0
@@ -234,7 +234,7 @@ def _meeting(parts: Sequence[Placed]) -> tuple[list[tuple[int, int]], int]:
     return pairs, more
 
 
-def _near(one: Placed, other: Placed) -> bool:
+def _near(one: Instance, other: Instance) -> bool:
     """Return whether the boxes around the triangles of two parts meet."""
     known = [part.form.box for part in (one, other) if part.form]
     if None in known:
@@ -243,7 +243,7 @@ def _near(one: Placed, other: Placed) -> bool:
     return bool((np.abs(middles[1] - middles[0]) < reach[0] + reach[1]).all())
 
 
-def _boxes(parts: Sequence[Placed], boxes: Floats) -> tuple[Floats, Floats]:
+def _boxes(parts: Sequence[Instance], boxes: Floats) -> tuple[Floats, Floats]:
     """Return the middles and half sides of boxes along the axes of the whole around boxes of parts."""
     turns = np.array([part.place.rotation for part in parts])
     shifts = np.array([part.place.displacement for part in parts])
@@ -251,12 +251,12 @@ def _boxes(parts: Sequence[Placed], boxes: Floats) -> tuple[Floats, Floats]:
     return middles, np.einsum("nij,nj->ni", np.abs(turns), np.ptp(boxes, axis=1) / 2.0)
 
 
-def _triangles(part: Placed) -> int:
+def _triangles(part: Instance) -> int:
     surface = part.form.surface() if part.form else None
     return len(surface[1]) if surface else 0
 
 
-def _of_spheres(one: Placed, other: Placed) -> float | None:
+def _of_spheres(one: Instance, other: Instance) -> float | None:
     """Compute what two spheres share, in closed form; None for other solids."""
     if one.form is None or other.form is None or one.form.radius is None or other.form.radius is None:
         return None
@@ -274,13 +274,13 @@ def _of_spheres(one: Placed, other: Placed) -> float | None:
     return volume
 
 
-def _shared(one: Placed, other: Placed) -> list[Overlap]:
+def _shared(one: Instance, other: Instance) -> list[Overlap]:
     """Compare two parts by their triangles."""
     assert one.form is not None  # parts without a form are not compared
     assert other.form is not None
     if not has_union():
         pair = [
-            Part(part.name, *_placed(part, _FINE), part.form.volume, 0)
+            Part(part.name, *_place_surface(part, _FINE), part.form.volume, 0)
             for part in (one, other)
             if part.form is not None
         ]
@@ -290,11 +290,11 @@ def _shared(one: Placed, other: Placed) -> list[Overlap]:
         ]
     fine = _volume(one, other, _FINE)
     if not (one.form.is_round or other.form.is_round):
-        return _told(one, other, fine, 0.0)
-    return _told(one, other, *_smooth(fine, _volume(one, other, _COARSE)))
+        return _describe_overlap(one, other, fine, 0.0)
+    return _describe_overlap(one, other, *_smooth(fine, _volume(one, other, _COARSE)))
 
 
-def _told(one: Placed, other: Placed, volume: float, doubt: float) -> list[Overlap]:
+def _describe_overlap(one: Instance, other: Instance, volume: float, doubt: float) -> list[Overlap]:
     """Say that two parts share so much, unless it is contact."""
     large, small = sorted((one, other), key=lambda part: -(part.form.volume if part.form else 0.0))
     whole = small.form.volume if small.form else math.nan
@@ -304,9 +304,9 @@ def _told(one: Placed, other: Placed, volume: float, doubt: float) -> list[Overl
     return [Overlap("inside" if is_inside else "across", large.name, small.name, volume)]
 
 
-def _volume(one: Placed, other: Placed, segments: int) -> float:
+def _volume(one: Instance, other: Instance, segments: int) -> float:
     try:
-        return shared_volume(_placed(one, segments), _placed(other, segments))
+        return shared_volume(_place_surface(one, segments), _place_surface(other, segments))
     except MeshError:
         return math.nan
 
@@ -321,7 +321,7 @@ def _volume_of(surface: Surface) -> float:
     return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0
 
 
-def _placed(part: Placed, segments: int) -> Surface:
+def _place_surface(part: Instance, segments: int) -> Surface:
     surface = part.form.surface(segments) if part.form else None
     assert surface is not None
     vertices, faces = surface

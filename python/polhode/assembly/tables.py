@@ -32,8 +32,8 @@ __all__ = [
     "Scope",
     "check_keys",
     "copies",
-    "meant",
     "place_of",
+    "suggest_name",
     "text_of",
     "unknown",
 ]
@@ -58,10 +58,10 @@ def check_keys(table: Mapping[str, Any], known: Collection[str], where: str) -> 
 
 def unknown(key: str, known: Collection[str]) -> str:
     """Say that a key is not known, and which are."""
-    return f"{key[:40]!r} is not a known key; {meant(key, known)}"
+    return f"{key[:40]!r} is not a known key; {suggest_name(key, known)}"
 
 
-def meant(name: str, known: Collection[str]) -> str:
+def suggest_name(name: str, known: Collection[str]) -> str:
     """Ask for the nearest of the names that there are, or tell them."""
     near = difflib.get_close_matches(name, known, n=1)
     names = [*known][:_MOST_NAMES]
@@ -109,7 +109,7 @@ class Scope:
             return Scope(where, self.length_unit)
         if not isinstance(length_unit, str):
             raise PolhodeError(
-                f"{where}: length_unit: {_shown(length_unit)} is not the name of a unit; write one, as 'mm'"
+                f"{where}: length_unit: {_shorten(length_unit)} is not the name of a unit; write one, as 'mm'"
             )
         try:
             metres_per(length_unit)
@@ -152,7 +152,7 @@ class Scope:
             if count is None:
                 return found[0]
         if count is not None and len(found) != count:
-            raise PolhodeError(f"{option}: expected {count} numbers, got {len(found)} in {_shown(value)}")
+            raise PolhodeError(f"{option}: expected {count} numbers, got {len(found)} in {_shorten(value)}")
         return found
 
     def amount(self, key: str, value: Any, unit: str) -> float | _core.Uncertain:
@@ -165,24 +165,26 @@ class Scope:
     def _option(self, key: str, value: Any) -> str:
         option = f"{self.where}: {key}" if self.where else key
         if isinstance(value, str) and len(value) > _LONGEST:
-            raise PolhodeError(f"{option}: {_shown(value)} has more than {_LONGEST} letters; write a number")
+            raise PolhodeError(
+                f"{option}: {_shorten(value)} has more than {_LONGEST} letters; write a number"
+            )
         return option
 
     def _number(self, option: str, value: Any, unit: str, bare: float) -> float:
         if isinstance(value, str):
             return quantity(value, unit, option) * (1.0 if has_unit(value) else bare)
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise PolhodeError(f"{option}: {_shown(value)} is not a number; write one, as in 2.5")
+            raise PolhodeError(f"{option}: {_shorten(value)} is not a number; write one, as in 2.5")
         try:
             number = float(value) * bare
         except OverflowError:
             number = math.inf
         if not math.isfinite(number):
-            raise PolhodeError(f"{option}: {_shown(value)} is not finite; write one that is")
+            raise PolhodeError(f"{option}: {_shorten(value)} is not finite; write one that is")
         return number
 
 
-def _shown(value: Any) -> str:
+def _shorten(value: Any) -> str:
     text = repr(value)
     return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 3]}..."
 
@@ -206,7 +208,7 @@ class Place(NamedTuple):
         """Place what is placed within: first `inner`, then this one."""
         return Place(self.rotation @ inner.rotation, self.rotation @ inner.displacement + self.displacement)
 
-    def placed(self, body: _core.RigidBody) -> _core.RigidBody:
+    def place(self, body: _core.RigidBody) -> _core.RigidBody:
         """Place a body."""
         if not np.array_equal(self.rotation, np.eye(3)):
             body = body.rotated(_core.quaternion_from_matrix(self.rotation))

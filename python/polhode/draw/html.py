@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from polhode.motion.trajectory import Trajectory
 
 __all__ = [
-    "Shown",
+    "HtmlPage",
     "body_html",
     "ellipsoid_svg",
     "motion_html",
@@ -204,7 +204,7 @@ _POINTS: Final = 400
 _DASHES: Final = ("6 4", "none", "2 3")
 
 
-class Shown:
+class HtmlPage:
     """A page that a notebook displays; ``path`` is the file, where one was written for the browser.
 
     Attributes
@@ -227,7 +227,7 @@ class Shown:
 
 
 @with_hints
-def show(self: Trajectory, *, height: int, **options: Any) -> Shown:
+def show(self: Trajectory, *, height: int, **options: Any) -> HtmlPage:
     """Do what :meth:`polhode.Trajectory.show` says."""
     from polhode.animation import page_of
 
@@ -237,7 +237,7 @@ def show(self: Trajectory, *, height: int, **options: Any) -> Shown:
     for note in notes:
         warnings.warn(note, stacklevel=2)
     if "ipykernel" in sys.modules:
-        return Shown(page, height)
+        return HtmlPage(page, height)
     # For this alone, and not when the package is imported.
     import tempfile
     import webbrowser
@@ -248,7 +248,7 @@ def show(self: Trajectory, *, height: int, **options: Any) -> Shown:
     path = Path(tempfile.mkdtemp(prefix="polhode-")) / "motion.html"
     write_bytes(path, page.encode())
     webbrowser.open(path.as_uri())
-    return Shown(page, height, path)
+    return HtmlPage(page, height, path)
 
 
 def motion_html(self: Trajectory) -> str:

@@ -154,7 +154,7 @@ def follow(
     -------
     Span
     """
-    t, is_whole = _divided(t, step, most)
+    t, is_whole = _divide(t, step, most)
     points = curve(t)
     checked = np.zeros(len(t) - 1, dtype=bool)  # intervals whose chords are near enough
     while not checked.all():
@@ -175,7 +175,7 @@ def follow(
     return Span(t, is_whole)
 
 
-def _divided(t: Floats, step: float, most: int) -> Span:
+def _divide(t: Floats, step: float, most: int) -> Span:
     """Divide the intervals between times evenly, none longer than `step`, and keep the first `most` times."""
     if len(t) < 2:
         return Span(t, is_whole=True)
@@ -403,7 +403,7 @@ def of_samples(
         if can_help:
             is_short = is_film and frames is None
             way_out = "give a longer duration" if is_short else f"give frames={needed:.7g} or more"
-        notes += _judged(widest, f"animate: from one frame to the next, at t = {where},", way_out)
+        notes += _check_turn(widest, f"animate: from one frame to the next, at t = {where},", way_out)
     if is_film:
         if fps is not None and duration is not None:
             raise ValueError("fps: of samples each is one picture; give fps or duration, not both")
@@ -480,11 +480,11 @@ def _pictures(
     return (
         np.linspace(0.0, length, count),
         duration,
-        _judged(abs(length) * rate / (count - 1), where, way_out),
+        _check_turn(abs(length) * rate / (count - 1), where, way_out),
     )
 
 
-def _judged(angle: float, where: str, way_out: str) -> list[str]:
+def _check_turn(angle: float, where: str, way_out: str) -> list[str]:
     """Return a note where the turn from one picture to the next is large; an error where it is too large."""
     if angle >= np.pi:
         raise ValueError(
@@ -511,6 +511,6 @@ def _on_screen(
     if duration is None:
         return (needed if time_unit is None else pace(abs(length), needed, turned / TURN, time_unit)), []
     where = f"duration: at {RATE:g} pictures a second from one to the next"
-    return duration, _judged(
+    return duration, _check_turn(
         turned / duration, where, f"give duration={at_least(float(np.ceil(needed)), 6)} or more"
     )

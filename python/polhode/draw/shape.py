@@ -10,11 +10,11 @@ import numpy as np
 from polhode import _core
 from polhode.draw.triangles import (
     both_sides,
-    cut,
-    joined,
+    cluster_vertices,
     particles_surface,
     sheet_surface,
     solid_surface,
+    subdivide,
     wire_surface,
 )
 
@@ -153,7 +153,7 @@ def body_shape(body: RigidBody, about: Floats, *, is_cut: bool = True) -> tuple[
     for k, piece in enumerate(pieces):
         tint = _PART_TINTS[k % len(_PART_TINTS)]
         shapes.append(
-            _made(piece.vertices, piece.faces, _colors(piece, tint, len(pieces)), about, longest_edge)
+            _make_shape(piece.vertices, piece.faces, _colors(piece, tint, len(pieces)), about, longest_edge)
         )
     return _together(shapes), notes
 
@@ -239,9 +239,9 @@ def given_shape(
             f"shape: {len(sides)} triangles, none with an area; leave it out for what the body was made "
             "of, or the box that has its inertia"
         )
-    points, drawn, side = joined(points, faces, at_most or len(faces))
+    points, drawn, side = cluster_vertices(points, faces, at_most or len(faces))
     longest_edge = _size(points) / _PIECES if is_cut else None
-    made = _made(points, drawn, np.tile(_PLAIN, (len(drawn), 1)), about, longest_edge)
+    made = _make_shape(points, drawn, np.tile(_PLAIN, (len(drawn), 1)), about, longest_edge)
     return replace(made, left_out=len(faces) - len(drawn), moved=float(np.sqrt(3.0)) * side)
 
 
@@ -249,7 +249,7 @@ def _size(points: Floats) -> float:
     return max(float(np.ptp(points, axis=0).max(initial=0.0)), float(np.finfo(float).tiny))
 
 
-def _made(
+def _make_shape(
     points: Floats,
     faces: NDArray[np.int64],
     colors: NDArray[np.int64],
@@ -259,7 +259,7 @@ def _made(
     """Return a surface with its triangles cut until no edge is longer than that, if it is given."""
     if longest_edge is None:
         return Shape(points - about, faces, colors)
-    pieces, owner = cut(points[faces], longest_edge, at_most=max(_MOST, len(faces)))
+    pieces, owner = subdivide(points[faces], longest_edge, at_most=max(_MOST, len(faces)))
     corner, index = np.unique(pieces.reshape(-1, 3), axis=0, return_inverse=True)
     return Shape(corner - about, index.reshape(-1, 3), colors[owner])
 
@@ -390,7 +390,7 @@ def _piece(
     name = kind.rpartition("::")[2]
     vertices, faces = _surface(name, numbers, corners.reshape(-1, 3).astype(np.int64), segments, box)
     if name not in _GIVEN and not _has_area(vertices, faces):
-        vertices, faces = _thickened(name, numbers, segments)
+        vertices, faces = _thicken(name, numbers, segments)
     turn, shift = np.array(place[:9]).reshape(3, 3), np.array(place[9:])
     middle = vertices[faces].mean(axis=1)
     is_dark = np.zeros(len(faces), dtype=bool)
@@ -413,7 +413,7 @@ def _has_area(vertices: Floats, faces: NDArray[np.int64]) -> bool:
     return bool(np.abs(np.cross(second - first, third - first)).max() > _LINE)
 
 
-def _thickened(name: str, numbers: Floats, segments: int) -> Surface:
+def _thicken(name: str, numbers: Floats, segments: int) -> Surface:
     """Return a shape that is a line a hundredth as thick as it is long; a point has no faces."""
     point = np.zeros((1, 3)), np.zeros((0, 3), dtype=np.int64)
     if name.startswith("arc"):

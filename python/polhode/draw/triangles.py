@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 
 __all__ = [
     "both_sides",
-    "cut",
-    "joined",
+    "cluster_vertices",
     "particles_surface",
     "sheet_surface",
     "solid_surface",
+    "subdivide",
     "unit_normals",
     "wire_surface",
 ]
@@ -33,7 +33,7 @@ _COARSEST: Final = 4
 """Cells along the largest extent of a mesh whose corners are joined, at the least."""
 
 
-def cut(triangles: Floats, longest: float, *, at_most: int | None = None) -> tuple[Floats, Integers]:
+def subdivide(triangles: Floats, longest: float, *, at_most: int | None = None) -> tuple[Floats, Integers]:
     """Halve triangles until no edge is longer than `longest`; tell which triangle each piece is from.
 
     What draws sorts polygons by the depth of their middles, which puts large ones in the wrong order.
@@ -67,7 +67,7 @@ def cut(triangles: Floats, longest: float, *, at_most: int | None = None) -> tup
         owner = np.concatenate([owner[~long], owner[long], owner[long]])
 
 
-def joined(vertices: Floats, faces: Integers, at_most: int) -> tuple[Floats, Integers, float]:
+def cluster_vertices(vertices: Floats, faces: Integers, at_most: int) -> tuple[Floats, Integers, float]:
     """Join corners that lie in one cell of a grid, the finest that leaves few enough triangles.
 
     Parameters
@@ -142,16 +142,16 @@ def solid_surface(name: str, numbers: Floats, segments: int = _SEGMENTS) -> Surf
         return corners * numbers, np.array(triangles)
     if name == "prism":
         sides, radius, height = numbers
-        return _turned(_cylinder(radius, height), int(sides))
+        return _revolve(_cylinder(radius, height), int(sides))
     if name == "ellipsoid":
-        vertices, faces = _turned(_half_circle(1.0, segments), segments)
+        vertices, faces = _revolve(_half_circle(1.0, segments), segments)
         return vertices * numbers, faces
     if name not in _PROFILES:
         return None
-    return _turned(_PROFILES[name](segments, *numbers), segments)
+    return _revolve(_PROFILES[name](segments, *numbers), segments)
 
 
-def _turned(profile: Floats, segments: int) -> Surface:
+def _revolve(profile: Floats, segments: int) -> Surface:
     """Turn points (r, z), from below to above on the outside, about z."""
     angles = 2.0 * np.pi * np.arange(segments) / segments
     r, z = profile.T
@@ -305,7 +305,7 @@ def wire_surface(name: str, numbers: Floats, segments: int = _SEGMENTS) -> Surfa
     radius = _THIN * float(np.ptp(points, axis=0).max())
     bars = [_bar(a, b, radius) for a, b in pairwise(points)]
     pieces = [piece for piece in bars if piece is not None]
-    return _joined(pieces) if pieces else (points[:1], np.zeros((0, 3), dtype=np.int64))
+    return _concatenate(pieces) if pieces else (points[:1], np.zeros((0, 3), dtype=np.int64))
 
 
 def particles_surface(numbers: Floats) -> Surface:
@@ -355,7 +355,7 @@ def _bar(start: Floats, end: Floats, radius: float) -> Surface | None:
     return vertices @ np.stack([x, np.cross(z, x), z]) + (start + end) / 2.0, faces
 
 
-def _joined(pieces: list[Surface]) -> Surface:
+def _concatenate(pieces: list[Surface]) -> Surface:
     first = np.cumsum([0, *(len(vertices) for vertices, _ in pieces)])
     return (
         np.concatenate([vertices for vertices, _ in pieces]),

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["RINGS", "SPOKE", "SPOKES", "Disc", "Spin", "discs_of", "slowed"]
+__all__ = ["RINGS", "SPOKE", "SPOKES", "Disc", "Spin", "discs_of", "slowdown"]
 
 _RADIUS: Final = 0.2
 """Of a disc, in lengths of the body from the point of reference; not to scale: no wheel tells its size."""
@@ -85,7 +85,7 @@ class Disc(Spin):
 
     def factor(self, between: float) -> float:
         """Return how many times slower it is drawn where so much time goes by from picture to picture."""
-        return 1.0 if self.rate is None else slowed(float(np.abs(self.rate).max()) * between)
+        return 1.0 if self.rate is None else slowdown(float(np.abs(self.rate).max()) * between)
 
     def words(self, frame: int, factor: float, time_unit: str) -> str:
         """Return its speed in a picture, and how it is drawn."""
@@ -95,7 +95,7 @@ class Disc(Spin):
         return f"{self.name}: {self.rate[frame]:.4g} rad/{time_unit}{drawn}"
 
 
-def slowed(turn: float) -> float:
+def slowdown(turn: float) -> float:
     """Return the factor 1, 2, 5, 10, … by which a turning is drawn slower than it is.
 
     Parameters
@@ -126,7 +126,7 @@ def discs_of(footage: Footage, shape: Shape, motion: GyrostatMotion | None) -> t
     trajectory = footage.trajectory
     spins = _of_load(trajectory) if motion is None else _of_gyrostat(motion, trajectory)
     chosen = footage.chosen
-    return _placed(
+    return _place_discs(
         [
             Spin(
                 one.name,
@@ -200,7 +200,7 @@ def _rotor(momentum: Floats, name: str) -> list[Spin]:
     return [Spin(name, momentum / size, None, None)] if size > 0.0 else []
 
 
-def _placed(spins: list[Spin], shape: Shape, center: Floats) -> tuple[Disc, ...]:
+def _place_discs(spins: list[Spin], shape: Shape, center: Floats) -> tuple[Disc, ...]:
     """Put discs on the outside of a body, each on the line along its axis through the centre of mass."""
     reach = longest(shape.vertices)
     discs: list[Disc] = []

@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 import numpy as np
 
 from polhode import _core
-from polhode.distributions import Distribution, Made, PerMember, Refusal, Source, given_name, source
+from polhode.distributions import (
+    Distribution,
+    FunctionOfDraws,
+    PerMember,
+    Refusal,
+    Source,
+    given_name,
+    source,
+)
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
@@ -35,7 +43,7 @@ __all__ = [
     "coordinates",
     "draws",
     "layout",
-    "resolved",
+    "resolve_draws",
     "value",
 ]
 
@@ -112,7 +120,7 @@ class Inputs:
             ):
                 yield row, np.asarray(one, dtype=float)
 
-    def made(self, rows: Rows) -> dict[str, Any]:
+    def make_arguments(self, rows: Rows) -> dict[str, Any]:
         """Return the arguments of `simulate` for members, the body among them.
 
         Parameters
@@ -144,7 +152,9 @@ class Inputs:
 
     def run(self, rows: Rows, t: Floats, progress: Any = None) -> Trajectory:
         """Run members; one that fails on the way keeps the others."""
-        arguments = self.made(rows) | self.plan.options | {"on_failure": "keep", "progress": progress}
+        arguments = (
+            self.make_arguments(rows) | self.plan.options | {"on_failure": "keep", "progress": progress}
+        )
         if isinstance(arguments["load"], list):
             (arguments["load"],) = arguments["load"]
         body: _core.RigidBody = arguments.pop("body")
@@ -254,7 +264,7 @@ Node: TypeAlias = Draw | Make | Any
 """What is neither drawn nor made is the same for all members."""
 
 
-def resolved(arguments: Mapping[str, Any], seed: int) -> dict[str, Node]:
+def resolve_draws(arguments: Mapping[str, Any], seed: int) -> dict[str, Node]:
     """Assign every distribution among the arguments its source of random numbers.
 
     Parameters
@@ -268,12 +278,12 @@ def resolved(arguments: Mapping[str, Any], seed: int) -> dict[str, Node]:
     dict
     """
     seen: dict[int, Node] = {}
-    return {place: _resolved(argument, place, seed, seen) for place, argument in arguments.items()}
+    return {place: _resolve(argument, place, seed, seen) for place, argument in arguments.items()}
 
 
-def _resolved(argument: Any, place: str, seed: int, seen: dict[int, Node]) -> Node:
+def _resolve(argument: Any, place: str, seed: int, seen: dict[int, Node]) -> Node:
     """Resolve one; what was met before keeps the sources of its first place."""
-    if not isinstance(argument, Distribution | Made):
+    if not isinstance(argument, Distribution | FunctionOfDraws):
         return argument
     if id(argument) in seen:
         return seen[id(argument)]
@@ -285,7 +295,7 @@ def _resolved(argument: Any, place: str, seed: int, seen: dict[int, Node]) -> No
         for name in argument.kwargs:
             if not name.isidentifier():
                 raise ValueError(f"{place}: {name!r} is no name of an argument")
-        parts = {key: _resolved(part, f"{place}.{key}", seed, seen) for key, part in argument.parts().items()}
+        parts = {key: _resolve(part, f"{place}.{key}", seed, seen) for key, part in argument.parts().items()}
         args = tuple(parts[str(index)] for index in range(len(argument.args)))
         node = Make(argument.function, args, tuple((name, parts[name]) for name in sorted(argument.kwargs)))
     seen[id(argument)] = node

@@ -13,13 +13,13 @@ import numpy as np
 from polhode import _core
 from polhode._format import short
 from polhode._optional import require
-from polhode._progress import watched
+from polhode._progress import progress_bar
 from polhode.ensembles.checkpoints import Checkpoint
 from polhode.ensembles.cluster import chunks_here, chunks_of_client
 from polhode.ensembles.plan import bytes_of_member, coordinates, draws, layout
 from polhode.ensembles.reduce import BLOCK, nodes_of_chunk, tree_of
 from polhode.ensembles.running import arrays_of_chunk
-from polhode.ensembles.stores import NpzStore, ZarrStore, opened
+from polhode.ensembles.stores import NpzStore, ZarrStore, open_store
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -155,7 +155,7 @@ class Ensemble:
         k = int(k)
         if not 0 <= k < plan.n:
             raise IndexError(f"k: there are members 0 to {plan.n - 1}, got {k}")
-        made = plan.inputs(k, 1).made(np.arange(1))
+        made = plan.inputs(k, 1).make_arguments(np.arange(1))
         for name, value in made.items():
             if isinstance(value, _core.RigidBody | _core.Load):
                 made[name] = value[0] if value.shape else value
@@ -195,7 +195,7 @@ class Ensemble:
         plan = self.plan
         if self.reduce is not None:
             self._check_chunk(may_be_done=checkpoint is not None)
-            return self._reduced(None if checkpoint is None else Path(checkpoint))
+            return self._reduce(None if checkpoint is None else Path(checkpoint))
         if checkpoint is not None:
             raise ValueError(
                 "checkpoint: keeps reductions, and without reduce= states are kept; write these with "
@@ -206,7 +206,7 @@ class Ensemble:
         self._check_chunk(may_be_done=False)
         variables = layout(plan)
         arrays = {name: np.empty((plan.n, *one.tail), one.dtype) for name, one in variables.items()}
-        for index, chunk in self._run(partial(arrays_of_chunk, plan), range(plan.chunks)):
+        for index, chunk in self._run_chunks(partial(arrays_of_chunk, plan), range(plan.chunks)):
             first, count = plan.bounds(index)
             for name, array in arrays.items():
                 array[first : first + count] = chunk[name]
@@ -267,7 +267,7 @@ class Ensemble:
             inputs.
         """
         self._check_states("resume")
-        self._fill(opened(Path(path), self.plan))
+        self._fill(open_store(Path(path), self.plan))
 
     def _check_states(self, what: str) -> None:
         if self.reduce is not None:
@@ -292,17 +292,19 @@ class Ensemble:
             )
 
     def _fill(self, store: Store) -> None:
-        for index, arrays in self._run(partial(arrays_of_chunk, self.plan), store.pending()):
+        for index, arrays in self._run_chunks(partial(arrays_of_chunk, self.plan), store.pending()):
             store.write(index, arrays)
 
-    def _reduced(self, path: Path | None) -> Any:
+    def _reduce(self, path: Path | None) -> Any:
         named: dict[str, Any] = self.reduce if isinstance(self.reduce, dict) else {"": self.reduce}
         reductions = tuple(named.values())
         tree = tree_of(self.plan, reductions)
         work = partial(nodes_of_chunk, self.plan, reductions)
         kept = None if path is None else Checkpoint(path, self.plan, named, tree)
         try:
-            for index, nodes in self._run(work, range(self.plan.chunks) if kept is None else kept.pending()):
+            for index, nodes in self._run_chunks(
+                work, range(self.plan.chunks) if kept is None else kept.pending()
+            ):
                 for place, state in nodes.items():
                     tree.add(place, state)
                 if kept is not None:
@@ -312,14 +314,14 @@ class Ensemble:
                 kept.close()
         parts, left_out = tree.root
         found = {
-            name: reduction.finished(part, left_out)
+            name: reduction.finish(part, left_out)
             for (name, reduction), part in zip(named.items(), parts, strict=True)
         }
         return found if isinstance(self.reduce, dict) else found[""]
 
-    def _run(self, function: Callable[..., R], pending: Sequence[int]) -> Iterator[tuple[int, R]]:
+    def _run_chunks(self, function: Callable[..., R], pending: Sequence[int]) -> Iterator[tuple[int, R]]:
         task: Task[R] = _Work(self.plan, function)
-        with watched(f"{self.plan.n} members", self.progress) as tell:
+        with progress_bar(f"{self.plan.n} members", self.progress) as tell:
             if self.client is None:
                 yield from chunks_here(task, pending, tell)
             else:

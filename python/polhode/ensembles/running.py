@@ -99,7 +99,7 @@ def run_members(plan: Plan, first: int, count: int, progress: Callable[[float], 
         Where the plan says so, for the first member that fails.
     """
     inputs = plan.inputs(first, count)
-    able, faults = admitted(inputs)
+    able, faults = find_runnable(inputs)
     rows, found = [], []
     size = 1 if is_each_alone(plan) else max(len(able), 1)
     for start in range(0, len(able), size):
@@ -123,7 +123,7 @@ def run_members(plan: Plan, first: int, count: int, progress: Callable[[float], 
     return run
 
 
-def picked(trajectory: Trajectory, rows: Rows) -> Trajectory:
+def select_rows(trajectory: Trajectory, rows: Rows) -> Trajectory:
     """Return the motions of some rows of a stack, whose arrays nobody can change.
 
     Parameters
@@ -155,7 +155,7 @@ def picked(trajectory: Trajectory, rows: Rows) -> Trajectory:
     return type(trajectory)._of_run(known | own)
 
 
-def admitted(inputs: Inputs) -> tuple[Rows, dict[int, PolhodeError]]:
+def find_runnable(inputs: Inputs) -> tuple[Rows, dict[int, PolhodeError]]:
     """Return which members have a body, a load and a state to begin with, and why others have not."""
     size = 1 if is_each_alone(inputs.plan) else max(inputs.count, 1)
     every = np.arange(inputs.count)
@@ -163,7 +163,7 @@ def admitted(inputs: Inputs) -> tuple[Rows, dict[int, PolhodeError]]:
     faults: dict[int, PolhodeError] = {}
 
     def is_made(some: Rows) -> None:
-        inputs.made(some)
+        inputs.make_arguments(some)
 
     for start in range(0, inputs.count, size):
         rows, _, refused = _each(every[start : start + size], is_made)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     Arrays = dict[str, np.ndarray[Any, Any]]
 
-__all__ = ["NpzStore", "Store", "ZarrStore", "check_same", "header", "opened"]
+__all__ = ["NpzStore", "Store", "ZarrStore", "check_same", "header", "open_store"]
 
 _HEADER: Final = "ensemble.json"
 _KIND: Final = "polhode ensemble"
@@ -176,7 +176,7 @@ def _remove(files: Iterable[Path], name: str) -> None:
             file.unlink()
 
 
-def opened(path: Path, plan: Plan) -> Store:
+def open_store(path: Path, plan: Plan) -> Store:
     """Open the store of this ensemble that is at a path.
 
     Parameters

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from polhode.ensembles.plan import draws, is_each_alone
-from polhode.ensembles.running import ROW, admitted, output
+from polhode.ensembles.running import ROW, find_runnable, output
 from polhode.errors import IntegrationError, PolhodeError
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Rows = NDArray[np.intp]
 
-__all__ = ["outputs_of", "settled", "trial_of"]
+__all__ = ["choose_method", "outputs_of", "trial_of"]
 
 _PROBED: Final = 16
 """If so many members cannot begin, the call is wrong rather than their luck."""
@@ -49,7 +49,7 @@ def trial_of(plan: Plan) -> tuple[Rows, Trajectory]:
         Where none can.
     """
     inputs = plan.inputs(0, min(plan.n, _PROBED))
-    able, faults = admitted(inputs)
+    able, faults = find_runnable(inputs)
     begun, first = [], None
     for row in able.tolist():
         try:
@@ -75,7 +75,7 @@ def _beginning(t: Floats) -> Floats:
     return t if len(t) == 1 else np.array([t[0], t[0] + 1e-6 * (t[1] - t[0])])
 
 
-def settled(plan: Plan, begun: Rows) -> str:
+def choose_method(plan: Plan, begun: Rows) -> str:
     """Return the method of all members, where "auto" would choose by the loads of a chunk.
 
     Parameters

@@ -476,7 +476,7 @@ def _moved_along(
     numpy.ndarray, shape (n, 3)
         In the order of the bonds; none for a sigma of zero.
     """
-    pairs = _checked(names, bonds)
+    pairs = _check_bonds(names, bonds)
     if sigma.shape not in ((), (len(pairs),)):
         message = f"sigma: expected one or one for each of {len(pairs)} bonds, got shape {sigma.shape}"
         raise ValueError(message)
@@ -500,7 +500,7 @@ def _moved_along(
         yield step
 
 
-def _checked(names: Sequence[str], bonds: ArrayLike) -> list[tuple[int, int]]:
+def _check_bonds(names: Sequence[str], bonds: ArrayLike) -> list[tuple[int, int]]:
     array = np.asarray(_core.real_numbers(bonds, "bonds"))
     if array.size == 0:
         return []

@@ -12,7 +12,7 @@ import numpy as np
 from polhode import _core
 from polhode.errors import PolhodeError
 from polhode.results import MotionSensitivity
-from polhode.uncertainty.motion import _exponential, _logarithm, _product, _taken
+from polhode.uncertainty.motion import _exponential, _logarithm, _product, _take_row
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -51,17 +51,17 @@ def recipes(load: _core.Load | None) -> list[Recipe]:
 def known_states(load: _core.Load | None, made: list[Recipe]) -> set[str]:
     """Name the states that can be nothing else: the wheels whose speed is given."""
     names = iter(load.states if load is not None else ())
-    plain = (_unwrapped(recipe)[1] for recipe in made)
+    plain = (_split_recipe(recipe)[1] for recipe in made)
     own = [(recipe, next(names, "")) for recipe in plain if recipe[0] in ("wheel", "slug")]
     return {name for (kind, given), name in own if kind == "wheel" and given[-1]["speed"] is not None}
 
 
 def numbers(recipe: Recipe) -> Iterator[tuple[str, Floats, Changed]]:
     """Return the numbers among the arguments of a part by name, and the recipe with others in their place."""
-    around, recipe = _unwrapped(recipe)
+    around, recipe = _split_recipe(recipe)
     if around:
         for name, values, changed in numbers(recipe):
-            yield name, values, _wrapped(around, changed)
+            yield name, values, _nest_recipe(around, changed)
         return
     made_by, arguments = recipe
     function = getattr(_core, made_by, None)
@@ -82,7 +82,7 @@ def numbers(recipe: Recipe) -> Iterator[tuple[str, Floats, Changed]]:
             yield name, np.array(value, dtype=float), _with(made_by, named, name, _plain)
 
 
-def _unwrapped(recipe: Recipe) -> tuple[list[Recipe], Recipe]:
+def _split_recipe(recipe: Recipe) -> tuple[list[Recipe], Recipe]:
     """Return what was done to a part, the last first and without the part, and the part."""
     around: list[Recipe] = []
     while recipe[0] in AROUND:
@@ -91,14 +91,14 @@ def _unwrapped(recipe: Recipe) -> tuple[list[Recipe], Recipe]:
     return around, recipe
 
 
-def _wrapped(around: list[Recipe], changed: Changed) -> Changed:
-    def placed(values: Floats) -> Recipe:
+def _nest_recipe(around: list[Recipe], changed: Changed) -> Changed:
+    def nest(values: Floats) -> Recipe:
         recipe = changed(values)
         for name, arguments in reversed(around):
             recipe = name, (recipe, *arguments)
         return recipe
 
-    return placed
+    return nest
 
 
 def _fields_of(path: Any) -> Iterator[tuple[str, Floats, Callable[[Floats], Any]]]:
@@ -180,14 +180,14 @@ def by_differences(self: Trajectory) -> MotionSensitivity:
     stack = self.omega.shape[:-2]
     rows = [_Row(self, stack, row).sensitivity() for row in range(int(np.prod(stack, dtype=int)))]
 
-    def stacked(parts: list[Floats]) -> Floats:
+    def to_stack(parts: list[Floats]) -> Floats:
         return np.array(parts).reshape(*stack, *np.shape(parts[0]))
 
-    load = tuple({name: stacked([row.load[k][name] for row in rows]) for name in part}
+    load = tuple({name: to_stack([row.load[k][name] for row in rows]) for name in part}
                  for k, part in enumerate(rows[0].load))  # fmt: skip
     fields = [name for name in MotionSensitivity._fields if name != "load"]
     return MotionSensitivity(
-        load=load, **{name: stacked([getattr(r, name) for r in rows]) for name in fields}
+        load=load, **{name: to_stack([getattr(r, name) for r in rows]) for name in fields}
     )
 
 
@@ -197,8 +197,8 @@ class _Row:
     def __init__(self, run: Trajectory, stack: tuple[int, ...], row: int) -> None:
         place = np.unravel_index(row, stack)
         self.run, self.place = run, place
-        self.body = _taken(run.body, stack, row)
-        self.load = _taken(run._acting("sensitivity"), stack, row)
+        self.body = _take_row(run.body, stack, row)
+        self.load = _take_row(run._acting("sensitivity"), stack, row)
         self.recipes = recipes(self.load)
         self.omega, self.quaternion = run.omega[place], run.quaternion[place]
         self.states = {name: values[place][0] for name, values in run.states.items()}
@@ -268,23 +268,23 @@ class _Row:
     def by(self, name: str, k: int, size: float, held: dict[str, Floats]) -> Floats:
         """By one number that counts as large where it is `size`, with these states held, shape (T, 6 + k)."""
 
-        def moved(steps: Floats) -> Floats:
+        def end_states(steps: Floats) -> Floats:
             starts = self.starts(held, len(steps))
             values = starts.states[name] if name in starts.states else getattr(starts, name)
             values.reshape(len(steps), -1)[:, k] += steps  # they are new
             return self.ends(starts, self.load)
 
-        return self.along(moved, size, name)
+        return self.along(end_states, size, name)
 
     def by_tensor(self, along: Floats, size: float) -> Floats:
         """By the tensor along another."""
 
-        def moved(steps: Floats) -> Floats:
+        def end_states(steps: Floats) -> Floats:
             starts = self.starts(self.given, len(steps))
             starts.tensor[:] += steps[:, None, None] * along
             return self.ends(starts, self.load)
 
-        return self.along(moved, size, "tensor")
+        return self.along(end_states, size, "tensor")
 
     def by_load(self) -> Iterator[dict[str, Floats]]:
         """By the numbers of each part of the load."""
@@ -344,7 +344,7 @@ class _Row:
         `moved` gives the motions where it is more by these steps, `scheme` the differences to take.
         """
         step = STEP * size if size > 0.0 else self.step_from_zero(moved)
-        return self.combined(scheme(step), moved, step, name)
+        return self.combine_differences(scheme(step), moved, step, name)
 
     def step_from_zero(self, moved: Callable[[Floats], Floats]) -> float:
         """Find the step of a number that is zero, whose scale nothing tells: it moves the motion by `STEP`.
@@ -371,7 +371,9 @@ class _Row:
         self.most_steps = None
         return step
 
-    def combined(self, scheme: _Scheme, moved: Callable[[Floats], Floats], step: float, name: str) -> Floats:
+    def combine_differences(
+        self, scheme: _Scheme, moved: Callable[[Floats], Floats], step: float, name: str
+    ) -> Floats:
         """Combine the motions of a scheme; both orders agree where the motion is smooth in the number."""
         ends = moved(scheme.steps * step)
         found = np.asarray(np.tensordot(scheme.six, ends, 1) / step)

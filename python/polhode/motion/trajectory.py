@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
     from xarray import Dataset
 
-    from polhode.draw.html import Shown
+    from polhode.draw.html import HtmlPage
     from polhode.errors import IntegrationError, PolhodeError
     from polhode.results import MotionSensitivity
     from polhode.uncertainty.motion import StateSigma
@@ -230,7 +230,9 @@ class Trajectory(metaclass=Hinting):
         center = self.body.center_of_mass
         words = {"center_of_mass": center, "com": center, "origin": np.zeros(3)}
         if isinstance(point, str) and point not in words:
-            raise ValueError(f"point: {point!r} is not 'center_of_mass', 'origin' or a point of shape (..., 3)")
+            raise ValueError(
+                f"point: {point!r} is not 'center_of_mass', 'origin' or a point of shape (..., 3)"
+            )
         place = words[point] if isinstance(point, str) else _core.real_numbers(point, "point")
         if place.shape[-1:] != (3,):
             raise ValueError(f"point: expected shape (..., 3), got {place.shape}")
@@ -260,7 +262,7 @@ class Trajectory(metaclass=Hinting):
         if kept is not None:
             along = spin if kept is True else np.einsum("...i,...i->...", spin, self._per_time(kept))
 
-        def drifted(values: Floats, size: Floats) -> Any:
+        def relative_drift(values: Floats, size: Floats) -> Any:
             stack = size.shape[: size.ndim - self.t.ndim]
             if not self.t.size:
                 return np.zeros(stack)[()]
@@ -270,8 +272,8 @@ class Trajectory(metaclass=Hinting):
         return Invariants(
             energy,
             along,
-            None if potential is None else drifted(kinetic + potential, kinetic + np.abs(potential)),
-            None if along is None else drifted(along, lengths(spin)),
+            None if potential is None else relative_drift(kinetic + potential, kinetic + np.abs(potential)),
+            None if along is None else relative_drift(along, lengths(spin)),
         )
 
     def state(self, index: int = -1) -> State:
@@ -354,7 +356,7 @@ class Trajectory(metaclass=Hinting):
         if unwrap:
             self._check_series("euler_angles, unwrap")
         angles = _core.euler_angles_from_quaternion(self.quaternion, sequence, singular)
-        angles = _unwrapped(angles) if unwrap else angles
+        angles = _unwrap(angles) if unwrap else angles
         return np.rad2deg(angles) if degrees else angles
 
     def euler_rates(
@@ -825,7 +827,7 @@ class Trajectory(metaclass=Hinting):
 
         return state_sigma(self)
 
-    def show(self, *, height: int = 460, **options: Any) -> Shown:
+    def show(self, *, height: int = 460, **options: Any) -> HtmlPage:
         """Show the motion of one body as an interactive page: below a notebook's cell, or in the browser.
 
         Parameters
@@ -837,7 +839,7 @@ class Trajectory(metaclass=Hinting):
 
         Returns
         -------
-        Shown
+        HtmlPage
             Outside a notebook its ``path`` is the page, in the folder for temporary files.
 
         Examples
@@ -1010,7 +1012,7 @@ class Trajectory(metaclass=Hinting):
         return torque
 
 
-def _unwrapped(angles: Floats) -> Floats:
+def _unwrap(angles: Floats) -> Floats:
     """Unwrap angles (..., T, 3) along the times, over gaps that are not numbers."""
     columns = np.moveaxis(angles, -2, -1)
     series = columns.reshape(-1, columns.shape[-1]).copy()

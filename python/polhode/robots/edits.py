@@ -9,7 +9,7 @@ from polhode.io.xml_source import Edit, Element, set_attribute, set_text
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["attribute", "first_child", "indented", "number_text", "text_of"]
+__all__ = ["attribute", "first_child", "indent_element", "number_text", "text_of"]
 
 
 def number_text(values: Iterable[float]) -> str:
@@ -36,7 +36,7 @@ def first_child(source: bytes, parent: Element, text: str) -> Edit:
     return Edit(first, first, text + _blanks_before(source, parent.inside, first))
 
 
-def indented(source: bytes, parent: Element, opening: str, inner: Iterable[str], closing: str) -> str:
+def indent_element(source: bytes, parent: Element, opening: str, inner: Iterable[str], closing: str) -> str:
     """Write an element with its children on lines of their own where those of the parent stand so."""
     first = parent.children[0].start if parent.children else parent.inside
     blanks = _blanks_before(source, parent.inside, first)

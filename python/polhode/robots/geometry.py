@@ -13,7 +13,7 @@ from polhode.io.components import overlapping
 from polhode.io.loaded import load
 from polhode.io.mesh import Mesh, equal_rows, used_vertices
 from polhode.robots.mjcf import legacy_solid
-from polhode.robots.model import quoted, shortened
+from polhode.robots.model import quote, shorten
 from polhode.robots.room import MARKER
 from polhode.units import metres_per
 
@@ -83,7 +83,7 @@ class Geometry:
     marker: float | None = None
 
 
-class _Read(NamedTuple):
+class _MeshOrSolids(NamedTuple):
     """A mesh, and those of its vertices that triangles use; or solids of CAD in the corners of wide boxes."""
 
     mesh: Mesh
@@ -105,7 +105,7 @@ class GeometryReader:
 
     def __init__(self, folder: Path, addresses: Addresses) -> None:
         self._folder, self._addresses = folder, addresses
-        self._meshes: dict[tuple[Path, str], _Read | str] = {}
+        self._meshes: dict[tuple[Path, str], _MeshOrSolids | str] = {}
         self._solids: dict[tuple[Path, str, str, tuple[float, ...], str], tuple[RigidBody | None, str]] = {}
 
     def read(self, link: Link) -> Geometry:
@@ -130,7 +130,7 @@ class GeometryReader:
             return Geometry(body, volume, role, None, None, len(boxes), told)
         return Geometry(body, volume, role, low, high, len(boxes) - len(known), told)
 
-    def filled(self, link: Link) -> RigidBody | None:
+    def fill_shapes(self, link: Link) -> RigidBody | None:
         """Return the shapes filled with density 1, whatever the file says of their masses."""
         plain = replace(link, shapes=tuple(replace(s, density=1.0, mass=None) for s in link.shapes))
         return self._whole(plain, link.folder or self._folder, {})[0]
@@ -201,7 +201,7 @@ class GeometryReader:
 
     def _mesh_solid(self, shape: Shape, folder: Path) -> tuple[RigidBody | None, str]:
         """Return the solid that a mesh bounds, or its convex hull, and what has to be said of it."""
-        read, name = self._mesh(shape.mesh, folder), shortened(shape.mesh)
+        read, name = self._mesh(shape.mesh, folder), shorten(shape.mesh)
         if isinstance(read, str):
             return None, read
         if read.solids is not None:
@@ -219,7 +219,7 @@ class GeometryReader:
             except ValueError as error:
                 first = str(error)
         if shape.counting == "legacy" and len(mesh.faces):
-            return _counted(name, legacy_solid(vertices, mesh.faces), solid)
+            return _fill_as_mujoco(name, legacy_solid(vertices, mesh.faces), solid)
         if solid is not None:
             return solid, _overlapping(f"mesh {name}", vertices, mesh.faces)
         try:
@@ -229,16 +229,16 @@ class GeometryReader:
         told = f"mesh {name} does not bound a solid: its convex hull was taken"
         return hull, told if shape.counting != "convex" else ""
 
-    def _mesh(self, address: str, folder: Path) -> _Read | str:
+    def _mesh(self, address: str, folder: Path) -> _MeshOrSolids | str:
         key = (folder, address)
         if key not in self._meshes:
             self._meshes[key] = self._load(address, folder)
         return self._meshes[key]
 
-    def _load(self, address: str, folder: Path) -> _Read | str:
+    def _load(self, address: str, folder: Path) -> _MeshOrSolids | str:
         if not address:
             return "mesh (without a name) was not found"
-        name = shortened(address)
+        name = shorten(address)
         path, fault = self._addresses.find(address, folder)
         if path is None:
             return f"mesh {name} {fault or 'was not found'}"
@@ -261,7 +261,7 @@ class GeometryReader:
         if not np.isfinite(corners).all():
             vertex = int(used[np.flatnonzero(~np.isfinite(corners).all(axis=1))[0]])
             return f"mesh {name}: {path}: vertex {vertex} is not finite; check the file"
-        return _Read(mesh, corners)
+        return _MeshOrSolids(mesh, corners)
 
     def _box(self, shape: Shape, folder: Path, notes: dict[str, str]) -> tuple[Floats, Floats] | None:
         """Opposite corners of the box along the axes of the link around a shape."""
@@ -295,7 +295,7 @@ class GeometryReader:
         return position - reach, position + reach
 
 
-def _of_cad(cad: CadFile) -> _Read:
+def _of_cad(cad: CadFile) -> _MeshOrSolids:
     """Return solids of a CAD file with density 1, in metres, and the corners of wide boxes around them."""
     from polhode.io.cad_files import solids_of
 
@@ -308,10 +308,12 @@ def _of_cad(cad: CadFile) -> _Read:
     )
     corners *= metres_per("mm")
     empty = np.empty((0, 3), dtype=np.int64)
-    return _Read(Mesh(corners, empty, cad.format), corners, solids_of(cad, density=1.0)[0], cad.overlaps)
+    return _MeshOrSolids(
+        Mesh(corners, empty, cad.format), corners, solids_of(cad, density=1.0)[0], cad.overlaps
+    )
 
 
-def _counted(name: str, legacy: RigidBody, solid: RigidBody | None) -> tuple[RigidBody, str]:
+def _fill_as_mujoco(name: str, legacy: RigidBody, solid: RigidBody | None) -> tuple[RigidBody, str]:
     """Return what MuJoCo takes a mesh for, and say where that is not what it fills."""
     by = 'MuJoCo\'s inertia="legacy", its default'
     if solid is None:
@@ -344,7 +346,7 @@ def _overlapping(name: str, vertices: Floats, faces: NDArray[np.int64]) -> str:
 def _solid(shape: Shape) -> tuple[RigidBody | None, str]:
     """Return the solid of a shape that is no mesh, or why there is none."""
     if shape.kind not in _SOLIDS:
-        return None, f"a shape of kind {quoted(shape.kind)} has no volume that could be told"
+        return None, f"a shape of kind {quote(shape.kind)} has no volume that could be told"
     try:
         return _SOLIDS[shape.kind](shape.size), ""
     except ValueError as error:

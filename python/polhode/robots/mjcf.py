@@ -25,7 +25,7 @@ from polhode.robots.model import (
     Place,
     Shape,
     numbers,
-    quoted,
+    quote,
     scale,
     unit,
 )
@@ -122,10 +122,10 @@ class _Reader:
 
     def below(self, parent: Element, inherited: str | None, above: str) -> Iterator[Link]:
         """Read the bodies and the attached models that hang on a body or the world, by its key."""
-        for body in self.members(parent, "body", Place.here(), inherited):
+        for body in self.members(parent, "body", Place.identity(), inherited):
             yield from self.bodies(body, above)
-        for attach in self.members(parent, "attach", Place.here(), inherited):
-            for link in self._attached(attach.element, above):
+        for attach in self.members(parent, "attach", Place.identity(), inherited):
+            for link in self._read_attach(attach.element, above):
                 yield replace(link, problem=attach.problem or link.problem)
 
     def bodies(self, member: Member, above: str) -> Iterator[Link]:
@@ -137,7 +137,7 @@ class _Reader:
         declared = body.find("inertial")
         is_inferred = declared is None or self.infers_always
         try:
-            geoms = self.members(body, "geom", Place.here(), inherited)
+            geoms = self.members(body, "geom", Place.identity(), inherited)
             shapes = tuple(self._shape(geom, weighs=is_inferred) for geom in geoms)
             # MuJoCo keeps what is declared where no geom weighs, whatever the compiler says.
             masses = (geom.density if geom.mass is None else geom.mass for geom in shapes)
@@ -173,8 +173,8 @@ class _Reader:
 
     def _joint(self, body: Element, name: str, above: str, key: str) -> Joint:
         """Return what moves a body: its joints, else nothing."""
-        free = [*self.members(body, "freejoint", Place.here(), None)]
-        joints = [*free, *self.members(body, "joint", Place.here(), None)]
+        free = [*self.members(body, "freejoint", Place.identity(), None)]
+        joints = [*free, *self.members(body, "joint", Place.identity(), None)]
         if not joints:
             return Joint("", "fixed", above, key)
         kind = "free" if free else joints[0].element.attributes.get("type", "hinge")
@@ -192,16 +192,16 @@ class _Reader:
                 name = child.attributes.get("childclass", inherited)
                 yield from self.members(child, tag, place.then(step), name, problem or fault)
             elif child.tag == "replicate":
-                yield from self._copied(child, tag, Member(child, place, inherited, problem))
+                yield from self._read_copies(child, tag, Member(child, place, inherited, problem))
 
     def _step(self, element: Element, attributes: dict[str, str]) -> tuple[Place, str]:
         """Return a frame, and what is wrong with it: that ends the verdict of what stands in it alone."""
         try:
             return self._place(element, attributes), ""
         except FileFormatError as error:
-            return Place.here(), str(error)
+            return Place.identity(), str(error)
 
-    def _copied(self, replicate: Element, tag: str, first: Member) -> Iterator[Member]:
+    def _read_copies(self, replicate: Element, tag: str, first: Member) -> Iterator[Member]:
         """Return the elements of every copy; bodies once, as they are the same in all."""
         attributes = replicate.attributes
         turn = {"pos": attributes.get("offset", "0 0 0"), "euler": attributes.get("euler", "0 0 0")}
@@ -229,7 +229,7 @@ class _Reader:
             name = self.sources.read(path, file, model).attributes.get("model", "")
         self.models[name] = file
 
-    def _attached(self, attach: Element, above: str) -> Iterator[Link]:
+    def _read_attach(self, attach: Element, above: str) -> Iterator[Link]:
         """Read what an ``<attach>`` brings: a body or a frame of another model, or all its bodies."""
         tag = next((tag for tag in ("body", "frame") if tag in attach.attributes), "")
         wanted = attach.attributes.get(tag, "")
@@ -239,7 +239,7 @@ class _Reader:
         name = attach.attributes.get("model", "")
         if name not in self.models:
             raise FileFormatError(
-                f"{attach.where}: <attach> of model {quoted(name)}, which no <model> of the assets "
+                f"{attach.where}: <attach> of model {quote(name)}, which no <model> of the assets "
                 "names; add it"
             )
         file = self.models[name]
@@ -255,16 +255,16 @@ class _Reader:
                 everything = model.everything(world, tag, None)
                 found = [each for each in everything if each.element.attributes.get("name") == wanted]
                 for member in found:
-                    read = model.bodies(member, above) if tag == "body" else model.framed(member, above)
+                    read = model.bodies(member, above) if tag == "body" else model.read_frame(member, above)
                     yield from read
                 if found:
                     return
             if tag:
                 raise FileFormatError(
-                    f"{attach.where}: {file} has no {tag} {quoted(wanted)}; correct the name"
+                    f"{attach.where}: {file} has no {tag} {quote(wanted)}; correct the name"
                 )
 
-    def framed(self, frame: Member, above: str) -> Iterator[Link]:
+    def read_frame(self, frame: Member, above: str) -> Iterator[Link]:
         """Read the bodies of a frame."""
         inherited = frame.element.attributes.get("childclass", frame.inherited)
         yield from self.below(frame.element, inherited, above)
@@ -275,7 +275,7 @@ class _Reader:
             if child.tag not in ("body", "frame", "replicate"):
                 continue
             if child.tag == tag:
-                yield Member(child, Place.here(), inherited, "")
+                yield Member(child, Place.identity(), inherited, "")
             yield from self.everything(child, tag, child.attributes.get("childclass", inherited))
 
     def _add_class(
@@ -304,7 +304,7 @@ class _Reader:
             if len(self.sequence) != 3 or not (
                 set(self.sequence) <= set("xyz") or set(self.sequence) <= set("XYZ")
             ):
-                sequence = quoted(self.sequence.swapcase())
+                sequence = quote(self.sequence.swapcase())
                 raise FileFormatError(
                     f"{element.where}: euler by eulerseq {sequence}, which is not read: three letters of "
                     "xyz or of XYZ have to stand there; give quat"
@@ -365,10 +365,12 @@ class _Reader:
         if "mesh" in attributes:  # MuJoCo takes the size from the mesh, whatever stands here
             kind = f"{kind} fitted to a mesh"
             return Shape(kind, (), frame, "collision", "", density, mass, geom.where)
-        place, size = self._sized(geom, attributes, kind)
+        place, size = self._read_size(geom, attributes, kind)
         return Shape(kind, size, frame.then(place), "collision", "", density, mass, geom.where)
 
-    def _sized(self, geom: Element, attributes: dict[str, str], kind: str) -> tuple[Place, tuple[float, ...]]:
+    def _read_size(
+        self, geom: Element, attributes: dict[str, str], kind: str
+    ) -> tuple[Place, tuple[float, ...]]:
         """Full lengths and the place; ``fromto`` gives the length and place of what is long."""
         place = self._place(geom, attributes)
         if kind not in _HALF_LENGTHS:
@@ -437,17 +439,19 @@ def as_compiled(robot: Robot, verdicts: Sequence[Verdict]) -> list[Verdict]:
     pairs = list(zip(robot.links, verdicts, strict=True))
     if not (robot.total_mass or any(link.compiler for link in robot.links)):
         return list(verdicts)
-    found = [_bounded(link.compiler, verdict) if link.compiler else verdict for link, verdict in pairs]
+    found = [_apply_bounds(link.compiler, verdict) if link.compiler else verdict for link, verdict in pairs]
     masses = [_mass(link, verdict) for link, verdict in zip(robot.links, found, strict=True)]
     total = sum(mass for mass in masses if mass is not None)
     if not (robot.total_mass and total > 0.0):
         return found
     if None in masses:
         unknown = robot.links[masses.index(None)].name
-        return [_told(v, f"settotalmass would scale it: the mass of {unknown} is not known") for v in found]
+        return [
+            _add_reason(v, f"settotalmass would scale it: the mass of {unknown} is not known") for v in found
+        ]
     factor = robot.total_mass / total
     return [
-        _told(v, f"times {factor:.4g} by settotalmass", v.mass * factor, np.asarray(v.moments) * factor)
+        _add_reason(v, f"times {factor:.4g} by settotalmass", v.mass * factor, np.asarray(v.moments) * factor)
         if v.mass is not None and v.moments is not None
         else v
         for v in found
@@ -462,7 +466,7 @@ def _number(compilers: Sequence[Element], name: str) -> float:
     return value
 
 
-def _bounded(compiler: Compiler, verdict: Verdict) -> Verdict:
+def _apply_bounds(compiler: Compiler, verdict: Verdict) -> Verdict:
     """Raise what is less than the bounds, and balance moments that break the triangle inequality."""
     is_empty = verdict.verdict == "missing" and min(compiler.mass, compiler.moment) > _LEAST
     if not is_empty and (verdict.verdict != "inferred" or verdict.mass is None):
@@ -476,7 +480,7 @@ def _bounded(compiler: Compiler, verdict: Verdict) -> Verdict:
         return verdict
     if is_empty:
         verdict = verdict._replace(verdict="inferred", reason="", better=None)
-    return _told(verdict, "by boundmass and boundinertia of the compiler", mass, moments)
+    return _add_reason(verdict, "by boundmass and boundinertia of the compiler", mass, moments)
 
 
 def _mass(link: Link, verdict: Verdict) -> float | None:
@@ -488,7 +492,7 @@ def _mass(link: Link, verdict: Verdict) -> float | None:
     return max(verdict.mass, link.compiler.mass) if link.compiler else verdict.mass
 
 
-def _told(verdict: Verdict, words: str, mass: float | None = None, moments: Any = None) -> Verdict:
+def _add_reason(verdict: Verdict, words: str, mass: float | None = None, moments: Any = None) -> Verdict:
     """Add words, and numbers where they are given, to the verdict of an inferred body."""
     if verdict.verdict != "inferred":
         return verdict
@@ -619,6 +623,6 @@ def copies(replicate: Element) -> int:
     (count,) = numbers(replicate, text, 1, "count")
     if count != int(count) or count < 1:
         raise FileFormatError(
-            f"{replicate.where}: count is {quoted(text)} where a whole number from 1 has to stand"
+            f"{replicate.where}: count is {quote(text)} where a whole number from 1 has to stand"
         )
     return int(count)

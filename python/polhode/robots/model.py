@@ -29,9 +29,9 @@ __all__ = [
     "Robot",
     "Shape",
     "numbers",
-    "quoted",
+    "quote",
     "scale",
-    "shortened",
+    "shorten",
     "unit",
 ]
 
@@ -46,7 +46,7 @@ class Place(NamedTuple):
     position: Floats
 
     @classmethod
-    def here(cls) -> Place:
+    def identity(cls) -> Place:
         """Return the frame itself."""
         return cls(np.eye(3), np.zeros(3))
 
@@ -264,11 +264,11 @@ def numbers(element: Element, text: str | None, count: int | None, what: str) ->
         )
         way_out = "; expand the file with xacro first" if text and "${" in text else ""
         must = f"{wanted} has to stand" if count == 1 else f"{wanted} have to stand"
-        given = "is missing," if text is None else f"is {quoted(text)}"
+        given = "is missing," if text is None else f"is {quote(text)}"
         raise FileFormatError(f"{element.where}: {what} {given} where {must}{way_out}")
     if values.size and np.abs(values).max() > _LARGEST:
         raise FileFormatError(
-            f"{element.where}: {what} is {quoted(text)}, beyond {_LARGEST:g}, where squares have no "
+            f"{element.where}: {what} is {quote(text)}, beyond {_LARGEST:g}, where squares have no "
             "room in numbers; correct it"
         )
     return values
@@ -298,12 +298,12 @@ def unit(element: Element, vector: Floats) -> Floats:
     return direction
 
 
-def shortened(text: str, most: int = 200) -> str:
+def shorten(text: str, most: int = 200) -> str:
     """Return a text, or its beginning and how long it is."""
     return text if len(text) <= most else f"{text[:most]}... ({len(text)} characters)"
 
 
-def quoted(text: str | None, most: int = 80) -> str:
+def quote(text: str | None, most: int = 80) -> str:
     """Return a text between quotes alike; None where there is none."""
     if text is None or len(text) <= most:
         return repr(text)

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from polhode.errors import FileFormatError
 from polhode.io.reading import LIMITS, Budget, LimitError, note_read, status_of
 from polhode.io.xml_source import Element, parse_xml
-from polhode.robots.model import shortened
+from polhode.robots.model import shorten
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Addresses",
-    "Found",
     "LimitError",
+    "Lookup",
     "Sources",
     "own_root",
     "read_source",
@@ -82,9 +82,9 @@ class Sources:
         """
         path, fault = self.addresses.find(address, folder)
         if fault:
-            raise FileFormatError(f"{at.where}: {shortened(address)} {fault}")
+            raise FileFormatError(f"{at.where}: {shorten(address)} {fault}")
         if path is None or not path.is_file():
-            name = shortened(address)
+            name = shorten(address)
             raise FileFormatError(f"{at.where}: there is no file {name}; put it at {folder / name}")
         return path
 
@@ -98,7 +98,7 @@ class Sources:
         """
         self.budget.spend("files", where=f"{at.where}: {address}")
         try:
-            source = read_source(path, self.budget.left("included bytes"))
+            source = read_source(path, self.budget.remaining("included bytes"))
         except OSError as error:
             raise FileFormatError(
                 f"{at.where}: {address} cannot be read: {error.strerror}; check {path}"
@@ -134,7 +134,7 @@ class Sources:
 
     def prefix(self, text: str) -> str:
         """Return what names of links begin with, cut where it is long: they all hold it."""
-        return shortened(text, _LONGEST_NAME)
+        return shorten(text, _LONGEST_NAME)
 
     @contextmanager
     def inside(self, path: Path, address: str, at: Element) -> Iterator[None]:
@@ -211,7 +211,7 @@ _MOST_FOLDERS: Final = 5000
 _LONGEST: Final = 4096
 
 
-class Found(NamedTuple):
+class Lookup(NamedTuple):
     """What became of an address.
 
     Attributes
@@ -249,7 +249,7 @@ class Addresses:
         self._roots: dict[Path, tuple[Path, ...]] = {}
         self._named: dict[Path, dict[str, Path]] = {}
 
-    def find(self, address: str, folder: Path) -> Found:
+    def find(self, address: str, folder: Path) -> Lookup:
         """Find a file or a folder.
 
         Parameters
@@ -260,9 +260,9 @@ class Addresses:
             Where a relative path starts.
         """
         if len(address) > _LONGEST:
-            return Found(None, f"is a name of {len(address)} characters, more than files have; shorten it")
+            return Lookup(None, f"is a name of {len(address)} characters, more than files have; shorten it")
         if "\0" in address:
-            return Found(None, "holds a character of code 0, which no file has; take it out")
+            return Lookup(None, "holds a character of code 0, which no file has; take it out")
         fault = ""
         for path, roots in self._candidates(address, folder):
             if not self._allow_outside and _is_outside(path, roots):
@@ -275,9 +275,9 @@ class Addresses:
                 continue
             is_readable, reason = _kind(path)
             if is_readable:
-                return Found(path)
+                return Lookup(path)
             fault = fault or reason
-        return Found(None, fault)
+        return Lookup(None, fault)
 
     def _candidates(self, address: str, folder: Path) -> Iterator[tuple[Path, tuple[Path, ...]]]:
         """Return each path that an address may stand for, and the folders that it has to lie in."""

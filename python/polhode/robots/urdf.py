@@ -13,7 +13,7 @@ from polhode import euler_angles
 from polhode._core import rotate
 from polhode.errors import FileFormatError
 from polhode.io.xml_source import Edit, Element, blanks_of
-from polhode.robots.edits import attribute, first_child, indented, number_text
+from polhode.robots.edits import attribute, first_child, indent_element, number_text
 from polhode.robots.model import WORLD, Inertial, Joint, Link, Place, Shape, numbers, scale
 
 if TYPE_CHECKING:
@@ -142,7 +142,7 @@ def tensor_text(tensor: NDArray[np.float64]) -> dict[str, str]:
 
 def _place(element: Element | None) -> Place:
     if element is None:
-        return Place.here()
+        return Place.identity()
     attributes = element.attributes
     position = numbers(element, attributes.get("xyz", "0 0 0"), 3, "xyz")
     angles = numbers(element, attributes.get("rpy", "0 0 0"), 3, "rpy")
@@ -168,7 +168,7 @@ def _shapes(link: Element) -> Iterator[Shape]:
         except FileFormatError as error:
             if role == "collision":
                 raise
-            yield Shape(form.tag, (), Place.here(), role, where=form.where, problem=str(error))
+            yield Shape(form.tag, (), Place.identity(), role, where=form.where, problem=str(error))
 
 
 def _shape(element: Element, form: Element, role: Literal["collision", "visual"]) -> Shape:
@@ -202,7 +202,7 @@ def _rewrite(link: Element, declared: Element | None, source: bytes, new: Inerti
         tensor = " ".join(f'{name}="{text}"' for name, text in tensor_text(new.inertia).items())
         parts = [f'<origin xyz="{position}" rpy="0 0 0"/>'] if np.any(new.center_of_mass) else []
         parts += [f'<mass value="{new.mass!r}"/>', f"<inertia {tensor}/>"]
-        return [first_child(source, link, indented(source, link, "<inertial>", parts, "</inertial>"))]
+        return [first_child(source, link, indent_element(source, link, "<inertial>", parts, "</inertial>"))]
     edits = []
     origin = declared.find("origin")
     if origin is not None:

@@ -11,7 +11,7 @@ import numpy as np
 from polhode import _core
 from polhode._format import short
 from polhode.errors import PolhodeError
-from polhode.uncertainty.propagation import Neighbours, Propagated, is_enough, propagate, slopes_of
+from polhode.uncertainty.propagation import Neighbours, PropagationResult, is_enough, propagate, slopes_of
 from polhode.uncertainty.variables import angles_of, of_forms, row_of, rows_of
 
 if TYPE_CHECKING:
@@ -180,16 +180,16 @@ def _of_carried(self: Trajectory) -> tuple[Floats, Floats]:
     over_time = self._over_time(load)
     own = {name: np.zeros((*stack, len(self.t), values.shape[-1])) for name, values in self.states.items()}
 
-    def carried(omega: Floats) -> Floats:
+    def momentum_of(omega: Floats) -> Floats:
         return over_time.carried(self.t, np.broadcast_to(omega, self.omega.shape), own)[0]
 
-    columns = [carried(axis) for axis in np.eye(3)]
+    columns = [momentum_of(axis) for axis in np.eye(3)]
     for values in own.values():
         for k in range(values.shape[-1]):
             values[..., k] = 1.0
-            columns.append(carried(np.zeros(3)))
+            columns.append(momentum_of(np.zeros(3)))
             values[..., k] = 0.0
-    still = carried(np.zeros(3))  # of rotors, and of wheels whose speed is given
+    still = momentum_of(np.zeros(3))  # of rotors, and of wheels whose speed is given
     found = np.stack([column - still for column in columns], axis=-1)
     return found[..., :3], found[..., 3:]
 
@@ -343,7 +343,7 @@ def state_linear(run: Trajectory) -> StateLinear:
 def _row(run: Trajectory, stack: tuple[int, ...], row: int) -> NDArray[np.bool_]:
     """Return the same for one motion of a stack, shape (T, 6)."""
     place = np.unravel_index(row, stack)
-    body, load = _taken(run.body, stack, row), _taken(run.load, stack, row)
+    body, load = _take_row(run.body, stack, row), _take_row(run.load, stack, row)
     start = run.uncertain_start
     of_omega, of_attitude = start if isinstance(start, tuple) else (None, None)
     arguments = []
@@ -395,7 +395,7 @@ def _row(run: Trajectory, stack: tuple[int, ...], row: int) -> NDArray[np.bool_]
     return is_enough(first, 0.5 * (above - below), 0.5 * (above + below), (first**2).mean(axis=0), noise)
 
 
-def _taken(many: Any, stack: tuple[int, ...], row: int) -> Any:
+def _take_row(many: Any, stack: tuple[int, ...], row: int) -> Any:
     """Take what a row has of a stack of bodies or loads."""
     if many is None or not many.shape:
         return many
@@ -489,12 +489,12 @@ def periods_sigma(motion: FreeMotion) -> PeriodsSigma | None:
     periods = motion.periods
     axis = np.where(np.isnan(periods.spin), 0, motion.cones.axis)[..., np.newaxis]
 
-    def named(values: Any) -> dict[str, Any]:
+    def by_name(values: Any) -> dict[str, Any]:
         of_axes = np.take_along_axis(values[..., 2:5], axis, axis=-1)[..., 0]
         turn, own = values[..., 0], values[..., 1]
         return {"turn": turn, "wobble": own, "spin": own, "rotation": own, "precession": of_axes, "flip": own}
 
-    sigma, linear = named(np.asarray(found.sigma)), named(np.asarray(found.linear))
+    sigma, linear = by_name(np.asarray(found.sigma)), by_name(np.asarray(found.linear))
     sigma["flip"] = 0.5 * sigma["flip"]
     given = motion._from_periods
     if given is not None:
@@ -519,7 +519,7 @@ def periods_sigma(motion: FreeMotion) -> PeriodsSigma | None:
     )
 
 
-def each_motion(motion: FreeMotion, f: Callable[..., Any], tail: tuple[int, ...]) -> Propagated:
+def each_motion(motion: FreeMotion, f: Callable[..., Any], tail: tuple[int, ...]) -> PropagationResult:
     """Propagate ``f(body, omega)``, of shape `tail`, to first order, for each motion of a stack by itself.
 
     The angular velocity of a motion that was made from periods is solved anew for each neighbour.
@@ -549,7 +549,7 @@ def each_motion(motion: FreeMotion, f: Callable[..., Any], tail: tuple[int, ...]
         name: np.array([getattr(one, name) for one in found], dtype=bool if name == "linear" else float)
         for name in tails
     }
-    return Propagated(**{name: joined[name].reshape((*shape, *of))[()] for name, of in tails.items()})
+    return PropagationResult(**{name: joined[name].reshape((*shape, *of))[()] for name, of in tails.items()})
 
 
 def _row_of_body(motion: FreeMotion, row: int) -> _core.RigidBody:

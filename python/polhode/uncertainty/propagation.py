@@ -11,7 +11,7 @@ import numpy as np
 from polhode import _core
 from polhode._format import short
 from polhode._hints import check_kind
-from polhode._progress import watched
+from polhode._progress import progress_bar
 from polhode.errors import PolhodeError
 from polhode.uncertainty.uncertain import joined
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 __all__ = [
     "HALVINGS",
     "Neighbours",
-    "Propagated",
+    "PropagationResult",
     "is_enough",
     "propagate",
     "slopes_of",
@@ -50,7 +50,7 @@ SMALL: Final = 1e-12
 """Beside the largest of an array: such a number may be what is left of zero."""
 
 
-class Propagated(NamedTuple):
+class PropagationResult(NamedTuple):
     """Value of a function of an uncertain body, with its uncertainty.
 
     Attributes
@@ -88,7 +88,7 @@ def propagate(
     n: int = 10_000,
     seed: int | None = None,
     progress: Progress = None,
-) -> Propagated:
+) -> PropagationResult:
     """Uncertainty of any function of a body.
 
     Parameters
@@ -114,7 +114,7 @@ def propagate(
 
     Returns
     -------
-    Propagated
+    PropagationResult
 
     Raises
     ------
@@ -260,13 +260,13 @@ def _follows(f: Function, around: Neighbours, value: Floats, variance: Floats) -
     return np.asarray(missed / max(count, 1) <= LACKING * variance + noise**2)
 
 
-def _linear(f: Function, around: Neighbours) -> Propagated:
+def _linear(f: Function, around: Neighbours) -> PropagationResult:
     value = _numbers(f, around.start)
     slopes = slopes_of(f, around, value.shape)
-    return _told(value, slopes.T @ slopes, _is_linear(f, around, value, slopes))
+    return _make_result(value, slopes.T @ slopes, _is_linear(f, around, value, slopes))
 
 
-def _second_order(f: Function, around: Neighbours) -> Propagated:
+def _second_order(f: Function, around: Neighbours) -> PropagationResult:
     value = _numbers(f, around.start)
     slopes, rank = slopes_of(f, around, value.shape), around.rank
     bends = np.zeros((rank, rank, value.size))
@@ -282,13 +282,13 @@ def _second_order(f: Function, around: Neighbours) -> Propagated:
             bends[i, j] = bends[j, i] = mixed / (4 * h * h)
     mean = value + 0.5 * np.einsum("iin->n", bends).reshape(value.shape)
     covariance = slopes.T @ slopes + 0.5 * np.einsum("ijm,ijn->mn", bends, bends)
-    return _told(mean, covariance, _is_linear(f, around, value, slopes))
+    return _make_result(mean, covariance, _is_linear(f, around, value, slopes))
 
 
-def _monte_carlo(f: Function, around: Neighbours, n: int, seed: int, progress: Progress) -> Propagated:
+def _monte_carlo(f: Function, around: Neighbours, n: int, seed: int, progress: Progress) -> PropagationResult:
     value = _numbers(f, around.start)
     found = []
-    with watched(f"{n} draws", progress) as tell:
+    with progress_bar(f"{n} draws", progress) as tell:
         for given in around.draws(n, seed):
             found.append(_numbers(f, given, value.shape).ravel())
             if tell is not None:
@@ -300,14 +300,14 @@ def _monte_carlo(f: Function, around: Neighbours, n: int, seed: int, progress: P
     # second order is seen; in the third, of a quotient, it may be twice as much.
     first = (slopes_of(f, around, value.shape) ** 2).sum(axis=0)
     follows = _follows(f, around, value, np.minimum(first, np.diagonal(covariance)) / 3)
-    return _told(mean.reshape(value.shape), covariance, follows)
+    return _make_result(mean.reshape(value.shape), covariance, follows)
 
 
-def _told(value: Floats, covariance: Floats, linear: NDArray[np.bool_]) -> Propagated:
+def _make_result(value: Floats, covariance: Floats, linear: NDArray[np.bool_]) -> PropagationResult:
     sigma = np.sqrt(np.diagonal(covariance)).reshape(value.shape)
     if value.shape == ():
-        return Propagated(float(value), float(sigma), covariance, bool(linear[0]))
-    return Propagated(value, sigma, covariance, linear.reshape(value.shape))
+        return PropagationResult(float(value), float(sigma), covariance, bool(linear[0]))
+    return PropagationResult(value, sigma, covariance, linear.reshape(value.shape))
 
 
 CLOSE: Final = 4.0
@@ -448,12 +448,12 @@ class _Way:
         # Straight steps leave what has no extent along an axis.
         is_flat = second.min() <= 1e-9 * second.max() and factor.any()
         self._is_straight = not is_flat and self._misses(self._straight, slopes, bends) <= self._misses(
-            self._turned, slopes, bends
+            self._perturb, slopes, bends
         )
 
     def to(self, change: Floats) -> RigidBody:
         """Return the body after a change."""
-        return _body(self._straight(change) if self._is_straight else self._turned(change))
+        return _body(self._straight(change) if self._is_straight else self._perturb(change))
 
     def straight_to(self, change: Floats) -> RigidBody:
         """Return the body after a change that is right to second order."""
@@ -462,7 +462,7 @@ class _Way:
     def _straight(self, change: Floats) -> Floats:
         return self._numbers + change
 
-    def _turned(self, change: Floats) -> Floats:
+    def _perturb(self, change: Floats) -> Floats:
         """Return the ten numbers after a change of principal moments and angles."""
         turned = self._axes.T @ _symmetric(change[4:]) @ self._axes
         gaps = np.where(self._apart, self._moments[None, :] - self._moments[:, None], 1.0)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from polhode import RigidBody
 
 __all__ = [
-    "TenNumbers",
+    "InertialParameters",
     "joined",
     "to_ufloats",
     "ufloat_kinds",
@@ -138,7 +138,7 @@ _MET: Final[dict[tuple[int, int], Any]] = {}
 """The way back: variables of `uncertainties` for those of this package, met or made."""
 
 
-class TenNumbers(NamedTuple):
+class InertialParameters(NamedTuple):
     """The numbers of a body, as numbers of the package *uncertainties*.
 
     Attributes
@@ -189,7 +189,7 @@ def _words(variable: Any) -> tuple[int, int]:
     return _WORDS[variable]
 
 
-def to_ufloats(body: RigidBody) -> TenNumbers:
+def to_ufloats(body: RigidBody) -> InertialParameters:
     """Return the numbers of one body as numbers of the package *uncertainties*, with all their correlations.
 
     Parameters
@@ -198,7 +198,7 @@ def to_ufloats(body: RigidBody) -> TenNumbers:
 
     Returns
     -------
-    TenNumbers
+    InertialParameters
         Mass, centre of mass and tensor about the centre of mass. They are correlated with those numbers of
         *uncertainties* that the body was made of.
 
@@ -240,7 +240,7 @@ def to_ufloats(body: RigidBody) -> TenNumbers:
     center, tensor = body.center_of_mass.tolist(), body.inertia
     element = {(0, 0): 4, (1, 1): 5, (2, 2): 6, (0, 1): 7, (0, 2): 8, (1, 2): 9}
     rows = [[number(float(tensor[i, j]), element[min(i, j), max(i, j)]) for j in range(3)] for i in range(3)]
-    return TenNumbers(
+    return InertialParameters(
         number(body.mass, 0),
         np.array([number(c, 1 + k) for k, c in enumerate(center)], dtype=object),
         np.array(rows, dtype=object),

@@ -40,7 +40,7 @@ __all__ = [
     "Picture",
     "draw_disc",
     "film",
-    "placed",
+    "place_names",
 ]
 
 _SIZE: Final = 480
@@ -81,7 +81,7 @@ def film(
     program = "" if is_gif else _ffmpeg(file)
     picture = Picture(scene, pixels, has_labels=labels)
 
-    def shown() -> Iterator[Picture]:
+    def show_frames() -> Iterator[Picture]:
         for frame in range(count):
             picture.show(frame)
             yield picture
@@ -89,9 +89,9 @@ def film(
                 progress((frame + 1) / count)
 
     if is_gif:
-        _write_gif(shown(), file, _delays(count, scene.duration))
+        _write_gif(show_frames(), file, _delays(count, scene.duration))
     else:
-        _write_mp4(shown(), file, picture, program, count / scene.duration)
+        _write_mp4(show_frames(), file, picture, program, count / scene.duration)
 
 
 def _delays(count: int, duration: float) -> list[int]:
@@ -300,27 +300,27 @@ class Picture:
             text.remove()
         scene = self._scene
         middle = self._on_screen(np.zeros((1, 3)))[0]
-        names = [self._named(text, color, "bold", tip, middle) for tip, color, text in tips]
+        names = [self._make_name(text, color, "bold", tip, middle) for tip, color, text in tips]
         for k, (axis, color) in enumerate(zip(scene.axes.T, AXIS_COLORS, strict=True)):
-            names.append(self._named(f"e{'₁₂₃'[k]}", color, "normal", 1.05 * to_space @ axis, middle))
+            names.append(self._make_name(f"e{'₁₂₃'[k]}", color, "normal", 1.05 * to_space @ axis, middle))
         scale = _BODY / longest(scene.shape.vertices)
         for disc in scene.discs:
             if view @ to_space @ disc.axis > 0.0:  # else it is behind the body
                 rim = scale * disc.circle(_RING, disc.radius, disc.half) @ to_space.T
                 edge = rim[np.linalg.norm(self._on_screen(rim) - middle, axis=1).argmax()]
                 own = self._on_screen(rim.mean(axis=0, keepdims=True))[0]
-                names.append(self._named(disc.name, INSIDE_COLOR, "normal", edge, own))
+                names.append(self._make_name(disc.name, INSIDE_COLOR, "normal", edge, own))
         for text, direction in zip("xyz", np.eye(3), strict=True):
-            names.append(self._named(text, "0.5", "normal", 1.3 * direction, middle))
+            names.append(self._make_name(text, "0.5", "normal", 1.3 * direction, middle))
         self._names = [
             self.figure.text(
                 *(there / self._size), name.text, color=name.color, weight=name.weight, ha="center",
                 va="center_baseline", path_effects=self._outline, parse_math=False, **_NAME,
             )
-            for name, there in placed(names, self._low, self._high)
+            for name, there in place_names(names, self._low, self._high)
         ]  # fmt: skip
 
-    def _named(self, text: str, color: str, weight: str, point: Floats, middle: Floats) -> Name:
+    def _make_name(self, text: str, color: str, weight: str, point: Floats, middle: Floats) -> Name:
         """Return the name of a point in space, which stands away from a point of the picture."""
         at = self._on_screen(point[np.newaxis])[0]
         far = float(np.linalg.norm(at - middle))
@@ -481,7 +481,7 @@ class Name:
     size: Floats
 
 
-def placed(names: Sequence[Name], low: Floats, high: Floats) -> list[tuple[Name, Floats]]:
+def place_names(names: Sequence[Name], low: Floats, high: Floats) -> list[tuple[Name, Floats]]:
     """Find the middle of each name; one that has no room of its own between two corners is left out.
 
     Parameters

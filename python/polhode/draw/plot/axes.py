@@ -40,7 +40,7 @@ __all__ = [
     "translucent",
 ]
 
-_Given = TypeVar("_Given")
+_AxesArgument = TypeVar("_AxesArgument")
 _FRAME: Final = 56.0
 """Points that labels, numbers and margins take of the height of a picture over time."""
 _ENTRY: Final = 4.2
@@ -55,19 +55,19 @@ def matplotlib(module: str) -> Any:
 def axes_2d(ax: Axes | None) -> Axes:
     """Return the axes to draw in, in a new figure where there are none."""
     if ax is not None:
-        return _checked(ax)
+        return _check_axes(ax)
     return cast("Axes", matplotlib("pyplot").subplots(layout="constrained")[1])
 
 
 def axes_3d(ax: Axes3D | None) -> Axes3D:
     """Return the axes of three dimensions to draw in, in a new figure where there are none."""
     if ax is not None:
-        return _checked(ax)
+        return _check_axes(ax)
     figure = matplotlib("pyplot").figure(layout="constrained")
     return cast("Axes3D", figure.add_subplot(projection="3d", computed_zorder=False))
 
 
-def _checked(ax: _Given) -> _Given:
+def _check_axes(ax: _AxesArgument) -> _AxesArgument:
     if isinstance(ax, str | PathLike):
         raise TypeError(
             f"ax: expected axes of matplotlib, got {str(ax)!r}; draw first and save the figure: "
@@ -166,12 +166,12 @@ def translucent(surface: Any, opacity: float) -> None:
     if opacity >= 1.0:
         return
 
-    def thinned(picture: Floats, _dpi: float) -> tuple[Floats, int, int]:
+    def limit_opacity(picture: Floats, _dpi: float) -> tuple[Floats, int, int]:
         thin = picture.copy()
         thin[..., 3] = np.minimum(thin[..., 3], opacity)  # matplotlib may filter twice
         return thin, 0, 0
 
-    surface.set_agg_filter(thinned)
+    surface.set_agg_filter(limit_opacity)
     surface.set_rasterized(True)  # formats of lines, such as SVG, know no filters
 
 

@@ -285,7 +285,7 @@ def _components(
         for i in range(3):
             columns = [trajectory.t, curve[:, i], *([] if halves is None else [halves[number, :, i]])]
             if lowest is not None and i in lowest:
-                columns = _cut(columns, lowest[i])
+                columns = _cut_at_turns(columns, lowest[i])
             if halves is not None:
                 draw_band(ax, columns[0], columns[1], columns[2], i)
             ax.plot(
@@ -307,7 +307,7 @@ def _lowest(angles: Floats) -> float:
     return 0.0 if breaks[0] >= max(1, 2 * breaks[1]) else -0.5 * _TURN
 
 
-def _cut(columns: list[Floats], lowest: float) -> list[Floats]:
+def _cut_at_turns(columns: list[Floats], lowest: float) -> list[Floats]:
     """Bring an angle into its turn; where it leaves it, its curve goes to the edge and on from the other one.
 
     The columns are times, the angle, and what else goes with it.

@@ -87,7 +87,7 @@ def portrait(
     check_one(gyrostat.shape, "gyrostat")
     if levels < 0:
         raise ValueError(f"levels: {levels} is negative")
-    inertia, inside, found, path = _asked(gyrostat, momentum)
+    inertia, inside, found, path = _read_gyrostat(gyrostat, momentum)
     new = ax is None
     ax = axes_3d(ax)
     if new:
@@ -178,7 +178,7 @@ def portraits(
     return np.asarray(row[0])
 
 
-def _asked(
+def _read_gyrostat(
     gyrostat: Gyrostat | GyrostatMotion, momentum: float | None
 ) -> tuple[Floats, Floats, Equilibria, Floats | None]:
     """Return the tensor, h/|L|, the equilibria and, of a motion, its path of L/|L| in the body."""

@@ -154,9 +154,9 @@ class _Player:
         self._index, self._begun = 0, 0.0
         self._is_running = False
         self._slider: Any = None
-        self._tips = self._scaled(_core.rotate(scene.quaternion, scene.omega))
+        self._tips = self._scale(_core.rotate(scene.quaternion, scene.omega))
         inside = np.zeros((0, 3)) if scene.inside is None else _core.rotate(scene.quaternion, scene.inside)
-        momenta = self._scaled(np.concatenate([scene.momentum, inside]))
+        momenta = self._scale(np.concatenate([scene.momentum, inside]))
         self._momenta, self._inside = momenta[: len(scene.t)], momenta[len(scene.t) :]
         self._bodies = add_surface(plotter, scene.shape, f"{name}-body", 1.0)
         for k, (color, axis) in enumerate(zip(AXIS_COLORS, scene.axes.T, strict=True)):
@@ -215,7 +215,7 @@ class _Player:
         """Return the time of the motion that goes by in a second."""
         return float(np.ptp(self._scene.t) or 1.0) / self._scene.duration
 
-    def _scaled(self, vectors: Floats) -> Floats:
+    def _scale(self, vectors: Floats) -> Floats:
         return vectors * (_ARROW * self._reach / longest(vectors))
 
     def _add_space(self) -> None:
@@ -300,7 +300,7 @@ class WheelActors:
             actor.user_matrix = placed
         angle = 0.0 if self._disc.angle is None else float(self._disc.angle[index]) / self._factor
         for actor in self._marks:
-            actor.user_matrix = placed @ _turned(self._disc, angle)
+            actor.user_matrix = placed @ _turn_about_axis(self._disc, angle)
         around = self._disc.circle(_RING, _BESIDE * self._disc.radius, 0.0) @ placed[:3, :3].T
         highest = around[around[:, 2].argmax()]
         add_name(self._plotter, highest, self._disc.name, INSIDE_COLOR, f"{self._name}-label")
@@ -337,7 +337,7 @@ def _fan(disc: Disc, angles: Floats, radius: float, above: float) -> Any:
     return surface(np.vstack(parts), np.vstack([first, first + count]))
 
 
-def _turned(disc: Disc, angle: float) -> Floats:
+def _turn_about_axis(disc: Disc, angle: float) -> Floats:
     """Return the turn about the axis of a disc, shape (4, 4)."""
     x, y, z = disc.axis
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

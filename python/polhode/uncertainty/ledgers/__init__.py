@@ -140,7 +140,7 @@ def ledger(
     is_part[made.order] = made.is_leaf
     parts = read_parts(read, is_part, where, overwrite=overwrite, rtol=rtol)
     words = {name: tuple(read.words(name)) for name in ("name", "comment") if name in read}
-    return _rolled(made, tuple(parents), is_part, parts, words, rtol, read.name or "table")
+    return _roll_up(made, tuple(parents), is_part, parts, words, rtol, read.name or "table")
 
 
 def ledger_of_bodies(
@@ -162,10 +162,10 @@ def ledger_of_bodies(
     made = make_tree(ids, parents, lambda row: repr(ids[row]))
     is_part = np.array([body is not None for body in bodies])
     parts = parts_of_bodies(ids, bodies)
-    return _rolled(made, tuple(parents), is_part, parts, {"comment": tuple(comments)}, None, "assembly")
+    return _roll_up(made, tuple(parents), is_part, parts, {"comment": tuple(comments)}, None, "assembly")
 
 
-def _rolled(
+def _roll_up(
     made: Tree,
     parents: tuple[str, ...],
     is_part: NDArray[np.bool_],

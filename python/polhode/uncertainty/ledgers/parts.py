@@ -109,7 +109,7 @@ def read_parts(
     leaves = np.flatnonzero(is_leaf)
     if not overwrite:
         _refuse_own(table, ~is_leaf, where)
-    values, sigma = (_stacked(table, names) for names in (NUMBERS, SIGMAS))
+    values, sigma = (_stack_columns(table, names) for names in (NUMBERS, SIGMAS))
     of_density = table.numbers("sigma_density")
     is_silent = is_leaf & np.isnan(of_density)
     for cells in sigma:
@@ -142,7 +142,7 @@ def read_parts(
     return Parts(values[0], values[1:4], values[4:], growth, sigma, correlated, source, unstated, opposite)
 
 
-def _stacked(table: Table, names: tuple[str, ...]) -> Floats:
+def _stack_columns(table: Table, names: tuple[str, ...]) -> Floats:
     stacked = np.empty((len(names), table.count))
     for row, name in zip(stacked, names, strict=True):
         row[:] = table.numbers(name)
@@ -433,7 +433,7 @@ def shape_rows(
             if key not in made:  # a file that is there often is read once
                 options = _arguments(arguments)
                 make = _of_file(table.folder / what) if kinds[0] == "file" else _shape(what)
-                made[key] = _called(make, what, options, weight)
+                made[key] = _call_maker(make, what, options, weight)
         except (ValueError, OSError) as error:
             kind = type(error) if isinstance(error, PolhodeError) else PolhodeError
             raise kind(f"{where(row)}: {error}") from error
@@ -479,7 +479,7 @@ def _shape(name: str) -> Callable[..., RigidBody]:
     return shape
 
 
-def _called(
+def _call_maker(
     make: Callable[..., RigidBody], what: str, options: dict[str, Any], weight: dict[str, float]
 ) -> RigidBody:
     """Make a body; arguments that it does not take are refused by name."""

@@ -105,14 +105,14 @@ class Table:
         if isinstance(cells, np.ndarray) and cells.dtype.kind in "fiu":
             numbers = cells.astype(np.float64, copy=False)
         else:
-            numbers = self._parsed(column, cells, percent)
+            numbers = self._parse_numbers(column, cells, percent)
         infinite = np.flatnonzero(np.isinf(numbers))
         if len(infinite):
             row = int(infinite[0])
             raise PolhodeError(f"{self.where(row)}: {column} must be finite, got {numbers[row]}")
         return numbers
 
-    def _parsed(self, column: str, cells: Any, percent: bool) -> NDArray[np.float64]:
+    def _parse_numbers(self, column: str, cells: Any, percent: bool) -> NDArray[np.float64]:
         words = [cell if isinstance(cell, float) else _word(cell) for cell in cells]
         try:
             numbers = np.array([float("nan" if word == "" else word) for word in words])
@@ -127,7 +127,7 @@ class Table:
             )
         except ValueError:
             if percent and any(str(word).endswith("%") for word in words):
-                return self._parsed(column, [_of_percent(word) for word in words], False)
+                return self._parse_numbers(column, [_of_percent(word) for word in words], False)
             row = next(row for row, word in enumerate(words) if not _is_number("nan" if word == "" else word))
         if row is not None:
             raise PolhodeError(
