@@ -80,8 +80,8 @@ def test_a_function_of_ones_own() -> None:
 def test_what_is_neither_is_refused() -> None:
     with (
         pytest.raises(TypeError, match="progress: expected True, False, None or a function"),
-        progress_bar("", 3),
-    ):  # type: ignore[arg-type]
+        progress_bar("", 3),  # type: ignore[arg-type]
+    ):
         pass
 
 

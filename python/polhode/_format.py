@@ -93,7 +93,7 @@ def _round_to_place(value: float, last: int) -> str:
 
 
 def at_least(number: float, digits: int = 3) -> str:
-    """Write a positive number with so many digits, rounded up: what is told as enough is enough.
+    """Write a positive number with so many digits, rounded up: for values that are stated as sufficient.
 
     Examples
     --------
@@ -108,7 +108,7 @@ def at_least(number: float, digits: int = 3) -> str:
 
 
 def at_most(number: float, digits: int = 3) -> str:
-    """Write a positive number with so many digits, rounded down: what is told as allowed is allowed.
+    """Write a positive number with so many digits, rounded down: for values that are stated as allowed.
 
     Examples
     --------

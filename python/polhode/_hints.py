@@ -1,4 +1,4 @@
-"""Names and arguments that others have: each is refused with what to write here.
+"""Names and arguments of other libraries. Each is refused with the name to write here.
 
 Names of modules, attributes of classes and arguments of functions have one table each, here alone; the
 extension asks it too. A message is not a second spelling: only what it names works.
@@ -282,20 +282,20 @@ def _or_nearest(way_out: str | None, name: str, known: Iterable[str]) -> str:
 
 
 def no_name(module: str, name: str, known: Iterable[str]) -> AttributeError:
-    """Make the error for a name that a module does not have, with what is meant by it."""
+    """Make the error for a name that a module does not have; the error proposes the right name."""
     way_out = _or_nearest(_OF_MODULES.get(module, {}).get(name), name, known)
     return AttributeError(f"module {module!r} has no attribute {name!r}{way_out}", name=name)
 
 
 def no_attribute(kind: str, name: str, known: Iterable[str], what: str | None = None) -> AttributeError:
-    """Make the error for an attribute that objects of a class do not have, with what is meant by it."""
+    """Make the error for an attribute that a class does not have; the error proposes the right name."""
     table = _OF_CLASSES.get("FreeMotion" if kind in ("HeavyTop", "GyrostatMotion") else kind, {})
     way_out = _or_nearest(table.get(name), name, known)
     return AttributeError(f"{what or f'{kind!r} object'} has no attribute {name!r}{way_out}", name=name)
 
 
 def no_keyword(function: str, given: str, known: Iterable[str]) -> TypeError:
-    """Make the error for a keyword that a function does not take, with the one that is meant."""
+    """Make the error for an unknown keyword of a function; the error proposes the right one."""
     known = [name for name in known if name != given]
     meant = [name for name, others in _OTHER_ARGUMENTS.items() if name in known and given in others]
     meant = meant or get_close_matches(given, known, 1)
@@ -309,7 +309,7 @@ def no_keyword(function: str, given: str, known: Iterable[str]) -> TypeError:
 
 
 def check_kind(value: object, argument: str, *kinds: str) -> None:
-    """Refuse an argument that is of another class than those named, with how one is made of it."""
+    """Refuse an argument of a wrong class; the error says how to convert it."""
     if not {kind.__name__ for kind in type(value).__mro__}.isdisjoint(kinds):
         return
     got = "path" if hasattr(value, "__fspath__") else type(value).__name__
@@ -321,7 +321,7 @@ def check_kind(value: object, argument: str, *kinds: str) -> None:
 
 
 def explain_calls(names: dict[str, Any], public: Iterable[str]) -> None:
-    """Let the functions of a module say what to write instead of arguments that they do not take.
+    """Make the functions of a module propose the right name for an unknown argument.
 
     Parameters
     ----------
@@ -339,7 +339,7 @@ def explain_calls(names: dict[str, Any], public: Iterable[str]) -> None:
 
 
 def with_hints(function: Callable[_Takes, _Returns], name: str | None = None) -> Callable[_Takes, _Returns]:
-    """Let a function say what to write instead of arguments that it does not take."""
+    """Make a function propose the right name for an unknown argument."""
 
     @wraps(function)
     def call(*args: _Takes.args, **kwargs: _Takes.kwargs) -> _Returns:

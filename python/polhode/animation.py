@@ -165,7 +165,7 @@ def scene_of(
 
 
 def page_of(motion: Any, end: float | None = None, **options: Any) -> tuple[str, tuple[str, ...]]:
-    """Return the page of a motion as a text, and what it does not show of it."""
+    """Return the page of a motion as a text, and notes on what the page does not show."""
     given: dict[str, Any] = {
         "duration": None,
         "shape": None,

@@ -251,7 +251,9 @@ def per_member(function: Callable[[np.random.Generator], Any], *, name: str | No
 
 
 def apply(function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> FunctionOfDraws:
-    """Make bodies or loads from drawn numbers, by one call for all members of a chunk.
+    """Apply a function to distributions: make bodies or loads of drawn numbers.
+
+    The function is called once for all members of a chunk.
 
     Parameters
     ----------
@@ -280,7 +282,7 @@ def apply(function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Functio
 
 
 def _own(part: Any) -> Any:
-    """Return an argument, an array as one that nobody changes."""
+    """Return an argument; an array is copied and made read-only."""
     if not isinstance(part, np.ndarray):
         return part
     copy = part.copy()
@@ -289,7 +291,7 @@ def _own(part: Any) -> Any:
 
 
 def _freeze_finite(value: Any, name: str) -> Floats:
-    """Return an array of finite numbers that stays as it is."""
+    """Return a read-only array of finite numbers."""
     array = _core.real_numbers(value, name)
     wrong = ~np.isfinite(array)
     if wrong.any():
@@ -320,7 +322,7 @@ MOST: Final = 2**64
 
 
 class Source(NamedTuple):
-    """Whose numbers are drawn: a seed, and a number that stands for an argument's name."""
+    """A stream of random numbers: the seed, and a number computed from the name of the argument."""
 
     seed: int
     stream: int
@@ -358,7 +360,7 @@ class Distribution(ABC):
     name: str | None
 
     def draw(self, n: int, *, seed: int, argument: str = "omega", first: int = 0) -> Any:
-        """Draw the numbers that members of an ensemble with this seed get.
+        """Draw the numbers of the members of an ensemble with this seed.
 
         Parameters
         ----------
@@ -544,7 +546,7 @@ class Samples(Distribution):
 
 @dataclass(frozen=True)
 class Refusal:
-    """What stands for the value of a member whose numbers are refused."""
+    """Placeholder for the value of a member whose numbers are refused."""
 
     error: PolhodeError
 
@@ -552,7 +554,7 @@ class Refusal:
 @final
 @dataclass(frozen=True, eq=False, repr=False)
 class PerMember(Distribution):
-    """What a function gives for each member, see :func:`per_member`.
+    """Values of a function that is called for each member, see :func:`per_member`.
 
     Attributes
     ----------
@@ -586,7 +588,7 @@ class PerMember(Distribution):
 @final
 @dataclass(frozen=True, eq=False, repr=False)
 class FunctionOfDraws:
-    """What a function makes of values that are drawn, see :func:`apply`.
+    """A function of random numbers, see :func:`apply`.
 
     Attributes
     ----------
@@ -617,7 +619,7 @@ def _shuffle(source: Source, size: int) -> NDArray[np.int64]:
 
 
 def _counter(member: int) -> NDArray[np.uint64]:
-    """Return where a member's own generator begins; counters of the core end in 0."""
+    """Return the start of the counter of a member's own generator; counters of the core end in 0."""
     return np.array([0, 0, member, 1], dtype=np.uint64)
 
 

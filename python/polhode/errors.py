@@ -62,7 +62,7 @@ class MeshError(PolhodeError):
     way_out: str = ""
 
     def offer(self, way_out: str) -> None:
-        """Put another remedy into the message, before the present one."""
+        """Insert another remedy into the message, before the present one."""
         fault = str(self).removesuffix(self.way_out)
         self.args = (f"{fault}{way_out}; or {self.way_out}" if self.way_out else f"{fault} ({way_out})",)
 
@@ -72,7 +72,7 @@ class FileFormatError(PolhodeError):
 
 
 class IntegrationError(PolhodeError):
-    """An integration could not go on; the message tells why.
+    """An integration could not go on; the message says why.
 
     Attributes
     ----------

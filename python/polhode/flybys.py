@@ -43,7 +43,7 @@ ROUNDING: Final = 1e-9
 
 
 def _names_modes(function: F) -> F:
-    """Let a call without `mode` say which modes there are."""
+    """Make a call without `mode` raise an error that names the modes."""
 
     @wraps(function)
     def check_mode(*args: Any, **kwargs: Any) -> Any:
@@ -373,7 +373,7 @@ def _number(given: Any, name: str) -> float:
 
 
 def _bodies(body: RigidBody, numbers: Floats) -> RigidBody:
-    """Return the bodies of clones: that body with other principal moments."""
+    """Return the bodies of clones: the given body with other principal moments."""
     axes, center = body.principal.axes, body.center_of_mass
     return _core.RigidBody.from_principal(body.mass, numbers[..., :3], axes, center)
 
@@ -392,12 +392,12 @@ def _omega(start: Trajectory | FreeMotion) -> Floats:
 
 
 def _turn_attitudes(start: Trajectory | FreeMotion, turn: Floats) -> Floats:
-    """Attitudes of starts, with L in any direction."""
+    """Return attitudes at the start, with L in any direction."""
     return _product(turn, start.quaternion)
 
 
 def _toward(start: Trajectory | FreeMotion, pole: Floats, around: Floats, tilt: Floats) -> Floats:
-    """Attitudes of starts, with L near a direction."""
+    """Return attitudes at the start, with L near a direction."""
     side = np.eye(3)[int(np.argmin(np.abs(pole)))]
     one = np.cross(pole, side) / np.linalg.norm(np.cross(pole, side))
     two = np.cross(pole, one)

@@ -108,12 +108,12 @@ class LocalFrame(NamedTuple):
 
 
 class Path(ABC):
-    """What all orbits tell."""
+    """Base class of all orbits."""
 
     @property
     @abstractmethod
     def begins(self) -> float:
-        """Its epoch, which is zero where there is none; of a table the first of its times."""
+        """Epoch of the orbit; zero if there is none. For a table, the first of its times."""
 
     @abstractmethod
     def at(self, t: ArrayLike) -> OrbitState:
@@ -228,18 +228,18 @@ class DipoleField:
 
 
 def freeze(numbers: Floats) -> Any:
-    """Numbers that nobody changes; one as a float."""
+    """Return a read-only array; a single number as a float."""
     numbers.flags.writeable = False
     return float(numbers) if numbers.ndim == 0 else numbers
 
 
 def reshape_times(states: tuple[Floats, Floats], times: tuple[int, ...]) -> OrbitState:
-    """Return states at a list of times those at times of a shape."""
+    """Reshape states at a list of times to the shape of the times."""
     return OrbitState(*(one.reshape(*one.shape[:-2], *times, 3) for one in states))
 
 
 def do_broadcast(*arrays: Floats) -> bool:
-    """Whether arrays broadcast."""
+    """Return whether arrays broadcast."""
     try:
         np.broadcast_shapes(*(one.shape for one in arrays))
     except ValueError:
@@ -248,7 +248,7 @@ def do_broadcast(*arrays: Floats) -> bool:
 
 
 def vector(given: ArrayLike, name: str) -> Floats:
-    """Vectors of shape (..., 3), finite, that nobody changes."""
+    """Return finite vectors of shape (..., 3), read-only."""
     found = np.array(_core.real_numbers(given, name))  # not the caller's
     if found.shape[-1:] != (3,):
         raise ValueError(f"{name}: expected shape (..., 3), got {found.shape}")

@@ -86,7 +86,7 @@ class Reduction(ABC):
 
     @abstractmethod
     def merge(self, one: Any, other: Any, n: int) -> Any:
-        """Merge the states of two neighbouring blocks, and give the state of both together."""
+        """Merge the states of two neighbouring blocks, and return the state of both together."""
 
     @abstractmethod
     def finish(self, state: Any, left_out: int) -> Any:
@@ -101,7 +101,7 @@ class Reduction(ABC):
 
 
 class BlockState(NamedTuple):
-    """A state, and the shape of what is reduced."""
+    """The state of a block, and the shape of the quantity that is reduced."""
 
     shape: Shape
     of: Any
@@ -483,14 +483,14 @@ def sum_by_halves(rows: Floats) -> Floats:
 
 
 class Moments(NamedTuple):
-    """Of some members: how many, their mean, and, where asked for, the products of deviations summed."""
+    """Number of members, their mean and, if asked for, the sums of products of deviations."""
 
     members: int
     mean: Floats
     products: Floats | None
 
     def merge(self, other: Moments) -> Moments:
-        """Those of both, after Chan, Golub and LeVeque."""
+        """Return the moments of both, after Chan, Golub and LeVeque."""
         count = self.members + other.members
         with np.errstate(invalid="ignore"):
             step = other.mean - self.mean
@@ -507,7 +507,8 @@ class Moments(NamedTuple):
 def moments(values: Floats, *, products: bool) -> Moments:
     """Return the moments of rows, shape (n, k).
 
-    Infinite values have an infinite mean, those of both signs none; no products with them are numbers.
+    Infinite values of one sign give an infinite mean, of both signs NaN; covariances with infinite values are
+    NaN.
     """
     count = len(values)
     with np.errstate(invalid="ignore"):
@@ -520,7 +521,7 @@ def moments(values: Floats, *, products: bool) -> Moments:
 
 
 class Order(NamedTuple):
-    """Numbers of some members in order, each standing for as many as its weight says.
+    """Sorted numbers of some members, each with a weight: how many numbers it represents.
 
     Attributes
     ----------
@@ -534,7 +535,7 @@ class Order(NamedTuple):
     error: int = 0
 
     def merge(self, other: Order, most: int | None) -> Order:
-        """Those of both; beyond `most` numbers of a weight every other one is left out."""
+        """Return the numbers of both; beyond `most` numbers of one weight every other one is dropped."""
         buffers = dict(self.buffers)
         for weight, values in other.buffers.items():
             held = buffers.get(weight)
@@ -590,7 +591,7 @@ def _coin(row: Floats, weight: int) -> int:
 
 
 def level_of(order: Order, parts: Floats) -> Floats:
-    """Return the numbers below which these parts of all lie, shape (q, k).
+    """Return the quantiles for these fractions, shape (q, k).
 
     Between the two nearest, where every number is there; else one of them.
     """

@@ -1,4 +1,4 @@
-"""Units: of files that state none, and of numbers as they are typed, such as ``"2.7 g/cm^3"``.
+"""Units of files that state none, and of numbers as the user types them, such as ``"2.7 g/cm^3"``.
 
 A bare number is in the unit that the option states. pint converts, in decimal arithmetic so that 2.7 g/cm^3
 is 2700 kg/m^3 to the last digit, and is only loaded where a unit was typed. An amount may have a sigma:
@@ -295,7 +295,7 @@ def split(texts: Sequence[str], count: int | None, unit: str, option: str) -> li
 
 
 def _parse(text: str) -> _Quantity | None:
-    """Take a number, its sigma and their units apart; None where it is no number."""
+    """Split a text into a number, its sigma and their units; None if it is no number."""
     if not _has_sigma(text):
         match = _QUANTITY.fullmatch(text)
         return None if match is None else _Quantity(match["number"], match["unit"])
@@ -339,7 +339,7 @@ def _convert(text: str, typed: _Quantity, unit: str, option: str) -> float:
 
 
 def _is_held(number: Decimal) -> bool:
-    """Return whether a float can hold it: neither infinite, nor zero unless it is."""
+    """Return whether a float can hold a number: no overflow, and no underflow to zero."""
     held = float(number)
     return math.isfinite(held) and (held != 0.0 or number == 0)
 

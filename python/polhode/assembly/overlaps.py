@@ -69,12 +69,12 @@ class Form:
 
     @property
     def is_round(self) -> bool:
-        """Whether its facets only stand for it."""
+        """Whether the surface is curved, so that the facets only approximate it."""
         return self._mesh is None and self.solid not in _FLAT
 
     @property
     def radius(self) -> float | None:
-        """Of a sphere."""
+        """Radius, if the form is a sphere."""
         return float(self._numbers[0]) if self.solid == "sphere" else None
 
     def surface(self, segments: int = _FINE) -> Surface | None:
@@ -96,7 +96,7 @@ class Form:
 
     @cached_property
     def volume(self) -> float:
-        """In m^3; not a number where it has none."""
+        """Volume in m^3; NaN if the form has no volume."""
         surface = self.surface()
         if surface is None:
             return math.nan
@@ -108,12 +108,12 @@ class Form:
 
     @property
     def key(self) -> tuple[object, ...]:
-        """What differs between forms that differ."""
+        """A key that is equal only for equal forms."""
         return self.solid, self._numbers.tobytes(), 0 if self._mesh is None else len(self._mesh[1])
 
     @cached_property
     def reach(self) -> tuple[Floats, Floats]:
-        """Opposite corners of a box that is wide enough, which costs little."""
+        """Opposite corners of a wide bounding box, which is cheap to compute."""
         if self._mesh is None:  # a solid with its centre of mass at the origin is within the sum of its sizes
             size = float(np.abs(self._numbers[1 if self.solid == "prism" else 0 :]).sum())
             return np.full(3, -size), np.full(3, size)
@@ -123,7 +123,7 @@ class Form:
 
     @property
     def is_made(self) -> bool:
-        """Whether its triangles are there."""
+        """Whether the triangles have been computed."""
         return self._mesh is not None or _FINE in self._known
 
     @cached_property
@@ -149,7 +149,7 @@ class Instance(NamedTuple):
 
 
 def find_overlaps(parts: Sequence[Instance]) -> tuple[list[Overlap], list[str]]:
-    """Find the parts that share space, and say which were not compared.
+    """Find the parts that share space; return notes on the parts that were not compared.
 
     Parameters
     ----------
@@ -244,7 +244,7 @@ def _near(one: Instance, other: Instance) -> bool:
 
 
 def _boxes(parts: Sequence[Instance], boxes: Floats) -> tuple[Floats, Floats]:
-    """Return the middles and half sides of boxes along the axes of the whole around boxes of parts."""
+    """Return the middle and half sides of the bounding box of each part, along the axes of the whole."""
     turns = np.array([part.place.rotation for part in parts])
     shifts = np.array([part.place.displacement for part in parts])
     middles = np.einsum("nij,nj->ni", turns, boxes.mean(axis=1)) + shifts
@@ -257,7 +257,7 @@ def _triangles(part: Instance) -> int:
 
 
 def _of_spheres(one: Instance, other: Instance) -> float | None:
-    """Compute what two spheres share, in closed form; None for other solids."""
+    """Compute the volume that two spheres share, in closed form; None for other solids."""
     if one.form is None or other.form is None or one.form.radius is None or other.form.radius is None:
         return None
     a, b = one.form.radius, other.form.radius
@@ -295,7 +295,7 @@ def _shared(one: Instance, other: Instance) -> list[Overlap]:
 
 
 def _describe_overlap(one: Instance, other: Instance, volume: float, doubt: float) -> list[Overlap]:
-    """Say that two parts share so much, unless it is contact."""
+    """Return the overlap of two parts that share this volume; nothing if they only touch."""
     large, small = sorted((one, other), key=lambda part: -(part.form.volume if part.form else 0.0))
     whole = small.form.volume if small.form else math.nan
     if volume <= max(_LITTLE * whole, doubt):

@@ -1,4 +1,4 @@
-"""An assembly's file, read into a tree of placed bodies; what it nests is read once."""
+"""Read the file of an assembly into a tree of placed bodies. A nested file is read once."""
 
 from __future__ import annotations
 

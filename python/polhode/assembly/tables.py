@@ -50,7 +50,7 @@ PRINTED: Final = ("mass", "com", "tensor", "products", "about", "rtol")
 
 
 def check_keys(table: Mapping[str, Any], known: Collection[str], where: str) -> None:
-    """Refuse a key that is not known, with the nearest one that is."""
+    """Refuse an unknown key; the error proposes the nearest known key."""
     for key in table:
         if key not in known:
             raise PolhodeError(f"{where}: {unknown(str(key), known)}")
@@ -62,7 +62,7 @@ def unknown(key: str, known: Collection[str]) -> str:
 
 
 def suggest_name(name: str, known: Collection[str]) -> str:
-    """Ask for the nearest of the names that there are, or tell them."""
+    """Propose the known name that is nearest to a wrong one, or list the known names."""
     near = difflib.get_close_matches(name, known, n=1)
     names = [*known][:_MOST_NAMES]
     more = f" and {len(known) - len(names)} more" if len(known) > len(names) else ""
@@ -205,7 +205,7 @@ class Place(NamedTuple):
     displacement: Floats
 
     def of(self, inner: Place) -> Place:
-        """Place what is placed within: first `inner`, then this one."""
+        """Compose two placements: first `inner`, then this one."""
         return Place(self.rotation @ inner.rotation, self.rotation @ inner.displacement + self.displacement)
 
     def place(self, body: _core.RigidBody) -> _core.RigidBody:
@@ -219,13 +219,13 @@ HERE: Final = Place(np.eye(3), np.zeros(3))
 
 
 def place_of(table: Mapping[str, Any], scope: Scope) -> Place:
-    """Read where a part stands."""
+    """Read the position and rotation of a part."""
     position = scope.lengths("position", table["position"], 3) if "position" in table else (0.0, 0.0, 0.0)
     return Place(_rotation(table.get("rotation"), "rotation", scope), np.array(position))
 
 
 def copies(table: Mapping[str, Any], scope: Scope) -> list[Place]:
-    """Read how often a part is there: by how much each copy is moved, the first by nothing."""
+    """Read the number of copies of a part; return the placement of each, the identity for the first."""
     count = table.get("count", 1)
     if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MOST_COPIES:
         raise PolhodeError(
@@ -246,7 +246,7 @@ def copies(table: Mapping[str, Any], scope: Scope) -> list[Place]:
 
 
 def _rotation(given: Any, key: str, scope: Scope) -> Floats:
-    """Read a rotation: it takes the axes of the part to where they stand, v = R v_part."""
+    """Read a rotation R from the axes of the part to those of the assembly: v = R v_part."""
     if given is None:
         return np.eye(3)
     where = f"{scope.where}: {key}"
@@ -291,7 +291,7 @@ def _rotation(given: Any, key: str, scope: Scope) -> Floats:
 
 
 def _angles(given: Mapping[str, Any], unit: str, count: int, scope: Scope) -> list[tuple[float, float]]:
-    """Return cosines and sines; those of whole quarter turns in degrees are exact."""
+    """Return cosines and sines; multiples of 90 degrees are exact."""
     angles = scope.numbers(unit, given[unit], "1", count=count)
     if unit == "radians":
         return [(float(np.cos(x)), float(np.sin(x))) for x in angles]

@@ -1,4 +1,4 @@
-"""What notebooks show of a body and of a motion. No drawing library is needed."""
+"""Display of a body and of a motion in notebooks. No drawing library is needed."""
 
 from __future__ import annotations
 
@@ -174,7 +174,7 @@ def _beyond(tip: Floats) -> Floats:
 
 
 def _free_place(at: Floats, taken: list[Floats]) -> Floats:
-    """Return this place for a name, or one to its left or right where another name stands on it."""
+    """Return this place for a name; if another name is there, a place to its left or right."""
     inward = -1.0 if at[0] > 0.0 else 1.0
     tried = [at + np.array([step * inward * _LETTER, 0.0]) for step in (0.0, 1.0, -1.0, 2.0)]
     return next((one for one in tried if all(np.abs(one - other).max() >= _LETTER for other in taken)), at)
@@ -277,7 +277,7 @@ def motion_html(self: Trajectory) -> str:
 
 
 def _frame(page: str, height: int) -> str:
-    """Put a page into another, whole: it asks for nothing else."""
+    """Embed a whole page in another one; it loads no other file."""
     return (
         f'<iframe title="moving picture of the motion" srcdoc="{html.escape(page, quote=True)}" width="100%" '
         f'height="{height}" loading="lazy" allowfullscreen style="border:0;max-width:900px"></iframe>'

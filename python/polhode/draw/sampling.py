@@ -1,4 +1,4 @@
-"""The times at which a motion is drawn: so close that the picture shows what happens.
+"""The times at which a motion is drawn: close enough that the picture shows the whole motion.
 
 From one picture to the next a body seems to turn the shorter way: by more than half a turn it seems to turn
 backward. And a curve through too few points cuts through the surface on which it lies. So pictures follow the
@@ -115,7 +115,7 @@ def fastest(motion: FreeMotion | HeavyTop | GyrostatMotion) -> float:
 
 
 def once_round(motion: GyrostatMotion) -> Floats:
-    """Return times in which ω of one gyrostat comes to every place in the body to which it ever comes."""
+    """Return times over one period of ω in the body, for one gyrostat."""
     period = float(motion.period)
     if str(motion.mode) == "steady":
         return np.zeros(1)
@@ -135,7 +135,7 @@ def _quickest(motion: GyrostatMotion) -> float:
 def follow(
     curve: Callable[[Floats], Floats], t: Floats, *, step: float, most: int = MOST, chord: float = CHORD
 ) -> Span:
-    """Put times between those given, so that the chords of curves stay near them.
+    """Insert times, so that the chords of curves stay near the curves.
 
     Parameters
     ----------
@@ -200,7 +200,7 @@ def motion_times(
     turn: float = TURN,
     chord: float = CHORD,
 ) -> Span:
-    """Put times between those given, so that the turns of one body and the paths of its ω are followed."""
+    """Insert times, so that a picture follows the turns of one body and the path of its ω."""
     size = fastest(motion)
     if size == 0.0:
         return Span(t, is_whole=True)
@@ -229,7 +229,7 @@ def _ellipsoid(motion: FreeMotion | HeavyTop | GyrostatMotion) -> tuple[Floats, 
 
 
 def axis_times(top: HeavyTop, t: Floats, *, most: int = MOST) -> Span:
-    """Put times between those given for the path of one top's axis on the unit sphere."""
+    """Insert times, so that a picture follows the axis of one top on the unit sphere."""
     across = np.sqrt(max(0.0, fastest(top) ** 2 - float(top.axial_spin) ** 2))
     arm = float(np.linalg.norm(top.body.center_of_mass))
     step = min(TURN / across if across > 0.0 else np.inf, _nutation_step(top))
@@ -239,7 +239,7 @@ def axis_times(top: HeavyTop, t: Floats, *, most: int = MOST) -> Span:
 def drawn_times(
     motion: FreeMotion | HeavyTop | GyrostatMotion, t: ArrayLike, choose: Callable[..., Span] = motion_times
 ) -> Floats:
-    """Put times between those that a picture was asked for, or say why no curve can follow.
+    """Insert times between those of a picture; if no curve can follow the motion, say why.
 
     Parameters
     ----------
@@ -282,7 +282,7 @@ _FINEST: Final = np.array([1.0, 2.0, 5.0, 10.0])
 
 
 def pace(length: float, wished: float, least: float, time_unit: str) -> float:
-    """Return seconds on the screen of a motion: its own, or those of slow or fast motion by a round number.
+    """Return the seconds of a motion on the screen: in real time, or slower or faster by a round factor.
 
     Parameters
     ----------
@@ -463,7 +463,7 @@ def of_motion(
 def _pictures(
     length: float, rate: float, duration: float | None, fps: float | None
 ) -> tuple[Floats, float, list[str]]:
-    """Choose evenly spaced times for the pictures of a film; also give its length in seconds, and notes."""
+    """Choose evenly spaced times for the pictures of a film; also return its length in seconds, and notes."""
     needed = float(np.ceil(abs(length) * rate / TURN)) + 1.0
     if duration is None:
         count = int(min(max(needed, (fps or RATE) * _SECONDS), _FILM))

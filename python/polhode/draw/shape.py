@@ -1,4 +1,4 @@
-"""The shape of a body as it is drawn: what it was made of, a given mesh, or the box of its inertia."""
+"""The shape of a body in a picture: its own surface, a given mesh, or the box of its inertia."""
 
 from __future__ import annotations
 
@@ -91,13 +91,13 @@ class Shape:
 
 
 def check_one(shape: tuple[int, ...], name: str) -> None:
-    """Refuse a stack where one body, or the motion of one, is drawn."""
+    """Refuse a stack: a picture shows one body, or one motion."""
     if shape:
         raise ValueError(f"{name}: expected one body, got a stack of shape {shape}; index it")
 
 
 def check_size(numbers: Floats, what: str, unit: str) -> None:
-    """Refuse numbers of which no picture can be computed in floats."""
+    """Refuse numbers for which the picture would overflow or underflow."""
     size = float(np.abs(numbers).max(initial=0.0))
     if size > _SIZES[1] or 0.0 < size < _SIZES[0]:
         raise ValueError(
@@ -107,7 +107,7 @@ def check_size(numbers: Floats, what: str, unit: str) -> None:
 
 
 def notes_on(shape: Shape) -> tuple[str, ...]:
-    """Return of a shape that is drawn coarser than it is, or so far off that it is a dot."""
+    """Return notes on a shape that is drawn with less detail, or that is so far away that it is a dot."""
     size, far = float(np.ptp(shape.vertices, axis=0).max()), longest(shape.vertices)
     notes: list[str] = []
     if shape.left_out:
@@ -129,7 +129,7 @@ def longest(vectors: Floats) -> float:
 
 
 def body_shape(body: RigidBody, about: Floats, *, is_cut: bool = True) -> tuple[Shape, tuple[str, ...]]:
-    """Return what a body is drawn as, and what is not drawn of it.
+    """Return the shape that is drawn for a body, and notes on what is not drawn.
 
     It is the shapes that it was made of, where they are known, else the uniform box with its mass and
     inertia. A box has faces in six colours, another part has one; a round part has quarters in two shades.
@@ -177,7 +177,7 @@ def equivalent_box(body: RigidBody) -> tuple[Floats, NDArray[np.int64]]:
 
 
 def shape_of(given: GivenShape, about: Floats, *, is_cut: bool = True, at_most: int | None = None) -> Shape:
-    """Take what the user gives as the surface of a body: a mesh, or a list of its parts.
+    """Read the surface of a body from the user's argument: a mesh, or a list of parts.
 
     Parameters
     ----------
@@ -220,7 +220,7 @@ def _together(parts: list[Shape]) -> Shape:
 def given_shape(
     vertices: ArrayLike, faces: ArrayLike, about: Floats, *, is_cut: bool = True, at_most: int | None = None
 ) -> Shape:
-    """Take the user's mesh, in the body frame."""
+    """Check and return the user's mesh, in the body frame."""
     points = _core.real_numbers(vertices, "shape")
     _core.real_numbers(faces, "shape")  # neither masked nor with a unit
     corners = np.asarray(faces)
@@ -256,7 +256,7 @@ def _make_shape(
     about: Floats,
     longest_edge: float | None,
 ) -> Shape:
-    """Return a surface with its triangles cut until no edge is longer than that, if it is given."""
+    """Return a surface; if a longest edge is given, its triangles are subdivided to this length."""
     if longest_edge is None:
         return Shape(points - about, faces, colors)
     pieces, owner = subdivide(points[faces], longest_edge, at_most=max(_MOST, len(faces)))
@@ -311,7 +311,7 @@ class Piece:
 def pieces_of(
     body: RigidBody, box: Callable[[RigidBody], Surface]
 ) -> tuple[list[Piece] | None, tuple[str, ...]]:
-    """Return the parts that one body was made of, and what is not drawn of them.
+    """Return the parts of one body, and notes on the parts that are not drawn.
 
     Parameters
     ----------
@@ -344,7 +344,7 @@ def pieces_of(
 
 
 def _without_pairs(parts: list[Part]) -> list[Part]:
-    """Leave out parts that were taken out again just as they were put in, and the other way round."""
+    """Leave out pairs of equal parts of which one was added and the other subtracted."""
     kept: list[Part] = []
     for part in parts:
         other = next((k for k, old in enumerate(kept) if _is_undone(old, part)), None)
@@ -414,7 +414,7 @@ def _has_area(vertices: Floats, faces: NDArray[np.int64]) -> bool:
 
 
 def _thicken(name: str, numbers: Floats, segments: int) -> Surface:
-    """Return a shape that is a line a hundredth as thick as it is long; a point has no faces."""
+    """Return a shape for a line, with a thickness of a hundredth of its length; a point has no faces."""
     point = np.zeros((1, 3)), np.zeros((0, 3), dtype=np.int64)
     if name.startswith("arc"):
         return point

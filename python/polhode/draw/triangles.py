@@ -1,4 +1,4 @@
-"""Surfaces as triangles to be drawn: of solids, sheets, wires, particles; large ones cut, too many joined."""
+"""Triangles of solids, sheets, wires and particles for pictures: large ones divided, too many merged."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _COARSEST: Final = 4
 
 
 def subdivide(triangles: Floats, longest: float, *, at_most: int | None = None) -> tuple[Floats, Integers]:
-    """Halve triangles until no edge is longer than `longest`; tell which triangle each piece is from.
+    """Halve triangles until no edge is longer than `longest`; return the index of the source triangle too.
 
     What draws sorts polygons by the depth of their middles, which puts large ones in the wrong order.
 
@@ -68,7 +68,7 @@ def subdivide(triangles: Floats, longest: float, *, at_most: int | None = None) 
 
 
 def cluster_vertices(vertices: Floats, faces: Integers, at_most: int) -> tuple[Floats, Integers, float]:
-    """Join corners that lie in one cell of a grid, the finest that leaves few enough triangles.
+    """Merge corners in one cell of a grid, the finest grid that leaves few enough triangles.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def cluster_vertices(vertices: Floats, faces: Integers, at_most: int) -> tuple[F
 
 
 def _in_cells(vertices: Floats, faces: Integers, low: Floats, side: float) -> tuple[Floats, Integers]:
-    """Put the corners in one cell at their middle, and leave out the triangles that shrink to nothing."""
+    """Replace the corners in one cell by their mean, and drop the triangles without area."""
     cells = np.floor((vertices - low) / side).astype(np.int64)
     _, cell = np.unique(cells, axis=0, return_inverse=True)
     cell = cell.reshape(-1)
@@ -116,7 +116,7 @@ def _in_cells(vertices: Floats, faces: Integers, low: Floats, side: float) -> tu
 
 
 def unit_normals(triangles: Floats) -> Floats:
-    """Return unit normals of triangles (m, 3, 3), on the side from which they run counterclockwise."""
+    """Return unit normals of triangles (m, 3, 3), by the right-hand rule."""
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     unit: Floats = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
     return unit
@@ -257,7 +257,7 @@ _BALL: Final = 0.06
 
 
 def both_sides(vertices: Floats, faces: Faces) -> Surface:
-    """Return a sheet that is seen from both sides."""
+    """Return a sheet with triangles on both sides."""
     return vertices, np.concatenate([faces, faces[:, ::-1]])
 
 
@@ -341,7 +341,7 @@ def _small_sphere(times: int) -> Surface:
 
 
 def _bar(start: Floats, end: Floats, radius: float) -> Surface | None:
-    """Return a bar of six sides from point to point; nothing of no length."""
+    """Return a bar of six sides from point to point; nothing if the points are equal."""
     along = end - start
     length = float(np.linalg.norm(along))
     if length == 0.0:
@@ -368,7 +368,7 @@ def _flat(points: Floats) -> Floats:
 
 
 def _ears(corners: Floats) -> Faces:
-    """Cut a simple polygon into triangles, one convex corner that holds no other after the other."""
+    """Divide a simple polygon into triangles by cutting ears: convex corners that hold no other corner."""
     x, y = (corners - corners.mean(axis=0)).T
     rest = list(range(len(corners)))
     if np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) < 0.0:

@@ -1,4 +1,4 @@
-"""Wheels that turn in a body, as discs on its outside: where they stand, and how far they have turned."""
+"""Wheels in a body, drawn as discs on its outside: their places and their angles."""
 
 from __future__ import annotations
 
@@ -84,11 +84,11 @@ class Disc(Spin):
         return self.middle + height * self.axis + radius * around
 
     def factor(self, between: float) -> float:
-        """Return how many times slower it is drawn where so much time goes by from picture to picture."""
+        """Return the factor by which its rotation is drawn slower, for this time between two pictures."""
         return 1.0 if self.rate is None else slowdown(float(np.abs(self.rate).max()) * between)
 
     def words(self, frame: int, factor: float, time_unit: str) -> str:
-        """Return its speed in a picture, and how it is drawn."""
+        """Return the text with the speed of the wheel and the factor of the drawing."""
         if self.rate is None:
             return f"{self.name}: speed not known"
         drawn = f", drawn {factor:,g}× slower" if factor > 1.0 else ""
@@ -96,7 +96,7 @@ class Disc(Spin):
 
 
 def slowdown(turn: float) -> float:
-    """Return the factor 1, 2, 5, 10, … by which a turning is drawn slower than it is.
+    """Return the factor 1, 2, 5, 10, … by which a rotation is drawn slower than it is.
 
     Parameters
     ----------
@@ -182,7 +182,7 @@ def _of_load(trajectory: Trajectory) -> list[Spin]:
 
 
 def _driven(trajectory: Trajectory, wheel: Part) -> Spin:
-    """Return a wheel of a load, of which the body carries along J Ω a; between the times Ω follows cubics."""
+    """Return a wheel of a load; its momentum in the body is J Ω a. Between the times Ω follows cubics."""
     axis, inertia = wheel.number(0, axes=1), float(wheel.number(1))
     axis = axis / np.linalg.norm(axis)
     (state,), (own,), t = wheel.states, wheel.load.states, trajectory.t
@@ -195,7 +195,7 @@ def _driven(trajectory: Trajectory, wheel: Part) -> Spin:
 
 
 def _rotor(momentum: Floats, name: str) -> list[Spin]:
-    """Return what is known by its momentum alone: an axis, and no speed."""
+    """Return a wheel of which only the momentum is known: an axis without a speed."""
     size = float(np.linalg.norm(momentum))
     return [Spin(name, momentum / size, None, None)] if size > 0.0 else []
 

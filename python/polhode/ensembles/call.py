@@ -1,4 +1,4 @@
-"""The call that makes an ensemble: what is given is looked at before anything is run."""
+"""Make an ensemble. All arguments are checked before anything is run."""
 
 from __future__ import annotations
 
@@ -163,7 +163,7 @@ def _count(number: Any, name: str) -> int:
 
 
 def _argument(place: str, value: Any) -> Any:
-    """Return a distribution, or what is the same for all members in a form that stays as it is."""
+    """Return a distribution; an argument that is the same for all members as a read-only copy."""
     if isinstance(value, Distribution | FunctionOfDraws) or value is None:
         return value
     if place == "body" and isinstance(value, _core.RigidBody):

@@ -1,4 +1,4 @@
-"""Reductions that go on after a kill: the nodes of the tree in a file, with the chunks that are in them."""
+"""Reductions that can be resumed: a file holds the nodes of the tree, and the numbers of their chunks."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ class Checkpoint:
         self.is_new, self.written = False, time.monotonic()
 
     def close(self) -> None:
-        """Write what is new, but for a tree that was ended while a chunk came into it."""
+        """Write what is new, except for a tree that was interrupted while a chunk was added."""
         if self.is_new and self._is_whole():
             self.write()
 
@@ -123,7 +123,7 @@ class Checkpoint:
 
 
 def _merge_spans(spans: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
-    """Join those that follow each other."""
+    """Merge spans that follow each other."""
     found: list[tuple[int, int]] = []
     for begin, end in sorted(spans):
         if found and found[-1][1] == begin:

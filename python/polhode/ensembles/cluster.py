@@ -24,7 +24,7 @@ R = TypeVar("R")
 
 
 def check_client(client: Any) -> None:
-    """Refuse what is no client of dask, or one that gives promises in place of results."""
+    """Refuse an object that is no client of dask, or an asynchronous client."""
     distributed = require("distributed", extra="cluster", purpose="client=")
     if not isinstance(client, distributed.Client):
         raise TypeError(f"client: expected a dask.distributed.Client, got {type(client).__name__}")
@@ -35,7 +35,7 @@ def check_client(client: Any) -> None:
 def chunks_of_client(
     client: Any, task: Task[R], pending: Sequence[int], tell: Callable[[float], object] | None
 ) -> Iterator[tuple[int, R]]:
-    """Do chunks on the workers of a cluster, and give them in the order in which they are done.
+    """Run chunks on the workers of a cluster, and yield them in the order in which they end.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def chunks_of_client(
     pending : sequence of int
         The chunks.
     tell : callable or None
-        Told the fraction of all members that is done.
+        Called with the fraction of all members that is done.
 
     Yields
     ------
@@ -144,7 +144,7 @@ R_co = TypeVar("R_co", covariant=True)
 
 
 class Task(Protocol[R_co]):
-    """What is done with a chunk: a value that goes to other processes."""
+    """The work on a chunk, as a value that can be sent to other processes."""
 
     @property
     def plan(self) -> Plan:
@@ -157,7 +157,7 @@ class Task(Protocol[R_co]):
 def chunks_here(
     task: Task[R_co], pending: Sequence[int], tell: Callable[[float], object] | None
 ) -> Iterator[tuple[int, R_co]]:
-    """Do chunks here, in order.
+    """Run chunks in this process, in order.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ def chunks_here(
     pending : sequence of int
         The chunks.
     tell : callable or None
-        Told the fraction of all members of the ensemble that is done.
+        Called with the fraction of all members of the ensemble that is done.
 
     Yields
     ------

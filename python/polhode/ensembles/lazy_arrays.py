@@ -50,12 +50,12 @@ def _library(array: Any) -> str:
 
 
 def xarray_array(array: Any) -> Any:
-    """Return an array with names for its axes, of xarray; else None."""
+    """Return the argument if it is an array of xarray, with names for its axes; else None."""
     return array if _library(array) == "xarray" and hasattr(array, "variable") else None
 
 
 def dask_array(array: Any) -> Any:
-    """Return the array of dask that an argument is or that xarray holds; else None."""
+    """Return the array of dask, if an argument is one or an array of xarray that holds one; else None."""
     if xarray_array(array) is not None:
         array = array.data if getattr(array, "chunks", None) is not None else None
     if array is None or _library(array) != "dask":
@@ -75,14 +75,14 @@ def is_stored(array: Any) -> bool:
 
 
 def in_memory(array: Any) -> Any:
-    """Return a piece of an array as what the core reads where it is; masked elements and units stay."""
+    """Return a piece of an array in memory, as the core reads it; masked elements and units stay."""
     if xarray_array(array) is not None:
         return in_memory(array.variable.data)
     return np.asarray(array) if isinstance(array, np.memmap) else array
 
 
 def check_sizes(array: Any, name: str) -> None:
-    """Refuse an array of so many numbers as nobody knows."""
+    """Refuse an array of unknown size."""
     if np.isnan(np.array(np.shape(array), dtype=float)).any():
         raise ValueError(
             f"{name}: the sizes of its chunks are not known; {name}.compute_chunk_sizes() finds them"
@@ -90,7 +90,7 @@ def check_sizes(array: Any, name: str) -> None:
 
 
 def check_real(array: Any, name: str) -> None:
-    """Refuse an array of dask of no real numbers, or of so many as nobody knows, before it is computed."""
+    """Refuse an array of dask without real numbers, or of unknown size, before it is computed."""
     if array.dtype.kind not in "biuf":
         raise TypeError(f"{name}: expected real numbers, got dtype {array.dtype}")
     check_sizes(array, name)
@@ -133,7 +133,7 @@ def one_chunk(array: Any, name: str, size: int) -> None:
 
 
 def check_coordinates(array: Any, tail: int, results: Collection[str]) -> None:
-    """Refuse an array of which a coordinate would go along under a name of the result."""
+    """Refuse an array with a coordinate that has the name of a variable of the result."""
     last = set(array.dims[array.ndim - tail :])
     own = {str(name) for name, one in array.coords.items() if not last & set(one.dims)}
     for name in sorted((own - {str(dim) for dim in array.dims}) & set(results)):
@@ -336,7 +336,7 @@ def motion_at(motion: Any, t: Any) -> Any:
 
 
 def _states_of_chunk(t: Any, *, motion: Any) -> Any:
-    """Ask for the states of a chunk; the axes of the stack come after those of the times here."""
+    """Compute the states of a chunk; the axes of the times come before those of the stack."""
     run, depth = motion.at(t), len(motion.shape)
     front = tuple(range(depth))
     back = tuple(range(np.ndim(t), np.ndim(t) + depth))
@@ -440,7 +440,7 @@ def _sum_chunk(masses: Any, positions: Any, place: Any, *, first: int, wanted: t
 
 
 def _part(masses: Any, positions: Any, start: int, row: int) -> MassAccumulator:
-    """Sum some rows, from `row` on; errors tell which of all they are."""
+    """Sum some rows, from `row` on; errors name the rows by their numbers in the whole array."""
     part, first = MassAccumulator(), start + row
     try:
         part.add(in_memory(masses), in_memory(positions), start=first)
@@ -457,7 +457,7 @@ def _box(part: MassAccumulator) -> Any:
 
 
 def _merge(boxes: list[Any]) -> Any:
-    """Merge sums into a new one: those of a task that is done again must be as they were."""
+    """Merge sums into a new one; the old ones stay unchanged, because a task may be repeated."""
     total = MassAccumulator()
     for box in boxes:
         total.merge(box.item())
@@ -571,7 +571,7 @@ def _shape_of(load: Any) -> tuple[int, ...]:
 
 
 def _first(body: RigidBody, times: Any, options: Mapping[str, Any]) -> Any:
-    """Begin with all bodies and loads, at rest: what is wrong with the call is told at once."""
+    """Start a run of all bodies and loads at rest, so that errors of the call are raised at once."""
     return body.simulate(times[:1], (0.0, 0.0, 0.0), **options)
 
 

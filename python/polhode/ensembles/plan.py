@@ -1,4 +1,4 @@
-"""What an ensemble computes: its arguments as recipes, its chunks, and the layout of its results."""
+"""The plan of an ensemble: its arguments as recipes, its chunks, and the layout of its results."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class Plan:
         return first, min(self.chunk, self.n - first)
 
     def draws(self) -> dict[str, Draw]:
-        """Return the distributions by their places; one that stands at two places is at the first."""
+        """Return the distributions by the name of their argument; a shared one under the first name."""
         return {draw.place: draw for node in self.recipe.values() for draw in draws(node)}
 
     def inputs(self, first: int, count: int) -> Inputs:
@@ -93,7 +93,7 @@ class Plan:
 
 @dataclass(frozen=True, eq=False)
 class Inputs:
-    """What some members have drawn."""
+    """The random numbers of some members."""
 
     plan: Plan
     first: int
@@ -112,7 +112,7 @@ class Inputs:
         }
 
     def starts(self, place: str) -> Iterator[tuple[int, Floats]]:
-        """Go through what members drew for a state at the start, such as it is."""
+        """Iterate over the drawn states at the start."""
         for row, one in enumerate(self.drawn.get(place, ())):
             one = one.as_quat() if hasattr(one, "as_quat") else one
             if not isinstance(one, Refusal) and np.shape(one) == (
@@ -151,7 +151,7 @@ class Inputs:
         return found
 
     def run(self, rows: Rows, t: Floats, progress: Any = None) -> Trajectory:
-        """Run members; one that fails on the way keeps the others."""
+        """Run members; a failure of one does not stop the others."""
         arguments = (
             self.make_arguments(rows) | self.plan.options | {"on_failure": "keep", "progress": progress}
         )
@@ -162,7 +162,7 @@ class Inputs:
 
 
 def is_each_alone(plan: Plan) -> bool:
-    """Return whether members have loads that cannot stand in one stack."""
+    """Return whether the loads of the members cannot be put into one stack."""
     return any(
         isinstance(draw.distribution, PerMember) and draw.place == "load" for draw in plan.draws().values()
     )
@@ -282,7 +282,7 @@ def resolve_draws(arguments: Mapping[str, Any], seed: int) -> dict[str, Node]:
 
 
 def _resolve(argument: Any, place: str, seed: int, seen: dict[int, Node]) -> Node:
-    """Resolve one; what was met before keeps the sources of its first place."""
+    """Resolve one argument; a distribution that occurs twice keeps the source of its first place."""
     if not isinstance(argument, Distribution | FunctionOfDraws):
         return argument
     if id(argument) in seen:
@@ -402,7 +402,7 @@ def short_name(name: str) -> str:
 
 
 def bytes_of_member(plan: Plan) -> int:
-    """Return the size of all that is kept of a member."""
+    """Return the number of bytes of the results of a member."""
     return sum(
         np.dtype(variable.dtype).itemsize * int(np.prod(variable.tail)) for variable in layout(plan).values()
     )

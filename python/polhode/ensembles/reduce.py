@@ -73,7 +73,7 @@ class Tree(Generic[S]):
 
 
 class State(NamedTuple):
-    """Of some members: a state of each reduction, None without a member, and how many failed."""
+    """The state of some members: that of each reduction (None without a member), and how many failed."""
 
     parts: tuple[Any, ...]
     left_out: int
@@ -83,7 +83,7 @@ Nodes: TypeAlias = dict[Place, State]
 
 
 def tree_of(plan: Plan, reductions: tuple[Reduction, ...]) -> Tree[State]:
-    """Return the tree of all blocks, without any of them."""
+    """Return an empty tree for all blocks."""
 
     def merge(one: State, other: State) -> State:
         for a, b in zip(one.parts, other.parts, strict=True):

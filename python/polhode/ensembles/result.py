@@ -46,7 +46,7 @@ _MADE: Final = 2000
 
 
 class Memory(NamedTuple):
-    """How much memory an ensemble takes, in bytes, about.
+    """Approximate memory of an ensemble, in bytes.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class Memory(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class _Work:
-    """What is done with a chunk."""
+    """The work on a chunk."""
 
     plan: Plan
     function: Callable[..., Any]
@@ -329,7 +329,7 @@ class Ensemble:
 
 
 def _check_room(needed: int, n: int) -> None:
-    """Refuse what the machine does not have, before any of it is computed."""
+    """Refuse an ensemble that needs more memory than the machine has, before it is computed."""
     room = _room()
     if room is not None and needed > room:
         raise MemoryError(
@@ -339,7 +339,7 @@ def _check_room(needed: int, n: int) -> None:
 
 
 def _room() -> int | None:
-    """Return the memory of this machine; not every system tells."""
+    """Return the memory of this machine; None if the system does not report it."""
     try:
         return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, ValueError, OSError):

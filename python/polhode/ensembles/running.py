@@ -1,4 +1,4 @@
-"""Members run: a chunk at a time, those that cannot begin left out and told."""
+"""Run members, a chunk at a time. Members that cannot start are left out and reported."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ ROW: Final = re.compile(r"row [\d, ()]+: ")
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """What became of some members."""
+    """Results of a run of some members."""
 
     inputs: Inputs
     rows: Rows
@@ -87,7 +87,7 @@ def run_members(plan: Plan, first: int, count: int, progress: Callable[[float], 
     plan : Plan
     first, count : int
     progress : callable, optional
-        Told the fraction done.
+        Called with the fraction that is done.
 
     Returns
     -------
@@ -124,7 +124,7 @@ def run_members(plan: Plan, first: int, count: int, progress: Callable[[float], 
 
 
 def select_rows(trajectory: Trajectory, rows: Rows) -> Trajectory:
-    """Return the motions of some rows of a stack, whose arrays nobody can change.
+    """Return the motions of some rows of a stack, with read-only arrays.
 
     Parameters
     ----------
@@ -156,7 +156,7 @@ def select_rows(trajectory: Trajectory, rows: Rows) -> Trajectory:
 
 
 def find_runnable(inputs: Inputs) -> tuple[Rows, dict[int, PolhodeError]]:
-    """Return which members have a body, a load and a state to begin with, and why others have not."""
+    """Return the members with a valid body, load and state at the start, and the errors of the others."""
     size = 1 if is_each_alone(inputs.plan) else max(inputs.count, 1)
     every = np.arange(inputs.count)
     able: list[Rows] = [every[:0]]
@@ -175,7 +175,7 @@ def find_runnable(inputs: Inputs) -> tuple[Rows, dict[int, PolhodeError]]:
 def _each(
     rows: Rows, attempt: Callable[[Rows], T], *, is_run: bool = False
 ) -> tuple[Rows, T | None, dict[int, PolhodeError]]:
-    """Attempt all at once; where that is refused in halves, down to the members that are at fault.
+    """Run all members at once; if that is refused, run halves, down to the members that cause the error.
 
     Only refusals of values count: wrong types and shapes are mistakes of the whole call, and so is what a run
     refuses without naming a row.
@@ -225,7 +225,7 @@ def _failure(run: Run, row: int) -> PolhodeError:
 def arrays_of_chunk(
     plan: Plan, index: int, progress: Callable[[float], object] | None = None
 ) -> dict[str, NDArray[np.generic]]:
-    """Run a chunk and give its arrays: states, what was drawn, and the status at the end."""
+    """Run a chunk and return its arrays: states, drawn numbers, and the status at the end."""
     run = run_members(plan, *plan.bounds(index), progress)
     states = {short_name(name): run.array(name) for name in plan.outputs}
     drawn = {short_name(place): array for place, array in run.inputs.arrays().items()}

@@ -1,4 +1,4 @@
-"""The first members of an ensemble, begun and not run: what is wrong with all of them is told at once."""
+"""A trial start of the first members of an ensemble, so that an error of all members is raised at once."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _CHOSEN: Final = ("exact", "taylor")
 
 
 def trial_of(plan: Plan) -> tuple[Rows, Trajectory]:
-    """Begin the first members.
+    """Start the first members.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def trial_of(plan: Plan) -> tuple[Rows, Trajectory]:
 
 
 def _beginning(t: Floats) -> Floats:
-    """Return the start and a time soon after: what a run is refused for shows there too."""
+    """Return the start and a time soon after: enough for all checks of a run."""
     return t if len(t) == 1 else np.array([t[0], t[0] + 1e-6 * (t[1] - t[0])])
 
 

@@ -1,4 +1,4 @@
-"""Nuclides: what a label stands for, its mass and the sigma of that."""
+"""Nuclides: the meaning of a label, its mass and the sigma of the mass."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ def _isotope(table: Any, label: str, masses: Masses) -> Isotope:
 
 
 def shifted_mass_number(symbol: str, difference: int) -> int:
-    """Find the mass number that differs from an element's own by so much.
+    """Return the mass number of an element that differs from its own by this number.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def shifted_mass_number(symbol: str, difference: int) -> int:
 
 
 def _sigma(of: Any) -> float | None:
-    """Return the sigma of a mass; the table writes 0 or nothing where it knows none."""
+    """Return the sigma of a mass; 0 or an empty text in the table means that it is unknown."""
     sigma = getattr(of, "_mass_unc", None)
     return float(sigma) if sigma else None
 

@@ -85,7 +85,7 @@ class Event:
 
     @classmethod
     def limit(cls, wheel: str = "wheel", *, direction: float = 0.0, terminal: bool | int = False) -> Event:
-        """Make the event that the torque demanded of a motor passes the limit of the motor.
+        """Make the event that the torque demanded of a motor passes the motor's limit.
 
         Parameters
         ----------

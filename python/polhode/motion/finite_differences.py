@@ -38,7 +38,7 @@ AROUND: Final = ("_scheduled", "_anchored")
 
 
 def recipes(load: _core.Load | None) -> list[Recipe]:
-    """Return the functions that made the parts of a load with their arguments; of compiled ones nothing."""
+    """Return, for each part of a load, its function and arguments; nothing for compiled parts."""
     if load is None:
         return []
     try:
@@ -49,7 +49,7 @@ def recipes(load: _core.Load | None) -> list[Recipe]:
 
 
 def known_states(load: _core.Load | None, made: list[Recipe]) -> set[str]:
-    """Name the states that can be nothing else: the wheels whose speed is given."""
+    """Return the names of the states with fixed values: wheels whose speed is given."""
     names = iter(load.states if load is not None else ())
     plain = (_split_recipe(recipe)[1] for recipe in made)
     own = [(recipe, next(names, "")) for recipe in plain if recipe[0] in ("wheel", "slug")]
@@ -83,7 +83,7 @@ def numbers(recipe: Recipe) -> Iterator[tuple[str, Floats, Changed]]:
 
 
 def _split_recipe(recipe: Recipe) -> tuple[list[Recipe], Recipe]:
-    """Return what was done to a part, the last first and without the part, and the part."""
+    """Split a recipe: return the operations on a part, the last first, and the recipe of the part."""
     around: list[Recipe] = []
     while recipe[0] in AROUND:
         around.append((recipe[0], recipe[1][1:]))
@@ -102,7 +102,7 @@ def _nest_recipe(around: list[Recipe], changed: Changed) -> Changed:
 
 
 def _fields_of(path: Any) -> Iterator[tuple[str, Floats, Callable[[Floats], Any]]]:
-    """Return numbers of an orbit or of a field along one by name, and how to put others in their place."""
+    """Yield the numbers of an orbit, or of a field along one: name, value and a function that replaces it."""
     for field in fields(path):
         value = getattr(path, field.name)
         if is_dataclass(value):
@@ -165,7 +165,7 @@ MANY: Final = 1000
 
 
 class _Starts(NamedTuple):
-    """What motions are computed from, one along the first axis of each array."""
+    """Initial values of several motions, one along the first axis of each array."""
 
     mass: Floats
     center: Floats
@@ -258,7 +258,7 @@ class _Row:
         return np.concatenate([tilt, moved.omega, *moved.states.values()], axis=-1)
 
     def starts(self, held: dict[str, Floats], count: int = 1) -> _Starts:
-        """Return the start so many times, with these states."""
+        """Return this many copies of the start, with these states."""
         body, many = self.body, np.ones((count, 1))
         states = {name: many * values for name, values in held.items()}
         tensor = np.tile(self.tensor, (count, 1, 1))
@@ -266,7 +266,7 @@ class _Row:
         return _Starts(np.full(count, body.mass), center, tensor, turn, many * self.omega[0], states)
 
     def by(self, name: str, k: int, size: float, held: dict[str, Floats]) -> Floats:
-        """By one number that counts as large where it is `size`, with these states held, shape (T, 6 + k)."""
+        """Compute the derivative by one number of scale `size`, with these states fixed, shape (T, 6 + k)."""
 
         def end_states(steps: Floats) -> Floats:
             starts = self.starts(held, len(steps))
@@ -277,7 +277,7 @@ class _Row:
         return self.along(end_states, size, name)
 
     def by_tensor(self, along: Floats, size: float) -> Floats:
-        """By the tensor along another."""
+        """Compute the derivative by the tensor, in the direction of another tensor."""
 
         def end_states(steps: Floats) -> Floats:
             starts = self.starts(self.given, len(steps))
@@ -287,7 +287,7 @@ class _Row:
         return self.along(end_states, size, "tensor")
 
     def by_load(self) -> Iterator[dict[str, Floats]]:
-        """By the numbers of each part of the load."""
+        """Compute the derivatives by the numbers of each part of the load."""
         for place, recipe in enumerate(self.recipes):
             found: dict[str, Floats] = {}
             for name, values, changed in numbers(recipe):
@@ -303,7 +303,7 @@ class _Row:
     def other_load(
         self, place: int, changed: Changed, values: Floats, index: tuple[int, ...], step: float
     ) -> _core.Load:
-        """Return the load where one of the numbers of a part is more by a step."""
+        """Return the load with one number of a part increased by a step."""
         others = values.copy()
         others[index] += step
         parts = [*self.recipes[:place], changed(others), *self.recipes[place + 1 :]]
@@ -315,7 +315,7 @@ class _Row:
         return np.array([self.ends(start, other(step))[0] for step in steps])
 
     def begins(self, speed: float) -> Floats:
-        """By ω at the first time, the states there that are not given; they are linear in it."""
+        """Compute the derivative, by ω, of the initial states that are not given; they are linear in ω."""
         columns = []
         for axis in np.eye(3):
             starts = self.starts(self.given, 2)
@@ -339,7 +339,7 @@ class _Row:
         name: str,
         scheme: Callable[[float], _Scheme] = lambda _: CENTRAL,
     ) -> Floats:
-        """By a number that counts as large where it is `size`.
+        """Compute the derivative by a number of scale `size`.
 
         `moved` gives the motions where it is more by these steps, `scheme` the differences to take.
         """
@@ -347,7 +347,7 @@ class _Row:
         return self.combine_differences(scheme(step), moved, step, name)
 
     def step_from_zero(self, moved: Callable[[Floats], Floats]) -> float:
-        """Find the step of a number that is zero, whose scale nothing tells: it moves the motion by `STEP`.
+        """Find the step for a number that is zero and has no scale: the step that moves the motion by `STEP`.
 
         It comes from below, since with a step that is much too long the motion takes very many steps.
         Nor does it go on to such a step where the number has no effect.
@@ -390,7 +390,7 @@ class _Row:
 
 
 def _scheme(other: Callable[[float], _core.Load], step: float) -> _Scheme:
-    """Return the differences that a number takes which may have reached the least that is allowed."""
+    """Return the differences for a number that may be at its lower limit."""
     try:
         other(float(min(CENTRAL.steps)) * step)
     except PolhodeError:
@@ -406,7 +406,7 @@ def _together(sizes: Floats) -> Floats:
 
 
 def _large(ends: Floats) -> Floats:
-    """Return what is large in each number of motions: of an attitude, one."""
+    """Return the scale of each number of the motions: one for an attitude."""
     large = _together(np.abs(ends).max(axis=(0, 1)))
     large[:3] = 1.0
     return large

@@ -187,7 +187,7 @@ def check(
     density: float | None = None,
     mass: float | None = None,
 ) -> list[Verdict]:
-    """Judge the inertia of every link.
+    """Check the inertia of every link.
 
     Parameters
     ----------
@@ -242,7 +242,7 @@ def check(
 
 
 def fix(robot: Robot, verdicts: Sequence[Verdict], words: Collection[str] = FAILURES) -> bytes:
-    """Write better values into the links that fail the test, or whose tensor is on the edge of the possible.
+    """Write better values into the links that fail the test, or whose tensor is at the limit of the possible.
 
     What is written is a body's also after rounding: no engine finds I1 + I2 < I3 there. It is never computed
     from shapes in which the mass would be denser than 25,000 kg/m^3. In URDF and MJCF no moment is so small

@@ -1,4 +1,4 @@
-"""Edits that put values into a robot's file: numbers that stay are not touched, new elements are indented."""
+"""Edits of values in a robot's file. Unchanged numbers keep their text; new elements are indented."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ __all__ = ["attribute", "first_child", "indent_element", "number_text", "text_of
 
 
 def number_text(values: Iterable[float]) -> str:
-    """Write numbers so that they come back with every digit."""
+    """Write numbers with all digits, so that they are read back unchanged."""
     return " ".join(repr(float(x) + 0.0) for x in values)
 
 
 def attribute(source: bytes, element: Element, name: str, text: str) -> list[Edit]:
-    """Set an attribute, unless it says these numbers already in its own way."""
+    """Set an attribute, unless it has these numbers already, in any format."""
     return [] if _same(element.attributes.get(name), text) else [set_attribute(source, element, name, text)]
 
 
 def text_of(element: Element, text: str) -> list[Edit]:
-    """Set a text, alike."""
+    """Set a text, unless it has these numbers already."""
     return [] if _same(element.text, text) else [set_text(element, text)]
 
 
 def first_child(source: bytes, parent: Element, text: str) -> Edit:
-    """Put elements before the first child, behind the same blanks."""
+    """Insert elements before the first child, with the same indentation."""
     if parent.inside == parent.end:
         start = source[parent.start : parent.inside - 2].rstrip().decode()
         return Edit(parent.start, parent.end, f"{start}>{text}</{parent.tag}>")

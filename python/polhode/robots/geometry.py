@@ -1,4 +1,4 @@
-"""What the shapes of a link say about its inertia: the homogeneous body they are, and the box around them."""
+"""The shapes of a link: the homogeneous body that they make, and the box around them."""
 
 from __future__ import annotations
 
@@ -136,7 +136,7 @@ class GeometryReader:
         return self._whole(plain, link.folder or self._folder, {})[0]
 
     def coarseness(self, link: Link) -> float:
-        """Return how far the shapes may miss the surface they stand for, in metres.
+        """Return the largest distance between the shapes and the surface that they approximate, in metres.
 
         A mesh misses a round surface by the sagitta of its facets; a box, a cylinder and the like only stand
         for the true part, which is taken to be within 2 % of their diagonal.
@@ -181,7 +181,7 @@ class GeometryReader:
         return None, 0.0, role, marker if np.isfinite(marker) else None
 
     def _body(self, shape: Shape, folder: Path, notes: dict[str, str]) -> tuple[RigidBody, float] | None:
-        """Return the body of a shape where it stands, and its volume."""
+        """Return the body of a shape in the frame of the link, and its volume."""
         if shape.problem:
             return None
         key = (folder, shape.kind, shape.mesh, shape.size, shape.counting)
@@ -200,7 +200,7 @@ class GeometryReader:
         return placed.scaled(mass=weight), float(solid.mass)
 
     def _mesh_solid(self, shape: Shape, folder: Path) -> tuple[RigidBody | None, str]:
-        """Return the solid that a mesh bounds, or its convex hull, and what has to be said of it."""
+        """Return the solid that a mesh bounds, or its convex hull, and notes on it."""
         read, name = self._mesh(shape.mesh, folder), shorten(shape.mesh)
         if isinstance(read, str):
             return None, read
@@ -314,7 +314,7 @@ def _of_cad(cad: CadFile) -> _MeshOrSolids:
 
 
 def _fill_as_mujoco(name: str, legacy: RigidBody, solid: RigidBody | None) -> tuple[RigidBody, str]:
-    """Return what MuJoCo takes a mesh for, and say where that is not what it fills."""
+    """Return the body that MuJoCo computes for a mesh, and a note if it is not the solid of the mesh."""
     by = 'MuJoCo\'s inertia="legacy", its default'
     if solid is None:
         return legacy, f"mesh {name} does not bound a solid: {by}, adds the tetrahedra of its triangles"
@@ -364,7 +364,7 @@ _SMOOTH: Final = np.deg2rad(40.0)
 
 
 def sagitta(vertices: NDArray[np.float64], faces: NDArray[np.integer]) -> float:
-    r"""Return the largest height of an arc over the facets that stand for it.
+    r"""Return the largest distance of an arc from the facets that approximate it.
 
     Two facets of width w that meet at an angle θ (between their normals) are chords of one arc,
     :math:`w = 2 r \sin(\theta/2)`, whose height over a chord is

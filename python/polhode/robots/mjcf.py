@@ -172,7 +172,7 @@ class _Reader:
         yield from self.below(body, inherited, key)
 
     def _joint(self, body: Element, name: str, above: str, key: str) -> Joint:
-        """Return what moves a body: its joints, else nothing."""
+        """Return the joint that moves a body; None without a joint."""
         free = [*self.members(body, "freejoint", Place.identity(), None)]
         joints = [*free, *self.members(body, "joint", Place.identity(), None)]
         if not joints:
@@ -195,7 +195,7 @@ class _Reader:
                 yield from self._read_copies(child, tag, Member(child, place, inherited, problem))
 
     def _step(self, element: Element, attributes: dict[str, str]) -> tuple[Place, str]:
-        """Return a frame, and what is wrong with it: that ends the verdict of what stands in it alone."""
+        """Return a frame, and the text of its fault; the fault concerns only the elements in this frame."""
         try:
             return self._place(element, attributes), ""
         except FileFormatError as error:
@@ -230,7 +230,7 @@ class _Reader:
         self.models[name] = file
 
     def _read_attach(self, attach: Element, above: str) -> Iterator[Link]:
-        """Read what an ``<attach>`` brings: a body or a frame of another model, or all its bodies."""
+        """Read the bodies of an ``<attach>``: a body or a frame of another model, or all its bodies."""
         tag = next((tag for tag in ("body", "frame") if tag in attach.attributes), "")
         wanted = attach.attributes.get(tag, "")
         if "model" not in attach.attributes and tag:
@@ -371,7 +371,7 @@ class _Reader:
     def _read_size(
         self, geom: Element, attributes: dict[str, str], kind: str
     ) -> tuple[Place, tuple[float, ...]]:
-        """Full lengths and the place; ``fromto`` gives the length and place of what is long."""
+        """Return the place and the full lengths; ``fromto`` gives both for a long shape."""
         place = self._place(geom, attributes)
         if kind not in _HALF_LENGTHS:
             return place, ()
@@ -396,7 +396,7 @@ class _Reader:
 
 
 def _turning_z_to(axis: Any) -> Any:
-    """Turn z to an axis by the shortest rotation."""
+    """Return the shortest rotation from z to an axis."""
     if axis[2] < -1.0 + 1e-12:
         return np.diag([1.0, -1.0, -1.0])
     return matrix(np.array([-axis[1], axis[0], 0.0, 1.0 + axis[2]]) / np.sqrt(2.0 * (1.0 + axis[2])))
@@ -435,7 +435,7 @@ def total_mass_of(compilers: Sequence[Element]) -> float:
 
 
 def as_compiled(robot: Robot, verdicts: Sequence[Verdict]) -> list[Verdict]:
-    """Put into the verdicts of inferred bodies what the compiler makes of them."""
+    """Apply the settings of the compiler to the verdicts of inferred bodies."""
     pairs = list(zip(robot.links, verdicts, strict=True))
     if not (robot.total_mass or any(link.compiler for link in robot.links)):
         return list(verdicts)
@@ -467,7 +467,7 @@ def _number(compilers: Sequence[Element], name: str) -> float:
 
 
 def _apply_bounds(compiler: Compiler, verdict: Verdict) -> Verdict:
-    """Raise what is less than the bounds, and balance moments that break the triangle inequality."""
+    """Raise mass and moments to the bounds, and balance moments that violate the triangle inequality."""
     is_empty = verdict.verdict == "missing" and min(compiler.mass, compiler.moment) > _LEAST
     if not is_empty and (verdict.verdict != "inferred" or verdict.mass is None):
         return verdict
@@ -552,7 +552,7 @@ def mesh_shape(
 
 
 def legacy_solid(vertices: NDArray[np.float64], faces: NDArray[np.integer]) -> RigidBody:
-    """Return the matter of density 1 that MuJoCo takes a mesh for with ``inertia="legacy"``, its default.
+    """Return the body of density 1 that MuJoCo computes for a mesh with ``inertia="legacy"``, its default.
 
     The tetrahedra from the centroid of the surface to its triangles all count as full, whichever way they are
     wound: twice where they overlap, as where a mesh is not convex. From their centre of mass new tetrahedra

@@ -1,4 +1,4 @@
-"""What robot files say about each link, whatever their format."""
+"""Links and joints of a robot, the same for all file formats."""
 
 from __future__ import annotations
 
@@ -40,18 +40,18 @@ WORLD: Final = "world"
 
 
 class Place(NamedTuple):
-    """Where something is in another frame: v_frame = rotation @ v + position."""
+    """Position and rotation in another frame: v_frame = rotation @ v + position."""
 
     rotation: Floats
     position: Floats
 
     @classmethod
     def identity(cls) -> Place:
-        """Return the frame itself."""
+        """Return the identity: no rotation, no displacement."""
         return cls(np.eye(3), np.zeros(3))
 
     def then(self, inner: Place) -> Place:
-        """Place something that is placed in this place."""
+        """Compose two placements: first `inner`, then this one."""
         return Place(self.rotation @ inner.rotation, self.rotation @ inner.position + self.position)
 
 
@@ -115,7 +115,7 @@ class Shape:
 
 
 class Compiler(NamedTuple):
-    """What MuJoCo's compiler does to the bodies of a model after it has read them.
+    """Settings of MuJoCo's compiler that change the bodies of a model.
 
     Attributes
     ----------
@@ -299,12 +299,12 @@ def unit(element: Element, vector: Floats) -> Floats:
 
 
 def shorten(text: str, most: int = 200) -> str:
-    """Return a text, or its beginning and how long it is."""
+    """Return a text; a long one as its beginning and its length."""
     return text if len(text) <= most else f"{text[:most]}... ({len(text)} characters)"
 
 
 def quote(text: str | None, most: int = 80) -> str:
-    """Return a text between quotes alike; None where there is none."""
+    """Return a text between quotes, a long one shortened; ``None`` if there is no text."""
     if text is None or len(text) <= most:
         return repr(text)
     return f"{text[:most]!r}... ({len(text)} characters)"

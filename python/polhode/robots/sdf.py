@@ -63,7 +63,7 @@ _SIZES = {
 
 
 class Scope(NamedTuple):
-    """Where elements stand: in which folder, with which names before theirs, in a model that moves or not.
+    """Context of elements: their folder, the prefix of their names, and whether their model is static.
 
     Attributes
     ----------
@@ -166,7 +166,7 @@ def _joint(element: Element, scope: Scope) -> Joint:
 
 
 def _resolve_link(name: str, keys: dict[str, None], frames: dict[str, str]) -> str:
-    """Find the link that a joint means: by its name, that of a frame on it, or that of its model."""
+    """Find the link of a joint: by the name of the link, of a frame on it, or of its model."""
     for _ in range(len(frames) + 1):
         if name in keys or name == WORLD or name not in frames:
             break
@@ -196,7 +196,7 @@ def _pose(element: Element | None) -> Place:
 
 
 def _without_commas(text: str) -> str:
-    """Take the commas off the numbers of a pose, as libsdformat does; it reads ``0,0`` as one number."""
+    """Remove the commas from the numbers of a pose, as libsdformat does; it reads ``0,0`` as one number."""
     return _COMMA.sub("", text)
 
 
@@ -364,7 +364,7 @@ def check_version(root: Element, name: str) -> None:
 
 
 def _find_model_file(include: Element, uri: str, sources: Sources, folder: Path) -> Path:
-    """Find the file that an address means: itself, or the newest that a model's folder offers."""
+    """Find the file of an address: the file itself, or the newest one in the folder of a model."""
     path, fault = sources.addresses.find(uri, folder)
     if path is None and not fault and "://" not in uri:  # the bare name of a model in a folder of models
         path, fault = sources.addresses.find(f"model://{uri}", folder)

@@ -1,4 +1,4 @@
-"""The files that a robot is made of besides its own, read safely.
+"""Read the other files of a robot, safely.
 
 Nothing is fetched from a network. What is included is XML under the same rules as the file itself, a file can
 not include itself, and there is an end to how many are read and to what they add up to.
@@ -64,7 +64,7 @@ class Sources:
         self._open: set[Path] = set()
 
     def locate(self, address: str, folder: Path, at: Element) -> Path:
-        """Find a file that has to be there.
+        """Find a file; raise an error if it is missing.
 
         Parameters
         ----------
@@ -117,12 +117,12 @@ class Sources:
         self.budget.spend("copies", number, at.where)
 
     def count_copied(self, number: int, at: Element, *, keep: bool) -> None:
-        """Count the elements within copies, alike; those of copies within copies are not kept twice."""
+        """Count the elements within copies; those of nested copies are counted once."""
         of = self.budget if keep else Budget("", 0)
         of.spend("elements in copies", number, at.where)
 
     def name(self, prefix: str, own: str, at: Element) -> str:
-        """Return a link its name; a long one is cut, and links are counted.
+        """Return the name of a link, a long one shortened; count the link.
 
         Raises
         ------
@@ -133,12 +133,12 @@ class Sources:
         return self.prefix(prefix + own)
 
     def prefix(self, text: str) -> str:
-        """Return what names of links begin with, cut where it is long: they all hold it."""
+        """Return the prefix of the names of links, shortened, because every name holds it."""
         return shorten(text, _LONGEST_NAME)
 
     @contextmanager
     def inside(self, path: Path, address: str, at: Element) -> Iterator[None]:
-        """Be within a file, which may then not be asked for again."""
+        """Mark a file as being read; it may not include itself."""
         resolved = path.resolve()
         if resolved in self._open:
             raise FileFormatError(f"{at.where}: {address} is read within itself; take one of the two out")
@@ -212,7 +212,7 @@ _LONGEST: Final = 4096
 
 
 class Lookup(NamedTuple):
-    """What became of an address.
+    """Result of the search for an address.
 
     Attributes
     ----------
@@ -409,14 +409,14 @@ def _from_environment() -> Iterator[Path]:
 
 
 def _spellings(name: str) -> tuple[str, ...]:
-    """Return a path, and as it is meant where Windows wrote it."""
+    """Return a path, and the same path with the separators of Windows replaced."""
     if not name:
         return ()
     return (name, name.replace("\\", "/")) if "\\" in name else (name,)
 
 
 def _is_outside(path: Path, roots: Sequence[Path]) -> bool:
-    """Whether a path leads out of all these folders: as it is written, or by the links on its way."""
+    """Return whether a path leads out of all these folders, also through symbolic links."""
     written = Path(os.path.normpath(path))
     if not any(written.is_relative_to(root) for root in roots):
         return True

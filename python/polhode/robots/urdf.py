@@ -31,7 +31,7 @@ _MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
 
 class LinkReader(NamedTuple):
-    """How a format says what a link has.
+    """Reader of links: how a format states their inertia and shapes.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class LinkReader(NamedTuple):
     def read(
         self, element: Element, sources: Sources, folder: Path, prefix: str, *, inferred: bool = False
     ) -> Link:
-        """Read a link; what is wrong with its numbers is kept for the verdict."""
+        """Read a link; faults of its numbers are stored for the verdict."""
         inertial: Inertial | None = None
         shapes: tuple[Shape, ...] = ()
         problem = ""
@@ -95,7 +95,7 @@ def links(
 
 
 def _oddities(link: Element, met: set[str]) -> Iterator[str]:
-    """Return what is written for a link and not read; `met` are the names of the links before it."""
+    """Return notes on content of a link that is not read; `met` are the names of the links before it."""
     name = link.attributes.get("name", "")
     if name in met:
         yield f"{link.where}: link {name!r} again; parsers refuse two links of one name: rename one"

@@ -123,7 +123,7 @@ class Verdict(NamedTuple):
 def judge(
     robot: Robot, geometry: GeometryReader, density: float | None = None, mass: float | None = None
 ) -> list[Verdict]:
-    """Judge every link.
+    """Check every link.
 
     Parameters
     ----------
@@ -157,7 +157,7 @@ def judge(
 
 
 def has_own_tensor(link: Link) -> bool:
-    """Return whether a tensor may have been measured: a body has it, and it is no placeholder."""
+    """Return whether a tensor may have been measured: it is possible, and it is no placeholder."""
     declared = link.inertial
     if declared is None or link.defaults or _isotropic(declared.inertia) is not None:
         return False
@@ -193,7 +193,7 @@ def _has_mass(link: Link, geometry: Geometry) -> bool:
 
 
 def _has_spread(link: Link, geometry: Geometry) -> bool:
-    """Return whether a body has its tensor, with three moments above 0: whatever is added keeps them so."""
+    """Return whether a tensor is possible, with three moments above 0: it stays so if matter is added."""
     body = geometry.body
     try:
         if link.inertial is not None:
@@ -213,7 +213,7 @@ def _is_point(declared: Inertial) -> bool:
 
 
 def _reach(robot: Robot, geometry: Sequence[Geometry]) -> float:
-    """Return how far the robot reaches at most, end to end, by its joints and the shapes that were read."""
+    """Return the largest extent of the robot, by its joints and the shapes that were read."""
     joints = sum(link.reach for link in robot.links)
     shapes = (
         float(np.linalg.norm(each.high - each.low))
@@ -240,7 +240,7 @@ def _isotropic(tensor: Floats) -> float | None:
 
 
 class _Judging(NamedTuple):
-    """What the verdict of a link depends on besides the link."""
+    """Data for the verdict of a link besides the link itself."""
 
     geometry: GeometryReader
     format: str
@@ -334,7 +334,7 @@ class _Judging(NamedTuple):
         own: RigidBody | None,
         factor: float | None,
     ) -> tuple[Word, str]:
-        """Say which law fails, the plainest first."""
+        """Return the first law that fails, in the order from simple to complex."""
         try:
             body = RigidBody(declared.mass, declared.inertia, declared.center_of_mass)
         except InvalidInertiaError as error:  # its remedies are those of Python's arguments
@@ -388,7 +388,7 @@ def _fill_masses(
     density: float | None,
     mass: float | None,
 ) -> list[Verdict]:
-    """Return links whose file says no mass what their shapes have, of that density or that mass together."""
+    """Compute mass and inertia of links without a mass from their shapes, by a density or a common mass."""
     if density is None and mass is None:
         return verdicts
     without = {
@@ -445,7 +445,7 @@ def _compare_with_shape(factor: float | None, geometry: Geometry) -> str:
 
 
 def _better(declared: Inertial, own: RigidBody | None, word: Word) -> Inertial | None:
-    """Find what to declare instead."""
+    """Find better values for the declaration."""
     if own is not None:
         return Inertial(declared.mass, own.center_of_mass, own.inertia)
     if word == "impossible" and declared.mass > 0.0:
@@ -473,7 +473,7 @@ def _describe_refusal(moment: float, least: float) -> str:
 
 
 def _round_inertial(found: Inertial) -> Inertial:
-    """Round to nine digits where those are clear of the edge of what a body can have; else move it inside."""
+    """Round to nine digits if the rounded tensor is possible; else move it inside the possible ones."""
     rounded = Inertial(found.mass, _nine(found.center_of_mass), _nine(found.inertia))
     if inside_edge(rounded.inertia) is rounded.inertia:
         return rounded
@@ -493,7 +493,7 @@ _FREE: Final = ("floating", "free")
 
 
 class Standing(NamedTuple):
-    """How a link stands in its robot.
+    """Role of a link in its robot.
 
     Attributes
     ----------
@@ -538,7 +538,7 @@ class _Group:
 
 
 def standings(robot: Robot, has_mass: Sequence[bool], has_spread: Sequence[bool]) -> list[Standing]:
-    """Describe for every link whether it can move and what carries mass there.
+    """For each link: find whether it can move, and which links below it have mass.
 
     Parameters
     ----------

@@ -141,7 +141,7 @@ def angular_momentum(
 
 
 def torque(inertia: Any = None, omega: Any = None, angular_acceleration: Any = None) -> Any:
-    """Euler's equations for the torque: ``N = I ω̇ + ω × I ω``.
+    """Return Euler's equations for the torque: ``N = I ω̇ + ω × I ω``.
 
     Parameters
     ----------

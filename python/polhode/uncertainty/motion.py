@@ -1,4 +1,4 @@
-"""Uncertainty of motions: of the states of a run, and of what follows from a free motion."""
+"""Uncertainty of motions: of the states of a run, and of the results of a free motion."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ __all__ = [
 
 
 def runs_from_zero(run: Trajectory) -> list[tuple[Trajectory, Places, Places]]:
-    """Return runs of a closed form from t = 0, forwards and backwards, which meet all times of this one.
+    """Return runs of a closed form from t = 0, forwards and backwards, with all times of this one.
 
     With each: which of the times, flat, and their places in the run.
 
@@ -114,7 +114,7 @@ class StateSigma(_StateSigma):
 
 
 def state_covariance(self: Trajectory) -> Floats | None:
-    """Compute what :attr:`polhode.Trajectory.covariance` holds."""
+    """Compute :attr:`polhode.Trajectory.covariance`."""
     forms, _ = _forms(self)
     if forms is None:
         return None
@@ -124,7 +124,7 @@ def state_covariance(self: Trajectory) -> Floats | None:
 
 
 def state_sigma(self: Trajectory) -> StateSigma | None:
-    """Return standard deviations of attitude and angular velocity, shape (..., T, 3) each, or None."""
+    """Compute the standard deviations of attitude and angular velocity, shape (..., T, 3) each, or None."""
     found = self.covariance
     if found is None:
         return None
@@ -173,7 +173,7 @@ def spin_covariance(self: Trajectory, frame: Literal["space", "body"]) -> Floats
 
 
 def _of_carried(self: Trajectory) -> tuple[Floats, Floats]:
-    """Return the derivatives of the momentum carried along by ω and by the states; it is linear in both."""
+    """Return the derivatives, by ω and by the states, of the momentum of wheels; it is linear in both."""
     load = self._acting("covariance")
     assert load is not None
     stack = self.omega.shape[:-2]
@@ -321,7 +321,7 @@ class StateLinear(NamedTuple):
 
 
 def state_linear(run: Trajectory) -> StateLinear:
-    """Describe at which times the sigmas of an uncertain motion are linear enough.
+    """Find at which times the first order is enough for the sigmas of an uncertain motion.
 
     Runs of 256 neighbours, along random directions in the space of what is uncertain, show the terms of
     second and third order. They are run by the defaults of :meth:`polhode.RigidBody.simulate`.
@@ -396,7 +396,7 @@ def _row(run: Trajectory, stack: tuple[int, ...], row: int) -> NDArray[np.bool_]
 
 
 def _take_row(many: Any, stack: tuple[int, ...], row: int) -> Any:
-    """Take what a row has of a stack of bodies or loads."""
+    """Return the element of a stack of bodies or loads that belongs to a row."""
     if many is None or not many.shape:
         return many
     return many[np.unravel_index(rows_of(many.shape, stack)[row], many.shape)]
@@ -590,7 +590,7 @@ class FromPeriods(NamedTuple):
 
     @property
     def uncertain(self) -> list[_core.Uncertain]:
-        """Those of the two periods that are uncertain."""
+        """The uncertain ones of the two periods."""
         return [one for one in self[:2] if isinstance(one, _core.Uncertain)]
 
     def motion(self, body: _core.RigidBody, periods: Any) -> FreeMotion:
@@ -604,7 +604,7 @@ class FromPeriods(NamedTuple):
 
 @dataclass(frozen=True)
 class _Attitude:
-    """Quaternions as what `Uncertain` takes for rotations."""
+    """Quaternions in the form that `Uncertain` accepts for rotations."""
 
     quaternion: Any
 
@@ -615,7 +615,7 @@ class _Attitude:
 def start_from_periods(
     motion: FreeMotion, arguments: dict[str, Any]
 ) -> tuple[FromPeriods, tuple[_core.Uncertain, _core.Uncertain]]:
-    """Solve for the start of a motion with given periods anew along each source of uncertainty.
+    """Solve for the start of a motion with given periods, once for each source of uncertainty.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How probable it is that an axis keeps its rank, and that a free body keeps its mode."""
+"""Probabilities that an axis keeps its rank, and that a free body keeps its mode."""
 
 from __future__ import annotations
 

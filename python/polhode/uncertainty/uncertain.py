@@ -1,4 +1,4 @@
-"""Uncertain numbers: several as one object, and those of the package `uncertainties`, in and out."""
+"""Uncertain numbers: several as one object, and conversion from and to the package `uncertainties`."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def joined(values: Any) -> Any:
 
 
 class _Number:
-    """A number with its change by one standard deviation of each variable; to numpy an object, no list."""
+    """A number with its change by one standard deviation of each variable; NumPy treats it as one object."""
 
     def __init__(self, value: Any, terms: dict[tuple[int, int], float]) -> None:
         self.value = float(value)
@@ -85,7 +85,7 @@ class _Number:
 
 
 def _holds(values: Any, kinds: tuple[type, ...]) -> bool:
-    """Whether there is one: nothing is asked of other objects, which may call the package anew."""
+    """Whether an uncertain number is among the values; other objects are not touched."""
     rest: list[Any] = [values]
     seen: dict[int, Any] = {}  # a list may hold itself
     while rest:
@@ -139,7 +139,7 @@ _MET: Final[dict[tuple[int, int], Any]] = {}
 
 
 class InertialParameters(NamedTuple):
-    """The numbers of a body, as numbers of the package *uncertainties*.
+    """Inertial parameters of a body, as numbers of the package *uncertainties*.
 
     Attributes
     ----------
@@ -157,13 +157,13 @@ class InertialParameters(NamedTuple):
 
 
 def ufloat_kinds() -> tuple[type, ...]:
-    """Return the class of their numbers, where somebody has loaded the package."""
+    """Return the class of numbers of `uncertainties`, if the package is loaded."""
     module = sys.modules.get("uncertainties")
     return () if module is None else (module.UFloat,)
 
 
 def ufloat_terms(number: Any) -> dict[tuple[int, int], float]:
-    """Return the change of one of their numbers by one standard deviation of each of our variables.
+    """Return the change of a number of `uncertainties` by one standard deviation of each variable of polhode.
 
     What depends on one variable there depends on one variable here, in all calls.
     """
@@ -181,7 +181,7 @@ def ufloat_terms(number: Any) -> dict[tuple[int, int], float]:
 
 
 def _words(variable: Any) -> tuple[int, int]:
-    """Our variable for one of theirs."""
+    """Return the variable of polhode for a variable of `uncertainties`."""
     if variable not in _WORDS:
         high, low = _core.Uncertain(0.0, 1.0)._forms()[0][0][0]
         _WORDS[variable] = (high, low)
@@ -248,7 +248,7 @@ def to_ufloats(body: RigidBody) -> InertialParameters:
 
 
 def _variable(words: tuple[int, int], ufloat: Callable[[float, float], Any]) -> Any:
-    """Their variable for one of ours."""
+    """Return the variable of `uncertainties` for a variable of polhode."""
     if words not in _MET:
         variable = ufloat(0.0, 1.0)
         _MET[words] = variable

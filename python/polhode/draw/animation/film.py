@@ -127,7 +127,7 @@ def _write_mp4(pictures: Iterator[Picture], file: Path, picture: Picture, progra
 
 
 def _end(writer: Any, file: Path, error: BaseException | None = None) -> None:
-    """Wait for ffmpeg to end; an error with its own words where it failed."""
+    """Wait for ffmpeg to end; if it failed, raise an error with its message."""
     try:
         writer.finish()
     except subprocess.CalledProcessError as failed:
@@ -229,12 +229,12 @@ class Picture:
         self._ax.patch.set_alpha(0.0)
 
     def pixels(self) -> NDArray[np.uint8]:
-        """Draw and give red, green, blue and opacity, shape (height, width, 4)."""
+        """Draw, and return red, green, blue and opacity, shape (height, width, 4)."""
         self._canvas.draw()
         return np.array(self._canvas.buffer_rgba())
 
     def show(self, frame: int) -> None:
-        """Put everything where it is in a frame."""
+        """Move everything to its place in a frame."""
         self._ax.clear()
         view = toward_viewer(self._ax)
         show_around(self._ax, np.zeros(3), 0.95)
@@ -280,7 +280,7 @@ class Picture:
         self._ax.plot(*tips.T, color=OMEGA_COLOR, alpha=0.5, linewidth=1.0, zorder=3)
 
     def _draw_arrows(self, frame: int, to_space: Floats) -> list[tuple[Floats, str, str]]:
-        """Draw h, L and ω; give their tips, colours and names."""
+        """Draw h, L and ω; return their tips, colours and names."""
         scene = self._scene
         tips = [(scene.path[scene.sample[frame]] / longest(scene.path), OMEGA_COLOR, "ω")]
         strongest = longest(scene.momentum)
@@ -335,7 +335,7 @@ class Picture:
         return seen
 
     def _write_title(self) -> float:
-        """Write the title, in as many lines as it needs; give the height that it takes."""
+        """Write the title, in as many lines as it needs; return its height."""
         margin, line = self._line(_TEXT), self._line(_TITLE)
         room, most = self._size[0] - margin, max(1, int(_TITLE_PART * self._size[1] / line))
         lines: list[str] = []
@@ -349,7 +349,7 @@ class Picture:
         return 0.35 * margin + len(lines) * line
 
     def _write_foot(self) -> float:
-        """Make room for the time and the speeds of wheels, in columns; give the height that they take."""
+        """Make room for the time and the speeds of wheels, in columns; return their height."""
         scene, line = self._scene, self._line(_TEXT)
         texts = [
             max((disc.words(k, factor, scene.time_unit) for k in range(len(scene.t))), key=len)
@@ -400,7 +400,7 @@ _DISC_RING: Final = np.linspace(0.0, 2.0 * np.pi, 49)
 def draw_disc(
     ax: Any, disc: Disc, to_space: Floats, scale: float, turned: float | None, view: Floats
 ) -> bool:
-    """Draw a wheel at an attitude; tell whether it is on the near side of the body.
+    """Draw a wheel at an attitude; return whether it is on the near side of the body.
 
     Parameters
     ----------
@@ -461,7 +461,7 @@ _APART: Final = 0.1
 
 @dataclass(frozen=True)
 class Name:
-    """What is written beside a point of a picture.
+    """A text beside a point of a picture.
 
     Attributes
     ----------
@@ -482,7 +482,7 @@ class Name:
 
 
 def place_names(names: Sequence[Name], low: Floats, high: Floats) -> list[tuple[Name, Floats]]:
-    """Find the middle of each name; one that has no room of its own between two corners is left out.
+    """Find a free place for each name between two corners; a name without room is left out.
 
     Parameters
     ----------

@@ -48,7 +48,7 @@ _SHORT: Final = (1e-30, 1e30)
 
 
 def page(scene: Scene) -> str:
-    """Write the page: what is in the folder ``page`` as one text, with the motion in it.
+    """Write the page: the files of the folder ``page`` and the motion, as one text.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def _start(scene: Scene) -> dict[str, list[float]] | None:
 
 
 def _surface(surface: Surface) -> dict[str, Any]:
-    """Return what the path in the body lies on: the kind of motion, marks and curves of a gyrostat."""
+    """Return the surface of the path in the body: the kind of motion, marks and curves of a gyrostat."""
     return {
         "kind": surface.kind,
         "momentum": None if surface.momentum is None else surface.momentum.tolist(),
@@ -125,7 +125,7 @@ def _surface(surface: Surface) -> dict[str, Any]:
 
 
 def _in_reach(vectors: Floats) -> tuple[Floats, float]:
-    """Return vectors as short floats hold them, and the unit that they are counted in: a power of two."""
+    """Return vectors in a unit in which single precision holds them, and this unit: a power of two."""
     size = longest(vectors)
     unit = 1.0 if _SHORT[0] < size < _SHORT[1] else float(2.0 ** np.floor(np.log2(size)))
     return vectors / unit, unit

@@ -1,4 +1,4 @@
-"""Axes to draw in, how they look, and surfaces with the curves on them in the right order."""
+"""Axes and their style, and surfaces that hide the curves behind them."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def _check_axes(ax: _AxesArgument) -> _AxesArgument:
 
 
 def tidy(ax: Axes) -> Axes:
-    """Return axes over time the grid and the open frame that all of them have."""
+    """Set the grid and the open frame that all axes over time have."""
     ax.margins(x=0.0)
     ax.grid(color="0.9", linewidth=0.6)
     ax.set_axisbelow(True)
@@ -125,7 +125,7 @@ def in_lines(ax: Axes, label: str) -> str:
 
 
 def show_around(ax: Axes3D, middle: Any, half: float) -> None:
-    """Show the cube around a point that reaches so far along every axis."""
+    """Set the limits of all axes to a cube around a point, with this half side."""
     for name, value in zip("xyz", middle, strict=True):
         getattr(ax, f"set_{name}lim")(value - half, value + half)
 
@@ -158,7 +158,7 @@ def solid_ellipsoid(ax: Axes3D, semi_axes: Floats, axes: Floats, center: Floats,
 
 
 def translucent(surface: Any, opacity: float) -> None:
-    """Let what is behind a surface of many pieces be seen through it.
+    """Make a surface of many pieces translucent.
 
     The pieces are drawn opaque, and their picture is made translucent as a whole. Pieces that are translucent
     one by one cover each other along their edges, which is seen as a grid.

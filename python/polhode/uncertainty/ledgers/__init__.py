@@ -240,7 +240,7 @@ def _edges(table: Table, tree: Any) -> tuple[list[str], list[str]]:
 
 
 def _refuse_infinite(tree: Tree, numbers: tuple[Floats, ...], what: str) -> None:
-    """Name the lowest node whose numbers are beyond the range of floats; so are those of all above it."""
+    """Refuse numbers beyond the range of floats; the error names the lowest node that has them."""
     if all(np.isfinite(rows[:, 0]).all() for rows in numbers):
         return
     bad = np.flatnonzero(~np.isfinite(np.concatenate(numbers)).all(axis=0))
@@ -249,7 +249,7 @@ def _refuse_infinite(tree: Tree, numbers: tuple[Floats, ...], what: str) -> None
 
 
 def _rolled_sum(tree: Tree, amounts: Floats) -> Floats:
-    """Roll up a sum, by place."""
+    """Roll up a sum; the numbers are ordered by place."""
     amounts = np.where(tree.is_leaf, amounts, 0.0)
     for places in reversed(tree.levels[1:]):
         np.add.at(amounts, tree.above[places], amounts[places])

@@ -52,7 +52,7 @@ _ABOUT: Final = ("", "center_of_mass", "com", "origin")
 
 
 class Parts(NamedTuple):
-    """What the table says of its leaves, by row; rows with children hold nothing of use.
+    """Data of the leaves of the table, by row; rows with children are meaningless.
 
     Attributes
     ----------
@@ -257,7 +257,7 @@ def _independent(values: Floats, sigma: Floats) -> Floats:
 
 
 def _check_bodies(values: Floats, leaves: Integers, where: Callable[[int], str], rtol: float | None) -> None:
-    """Let the constructor of bodies judge every part; name the first that it refuses."""
+    """Check every part with the constructor of bodies; the error names the first that it refuses."""
     for start in range(0, len(leaves), _CHUNK):
         some = leaves[start : start + _CHUNK]
         try:

@@ -1,4 +1,4 @@
-"""Pictures of a ledger: who contributes mass, as a sunburst, and who contributes variance, as bars."""
+"""Pictures of a ledger: contributions to the mass as a sunburst, contributions to a variance as bars."""
 
 from __future__ import annotations
 

@@ -195,7 +195,7 @@ def _add_leaves(
 
 
 def groups(above: Integers) -> tuple[Integers, Integers, Integers]:
-    """Return the parents, where the children of each begin, and how many they are."""
+    """Return the parents, the first child of each, and the number of its children."""
     starts = np.flatnonzero(np.diff(above, prepend=-2))
     return above[starts], starts, np.diff(starts, append=len(above))
 
@@ -205,7 +205,7 @@ _ROUNDING: Final = 1e-15
 
 
 class Contributions(NamedTuple):
-    """What each source of error adds to the variance of one number of a node.
+    """Contributions of each source of error to the variance of one number of a node.
 
     Attributes
     ----------
@@ -287,7 +287,7 @@ class Covariances:
         return full
 
     def contributions(self, number: int, row: int) -> Contributions:
-        """Return which part adds what to the variance of one of the ten numbers of the node in a row."""
+        """Return the contributions of the parts to the variance of one of a node's ten numbers."""
         tree, values = self._tree, self._values
         node = int(tree.place[row])
         leaves = np.flatnonzero(tree.below(row) & tree.is_leaf)

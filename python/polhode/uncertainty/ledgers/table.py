@@ -73,7 +73,7 @@ class Table:
         return column in self.columns
 
     def where(self, row: int) -> str:
-        """Name a row."""
+        """Return the name of a row for error messages."""
         place = f"row {row}" if self.lines is None else f"line {self.lines[row]}"
         return f"{self.name}: {place}" if self.name else place
 
@@ -320,7 +320,7 @@ _SHOWN = 8
 
 
 class Tree(NamedTuple):
-    """Who is whose part.
+    """The tree of parts: the parent of each.
 
     Rows are those of the table. Places count through the levels from the root down: within a level the
     children of one parent stand side by side, in the order of their parents.
@@ -373,7 +373,7 @@ class Tree(NamedTuple):
         return depth
 
     def below(self, row: int) -> NDArray[np.bool_]:
-        """Return of each place whether it is the node of this row or below it."""
+        """For each place: return whether it is the node of this row or below it."""
         inside: NDArray[np.bool_] = self.order == row
         for places in self.levels[1:]:
             inside[places] |= inside[self.above[places]]
