@@ -74,7 +74,7 @@ _OF_MODULES: Final = {
         "load": 'read_robot("robot.urdf") reads a file',
         "read": 'read_robot("robot.urdf") reads a file',
         "from_file": 'read_robot("robot.urdf") reads a file',
-        "fix": "fixed(robot, verdicts) makes the bytes of a better file",
+        "fixed": "fix(robot, verdicts) makes the bytes of a better file",
         "validate": "check(robot) is it",
     },
     "polhode.plot": {

@@ -58,7 +58,7 @@ def top_of(trajectory: Trajectory) -> HeavyTop | None:
 
 
 def path_of(motion: HeavyTop) -> str:
-    """Return the kind of path of a top's axis: ``HeavyTop.path``, but ``steady`` if it nods by rounding alone.
+    """Return the kind of path of a top's axis: ``HeavyTop.path``, but ``steady`` if it nods by rounding.
 
     180 degrees are not a float in radians: a top that hangs straight down with them is off by 1e-16, and what
     it draws has cusps of that size.

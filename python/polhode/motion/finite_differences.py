@@ -34,7 +34,7 @@ __all__ = [
 HELD: Final = ("times", "t", "epoch", "target")
 """Arguments of loads that are not varied."""
 AROUND: Final = ("_scheduled", "_anchored")
-"""What is done to a part that was made."""
+"""Operations that wrap the recipe of a part."""
 
 
 def recipes(load: _core.Load | None) -> list[Recipe]:

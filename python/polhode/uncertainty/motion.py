@@ -57,8 +57,8 @@ def runs_from_zero(run: Trajectory) -> list[tuple[Trajectory, Places, Places]]:
     motion = run.uncertain_start
     if motion is None or isinstance(motion, tuple):
         raise ValueError(
-            "covariance: the state at the first time is uncertain by the motion before it, or a load acted "
-            "that a file did not keep; simulate from the start on, or ask uncertainty.propagate"
+            "covariance: the uncertainty of the first state is unknown here, because the motion was resumed or "
+            "its load was not saved; simulate from the original start, or use uncertainty.propagate"
         )
     times, found = np.ravel(run.t), []
     for sense, is_its in ((1.0, times >= 0.0), (-1.0, times < 0.0)):
@@ -246,7 +246,7 @@ def _forms(self: Trajectory) -> tuple[Floats | None, dict[tuple[int, ...], int]]
 
 
 def _forms_from_zero(self: Trajectory) -> tuple[Floats | None, dict[tuple[int, ...], int]]:
-    """Return the same for a motion in closed form, at any times."""
+    """Return the same changes and columns as `_forms`, for a motion in closed form at any times."""
     stack = self.omega.shape[: self.omega.ndim - 1 - self.t.ndim]
     flat = np.zeros(0)
     columns: dict[tuple[int, ...], int] = {}
@@ -341,7 +341,7 @@ def state_linear(run: Trajectory) -> StateLinear:
 
 
 def _row(run: Trajectory, stack: tuple[int, ...], row: int) -> NDArray[np.bool_]:
-    """Return the same for one motion of a stack, shape (T, 6)."""
+    """Find at which times the first order is enough for one motion of a stack, shape (T, 6)."""
     place = np.unravel_index(row, stack)
     body, load = _take_row(run.body, stack, row), _take_row(run.load, stack, row)
     start = run.uncertain_start
