@@ -50,7 +50,7 @@ def _round_for_repr(value: Any) -> Any:
 
 _DIGITS = 7
 _ROUNDING = 1e-15
-"""Of the value: a sigma below it is what rounding left of zero."""
+"""A sigma below this fraction of the value is zero with rounding errors."""
 _LARGE = 1e7
 _SMALL = 1e-4
 

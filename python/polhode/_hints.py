@@ -139,7 +139,7 @@ _OF_MODULES: Final = {
         "polyline": "RigidBody.from_curve takes points",
     },
 }
-"""What people look for in a module, and what they find instead."""
+"""Names that people look for in a module, with the text that names the right one."""
 
 _OF_CLASSES: Final = {
     "Trajectory": {
@@ -200,7 +200,7 @@ _OF_CLASSES: Final = {
         **dict.fromkeys(("load", "read"), "RigidBody.from_file(path) reads a file"),
     },
 }
-"""What people look for in an object, and what they find instead; FreeMotion stands for all closed forms."""
+"""Names that people look for in an object, with the text of the right one; FreeMotion: all closed forms."""
 
 _OTHER_ARGUMENTS: Final = {
     "center_of_mass": ("center", "centre", "centre_of_mass", "com", "cog", "center_of_gravity"),
@@ -229,7 +229,7 @@ _OTHER_ARGUMENTS: Final = {
     "velocity": ("v",),
     "t": ("time", "times"),
 }
-"""Names under which people look for an argument, by the argument."""
+"""Other names of an argument, by the argument."""
 
 _INSTEAD: Final = {
     "diameter": "half of it is the radius",
@@ -261,7 +261,7 @@ _MADE_BY: Final = {
     ("RigidBody", "Trajectory"): "trajectory.body is its body",
     ("RigidBody", "FreeMotion"): "motion.body is its body",
 }
-"""How something of a kind is made of what was given instead of it."""
+"""Conversions: by the expected and the given class."""
 
 
 class Hinting(type):

@@ -39,7 +39,7 @@ __all__ = ["Flyby", "Tumble", "clones", "flyby"]
 F = TypeVar("F", bound="Callable[..., Any]")
 
 ROUNDING: Final = 1e-9
-"""By so much a parabola that was made from a position and a velocity may be an ellipse."""
+"""Tolerance for a parabola: with rounding errors of its state it may be an ellipse."""
 
 
 def _names_modes(function: F) -> F:

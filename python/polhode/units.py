@@ -97,7 +97,7 @@ _OWN_UNITS: Final = (
     "pcf = pound / foot ** 3",
     "pci = pound / inch ** 3",
 )
-"""What drawings and printouts of the desk say, beside what pint knows."""
+"""Units of drawings and printouts, besides those of pint."""
 _COUNTS_ANGLES: Final = ("rad", "rad/s")
 """A unit that counts no angle, as ``min^-1``, is no unit of these: it may mean turns as well as radians."""
 _EXAMPLES: Final = {

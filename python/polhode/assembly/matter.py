@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 __all__ = ["SAVED", "Matter", "body_of_part", "kind_of"]
 
 SAVED: Final = (".json", ".npz")
-"""Of bodies that ``RigidBody.save`` wrote, and of reports."""
+"""Suffixes of saved bodies and of reports."""
 _SHAPES: Final = {name: getattr(room, name) for room in (solids, laminae, rods) for name in room.__all__}
 _PARAMETERS: Final = {
     name: [key for key in inspect.signature(shape).parameters if key != "degrees"]  # numbers have units

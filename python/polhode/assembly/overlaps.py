@@ -1,8 +1,8 @@
 """Where the parts of an assembly share space, so that matter counts twice.
 
-Compared are solids and closed meshes. What two spheres share has a closed form; else manifold3d (extra
-``union``) computes it from the triangles of both. Round solids are taken with two numbers of facets, and the
-volume is extrapolated to smooth ones: their facets differ by the square of their size.
+Solids and closed meshes are compared. The volume that two spheres share has a closed form; else manifold3d
+(extra ``union``) computes it from the triangles of both. Round solids are taken with two numbers of facets,
+and the volume is extrapolated to smooth ones: their facets differ by the square of their size.
 """
 
 from __future__ import annotations
@@ -37,14 +37,14 @@ __all__ = ["Form", "Instance", "find_overlaps", "overlap_notes"]
 _FINE, _COARSE = 64, 32
 """Facets around a round solid."""
 _LITTLE: Final = 1e-3
-"""What is shared by less than this, of the smaller part, is contact."""
+"""A shared volume below this fraction of the smaller part is contact."""
 _MOST_PARTS: Final = 3000
 _MOST_PAIRS: Final = 20_000
 _MOST_SURFACES: Final = 300
-"""Of solids, which are made when something is near."""
+"""Largest number of surfaces of solids, which are made only for near parts."""
 _MOST_SIDES: Final = 1000
 _MOST_TRIANGLES: Final = 400_000
-"""Of the parts that are compared, counted once for each pair."""
+"""Largest number of triangles of the compared parts, counted once for each pair."""
 _MOST_TOLD: Final = 8
 _FLAT: Final = ("box", "cube", "prism", "pyramid", "tetrahedron", "wedge")
 

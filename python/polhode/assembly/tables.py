@@ -40,13 +40,13 @@ __all__ = [
 
 TOP: Final = ("name", "comment", "length_unit", "part")
 KINDS: Final = ("solid", "file", "assembly", "inertia")
-"""One of them says what a part is."""
+"""Keys that define a part; exactly one is needed."""
 REPEATED: Final = ("count", "step", "turn")
 COMMON: Final = ("name", "comment", *KINDS, "length_unit", "position", "rotation", *REPEATED)
 FILE: Final = ("mass", "density", "weld", "closure", "orient", "union", "repair", "index_base")
 _MOST_NAMES: Final = 30
 PRINTED: Final = ("mass", "com", "tensor", "products", "about", "rtol")
-"""Of `inertia`, as CAD programs print it."""
+"""Keys of `inertia`, as CAD programs print it."""
 
 
 def check_keys(table: Mapping[str, Any], known: Collection[str], where: str) -> None:
@@ -193,9 +193,9 @@ _FORMS: Final = ("axis", "sequence", "quaternion_xyzw", "matrix")
 _ANGLES: Final = ("degrees", "radians")
 _EXAMPLE: Final = "rotation = { axis = [0, 0, 1], degrees = 90 }"
 _OFF_UNITY: Final = 1e-6
-"""By which a quaternion or a matrix of few digits may be off; it is made exact."""
+"""Tolerance for a quaternion or a matrix of few digits; it is then normalized."""
 MOST_COPIES: Final = 100_000
-"""Of one part."""
+"""Largest number of copies of one part."""
 
 
 class Place(NamedTuple):

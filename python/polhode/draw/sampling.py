@@ -50,11 +50,11 @@ __all__ = [
 ]
 
 TURN: Final = float(np.deg2rad(20.0))
-"""From one picture to the next a body turns by this at most, where the times are ours to choose."""
+"""Largest turn of a body between two pictures, if the times can be chosen."""
 COARSE: Final = float(np.deg2rad(30.0))
-"""Past this between two pictures the user is told; past half a turn nothing is drawn."""
+"""Beyond this turn between two pictures a note is made; beyond half a turn nothing is drawn."""
 CHORD: Final = 0.002
-"""How deep a chord of a drawn curve may cut, of the size of what it lies on: half a pixel."""
+"""Largest distance of a chord from its curve, relative to the size of the surface: half a pixel."""
 MOST: Final = 12_000
 """Points of a curve that a browser still draws smoothly."""
 _DRAWN: Final = 50_000
@@ -63,7 +63,7 @@ _PER_NUTATION: Final = 24
 _PER_PERIOD: Final = 1440
 """States in which the fastest of a gyrostat is looked for."""
 _GROWTHS: Final = 40.0
-"""In so many times of growth by e a departure goes from rounding to its full size."""
+"""Number of e-folding times in which a departure grows from rounding to its full size."""
 
 
 class Span(NamedTuple):
@@ -275,7 +275,7 @@ SECONDS: Final = {
     "ns": 1e-9, "µs": 1e-6, "us": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0, "d": 86400.0,
     "day": 86400.0, "days": 86400.0, "yr": 31557600.0,
 }  # fmt: skip
-"""In the units of time whose length a page knows."""
+"""Seconds in each unit of time that a page knows."""
 _REAL: Final = (2.0, 300.0)
 """Seconds of a motion that is shown in real time."""
 _FINEST: Final = np.array([1.0, 2.0, 5.0, 10.0])
@@ -313,7 +313,7 @@ def pace(length: float, wished: float, least: float, time_unit: str) -> float:
 
 
 _SECONDS: Final = 10.0
-"""That a motion takes on the screen at least."""
+"""Shortest time of a motion on the screen, in seconds."""
 RATE: Final = 30.0
 """Pictures a second, of a film and of a browser on a slow machine."""
 GIF_RATE: Final = 50.0
@@ -321,10 +321,10 @@ GIF_RATE: Final = 50.0
 _FILM: Final = 1800
 """Pictures of a film: a minute of it, and a few minutes of drawing."""
 _PAGE_TURN: Final = float(np.deg2rad(40.0))
-"""From one frame of a page to the next, between which it interpolates, on the turns and on ω."""
+"""Largest turn between two frames of a page, which interpolates between them."""
 _PAGE_CHORD: Final = 0.02
 _PAGE_FRAMES: Final = 3600
-"""Of a page: 48 bytes each."""
+"""Largest number of frames of a page, of 48 bytes each."""
 _BETWEEN: Final = 20
 """Points of the path of ω for each picture of a film, at most."""
 

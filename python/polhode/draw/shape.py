@@ -50,15 +50,15 @@ __all__ = [
 BOX_TINTS: NDArray[np.int64] = np.array(
     [(158, 197, 224), (110, 160, 200), (240, 190, 150), (222, 150, 96), (158, 214, 196), (98, 178, 150)]
 )
-"""Of the faces toward +x, −x, +y, −y, +z, −z."""
+"""Colours of the faces toward +x, −x, +y, −y, +z, −z."""
 _PLAIN = (199, 212, 230)
 _PART_TINTS = ((158, 197, 224), (240, 190, 150), (158, 214, 196), (214, 186, 214), (226, 214, 150))
 _SHADE = 0.84
-"""Of a colour, for the dark quarters of what is round."""
+"""Factor of a colour for the dark quarters of round shapes."""
 _PIECES = 24
-"""Of the size of a mesh: triangles are cut to that, for their order by depth."""
+"""Largest edges are the size of a mesh divided by this: triangles are sorted by depth."""
 _PARTS = 12
-"""Of the size of a body of parts."""
+"""The same for a body of parts."""
 _MOST = 10_000
 """Pieces that a browser still turns smoothly."""
 _FAR = 100.0
@@ -265,7 +265,7 @@ def _make_shape(
 
 
 _BY_PARTS: Final = ((3, 40), (12, 24), (48, 12))
-"""Up to so many parts a full circle has so many segments; of more parts eight."""
+"""Largest number of parts, and the segments of a full circle for it; eight for more parts."""
 _MARKED: Final = frozenset(
     {"cylinder", "cone", "frustum", "tube", "sphere", "hollow_sphere", "hemisphere", "capsule", "torus"}
     | {"ellipsoid", "disk", "annulus", "ellipse", "ring"}
@@ -274,15 +274,15 @@ _MARKED: Final = frozenset(
 _HOLLOW: Final = frozenset(
     {"mesh", "surface", "wire", "particles", "tube", "torus", "annulus", "polygon", "arc"}
 )
-"""Those that can hide a part of themselves."""
+"""Shapes that can hide a part of themselves."""
 _GIVEN: Final = frozenset({"mesh", "surface", "wire", "particles", "inertia"})
-"""Those whose surface has an area."""
+"""Shapes whose surface has an area."""
 _THICK: Final = 0.01
-"""Of the length of a line: how thick it is drawn."""
+"""Thickness of a line relative to its length."""
 _LINE: Final = 1e-12
 """Twice the area of the largest triangle, beside the square of the size, of what is a line."""
 _ROUNDING: Final = 1e-12
-"""Of the places of parts that are the same."""
+"""Tolerance of the places of equal parts."""
 
 
 @dataclass(frozen=True)

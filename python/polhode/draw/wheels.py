@@ -23,15 +23,15 @@ if TYPE_CHECKING:
 __all__ = ["RINGS", "SPOKE", "SPOKES", "Disc", "Spin", "discs_of", "slowdown"]
 
 _RADIUS: Final = 0.2
-"""Of a disc, in lengths of the body from the point of reference; not to scale: no wheel tells its size."""
+"""Radius of a disc, relative to the length of the body; not to scale, because the size is unknown."""
 _HALF: Final = 0.035
-"""Half its thickness, in the same."""
+"""Half the thickness of a disc, in the same unit."""
 SPOKES: Final = 6
-"""Of a disc, beside the one that is broad and marks how far it has turned."""
+"""Number of narrow spokes, beside the broad one that shows the angle."""
 SPOKE: Final = 0.86
-"""Its length, of the radius."""
+"""Length of a spoke, relative to the radius."""
 RINGS: Final = (0.3, 0.55, 0.8)
-"""In place of spokes, of a disc whose angle is not known."""
+"""Radii of the rings on a disc whose angle is unknown."""
 _BESIDE: Final = 0.95
 """The cosine between axes above which discs stand one behind the other."""
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)

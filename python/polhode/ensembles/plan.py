@@ -59,12 +59,12 @@ class Plan:
     """Body, load and the state at the start; of states of the load its names as ``states.NAME``."""
     t: Floats
     options: dict[str, Any]
-    """Of `simulate`."""
+    """Options of `simulate`."""
     n: int
     seed: int
     chunk: int
     outputs: dict[str, int]
-    """Which arrays of the trajectory are kept, and their components."""
+    """Arrays of the trajectory in the results, with the number of their components."""
     raises: bool
     """Whether a member that fails ends the ensemble."""
 
@@ -261,7 +261,7 @@ class Make:
 
 
 Node: TypeAlias = Draw | Make | Any
-"""What is neither drawn nor made is the same for all members."""
+"""A value without distributions is the same for all members."""
 
 
 def resolve_draws(arguments: Mapping[str, Any], seed: int) -> dict[str, Node]:

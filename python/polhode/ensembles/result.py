@@ -40,7 +40,7 @@ _STATE: Final = 120
 """Bytes of a state while it is integrated and handed over, beside the copies that are kept; measured."""
 _MEMBER: Final = 500
 _MOST_CHUNKS: Final = 2**24
-"""Their numbers are kept in memory where some of them may be done."""
+"""Largest number of chunks whose numbers are kept in memory."""
 _MADE: Final = 2000
 """Bytes of a body or a load that a member has for itself."""
 

@@ -31,7 +31,7 @@ REFUSED: Final = "refused"
 """The status of a member that has no motion: its numbers make no body, load or state."""
 FAILED: Final = ("failed", REFUSED)
 ROW: Final = re.compile(r"row [\d, ()]+: ")
-"""How errors of stacks name a row of theirs, which is none of the ensemble's."""
+"""Row in the error of a stack; it is not the number of the member."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,11 +40,11 @@ class Run:
 
     inputs: Inputs
     rows: Rows
-    """Those that were run, of these members."""
+    """The members that were run."""
     trajectories: list[Trajectory]
-    """Of all of them, or one for each."""
+    """One trajectory of all of them, or one for each."""
     faults: dict[int, str]
-    """Why the others were not, by their numbers in the ensemble."""
+    """Errors of the other members, by their numbers in the ensemble."""
 
     @property
     def status(self) -> NDArray[np.str_]:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["choose_method", "outputs_of", "trial_of"]
 
 _PROBED: Final = 16
-"""If so many members cannot begin, the call is wrong rather than their luck."""
+"""If this many members cannot start, the call is wrong, and not only their random numbers."""
 _STATES: Final = ("omega", "quaternion", "position", "velocity")
 _CHOSEN: Final = ("exact", "taylor")
 """The methods of which "auto" takes the first that can serve; the next can always."""

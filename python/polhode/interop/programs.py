@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 __all__ = ["LEAST_MOMENT", "PROGRAMS", "inside_edge", "mjcf_tensor", "to_text"]
 
 LEAST_MOMENT: Final = {"MJCF": 1e-15, "URDF": 1e-14}
-"""In kg m^2: up to the first (mjMINVAL, for masses in kg too) MuJoCo refuses moments of what moves; up to the
-second it refuses eigenvalues of tensors that are not in principal axes, as in every URDF."""
+"""Limits in kg m^2. Up to the first (mjMINVAL, for masses in kg too) MuJoCo refuses moments of moving bodies;
+up to the second it refuses eigenvalues of tensors that are not in principal axes, as in every URDF."""
 # Of the trace. MuJoCo diagonalises, turns and joins tensors to 4 ε, in 24,000 random laminae.
 _CLEAR: Final = 5.0 * 2.0**-52
 _INSIDE: Final = 8.0 * 2.0**-52

@@ -27,7 +27,7 @@ SYMBOLS: Final = tuple(
     Cn Nh Fl Mc Lv Ts Og
     """.split()  # noqa: SIM905
 )
-"""Of all elements, by atomic number from 1; files are read with them where no periodictable is installed."""
+"""Symbols of all elements, by atomic number from 1; used to read files without periodictable."""
 
 _LABEL: Final = re.compile(r"(?P<mass_number>[0-9]{1,9})?(?P<symbol>[A-Za-z]{1,2})|(?P<number>[0-9]{1,9})")
 _HYDROGEN: Final = {"D": 2, "T": 3}

@@ -129,7 +129,7 @@ def _with_load(made_by: str, named: dict[str, Any], name: str, changed: Changed)
 
 
 STEP: Final = 2e-3
-"""Relative to what counts as large of a number."""
+"""Step relative to the scale of a number."""
 
 
 class _Scheme(NamedTuple):
@@ -150,18 +150,18 @@ FORWARD: Final = _Scheme(
     np.array([-147.0, 360.0, -450.0, 400.0, -225.0, 72.0, -10.0]) / 60.0,
     np.array([-25.0, 48.0, -36.0, 16.0, -3.0, 0.0, 0.0]) / 12.0,
 )
-"""For what must not be negative, such as friction, and is zero."""
+"""One-sided differences for a number that is zero and must not be negative, such as friction."""
 SETTLED: Final = 1e-5
-"""What the two may differ by, relative to the largest derivative by the same number."""
+"""Largest difference of the two orders, relative to the largest derivative by the same number."""
 NOISE: Final = 1e-9
-"""What may be wrong in a motion, relative to what is large in it."""
+"""Error of a motion, relative to its scale."""
 RTOL: Final = 1e-13
 LEAST: Final = 1e-90
 """The first step that is tried for a number that is zero."""
 FARTHEST: Final = 1e6
-"""How much longer the next step is that is tried, at most."""
+"""Largest ratio of the next trial step to the last one."""
 MANY: Final = 1000
-"""With a step that is tried, how many times as many steps of integration a motion may take as without."""
+"""Largest ratio of the numbers of integration steps with and without the trial step."""
 
 
 class _Starts(NamedTuple):

@@ -99,7 +99,7 @@ class Periods(_Periods):
     """
 
     _motion: _core.FreeMotion | None = None
-    """Of an uncertain motion, that motion."""
+    """The motion, if it is uncertain."""
 
     @cached_property
     def sigma(self) -> PeriodsSigma | None:

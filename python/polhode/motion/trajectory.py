@@ -961,8 +961,8 @@ class Trajectory(metaclass=Hinting):
             return self.load
         if "_within" not in self.__dict__:
             raise ValueError(
-                f"{what}: the wheels or dampers of this motion are unknown: the file holds only their angular "
-                "momentum"
+                f"{what}: the wheels or dampers of this motion are unknown: the file holds only their "
+                "angular momentum"
             )
         momentum, free = self._rotor_inside()
         return self._wheels_inside(what, index) if np.any(free) else _core.rotor(momentum)

@@ -337,7 +337,7 @@ class _Reader:
         return Inertial(float(mass), place.position, place.rotation @ tensor @ place.rotation.T)
 
     def _shape(self, member: Member, *, weighs: bool) -> Shape:
-        """Read a geom; where the inertia is taken from it, a hollow one is told."""
+        """Read a geom; add a note if a hollow one defines the inertia."""
         geom, frame, inherited, problem = member
         if problem:
             raise FileFormatError(problem)

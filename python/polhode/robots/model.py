@@ -36,7 +36,7 @@ __all__ = [
 ]
 
 WORLD: Final = "world"
-"""Stands for what never moves, where a joint names it."""
+"""Name of the fixed world in a joint."""
 
 
 class Place(NamedTuple):

@@ -34,11 +34,11 @@ __all__ = [
 MOST: Final = 3.0
 """Matter on the surface of a box has at most 3 times the moments of the box filled."""
 LEAST: Final = 0.1
-"""Ten times less than the shape's own is a heavy core, or another unit."""
+"""A moment ten times smaller than the shape's own means a heavy core, or another unit."""
 FAR: Final = 1000.0
-"""No shape that could not be read explains more: it would be 30 times larger than those that were."""
+"""Largest factor that an unread shape can explain: it would be 30 times larger than the others."""
 MARKER: Final = 25_000.0
-"""In kg/m^3: shapes of a link that would be denser than this are markers, such as dots of contact."""
+"""Density in kg/m^3 beyond which the shapes of a link are markers, such as dots of contact."""
 # The densest matter, osmium, in kg/m^3.
 _DENSEST: Final = 22_590.0
 # No shape is taken to be farther off than this, of the diagonal of all.

@@ -1,6 +1,6 @@
 """Read the other files of a robot, safely.
 
-Nothing is fetched from a network. What is included is XML under the same rules as the file itself, a file can
+Nothing is fetched from a network. An included file is XML under the same rules as the file itself, a file can
 not include itself, and there is an end to how many are read and to what they add up to.
 """
 

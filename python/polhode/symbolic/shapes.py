@@ -343,4 +343,4 @@ SHAPES: Final[dict[str, Row]] = {
     "ring": _row("rods", {"radius": _R}, 2 * _pi * _R, _R**2 / 2, _R**2 / 2, 0),
     "arc": _arc(),
 }
-"""By the name of the function that gives the numbers."""
+"""Shapes by the name of the numeric function."""

@@ -57,8 +57,8 @@ def runs_from_zero(run: Trajectory) -> list[tuple[Trajectory, Places, Places]]:
     motion = run.uncertain_start
     if motion is None or isinstance(motion, tuple):
         raise ValueError(
-            "covariance: the uncertainty of the first state is unknown here, because the motion was resumed or "
-            "its load was not saved; simulate from the original start, or use uncertainty.propagate"
+            "covariance: the uncertainty of the first state is unknown here, because the motion was resumed "
+            "or its load was not saved; simulate from the original start, or use uncertainty.propagate"
         )
     times, found = np.ravel(run.t), []
     for sense, is_its in ((1.0, times >= 0.0), (-1.0, times < 0.0)):
@@ -298,11 +298,11 @@ def _tensors(self: Trajectory) -> Floats:
 
 
 DIRECTIONS: Final = 64
-"""In which second- and third-order terms are looked for."""
+"""Number of directions in which second- and third-order terms are evaluated."""
 NEAR: Final = 1.0 / 64
-"""Of a step, in deviations: so short that the first order is all that is seen."""
+"""Step in deviations: so short that orders above the first are negligible."""
 ROUNDING: Final = 1e-9
-"""Of attitude in radians, and of the angular velocity."""
+"""Rounding errors of the attitude in radians, and of the angular velocity."""
 
 
 class StateLinear(NamedTuple):

@@ -45,9 +45,9 @@ NEAR: Final = 0.25
 PROBES: Final = 32
 """Directions in which second- and third-order terms are looked for."""
 ROUNDING: Final = 1e-13
-"""Of a number, by which a function may err."""
+"""Relative rounding error of a function."""
 SMALL: Final = 1e-12
-"""Beside the largest of an array: such a number may be what is left of zero."""
+"""A number below this fraction of the largest of an array may be zero with rounding errors."""
 
 
 class PropagationResult(NamedTuple):
@@ -311,12 +311,12 @@ def _make_result(value: Floats, covariance: Floats, linear: NDArray[np.bool_]) -
 
 
 CLOSE: Final = 4.0
-"""Moments within so many deviations of their gap may change places: the tensor tells them better than
-angles do."""
+"""Moments within this many deviations of their gap may change places; then tensor elements are used
+instead of angles."""
 TRIES: Final = 1000
-"""Draws of which none is a body, in a row, before it is told."""
+"""Number of impossible draws in a row after which an error is raised."""
 HALVINGS: Final = 40
-"""How often a step is halved before there is no body beside."""
+"""Number of halvings of a step after which no neighbouring body exists."""
 ORDER: Final = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 

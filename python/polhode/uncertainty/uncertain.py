@@ -135,7 +135,7 @@ _WORDS: Final[dict[Any, tuple[int, int]]] = {}
 """The variable of this package for each variable of `uncertainties` that was met. These cannot be referred to
 weakly, and one may come back in any later number, so they are kept."""
 _MET: Final[dict[tuple[int, int], Any]] = {}
-"""The way back: variables of `uncertainties` for those of this package, met or made."""
+"""The inverse map: variables of `uncertainties` for those of this package."""
 
 
 class InertialParameters(NamedTuple):

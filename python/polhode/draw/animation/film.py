@@ -177,15 +177,15 @@ _BODY: Final = 0.8
 _ZOOM: Final = 1.15
 _AXIS_DASHES: Final = ("--", "-", ":")
 _PATH_COLOR: Final = "#555555"
-"""Of the path of a top's axis."""
+"""Colour of the path of a top's axis."""
 _RING: Final = np.linspace(0.0, 2.0 * np.pi, 49)
 _TITLE: Final[dict[str, Any]] = {"fontsize": 11, "weight": "bold"}
 _TEXT: Final[dict[str, Any]] = {"fontsize": 10}
 _NAME: Final[dict[str, Any]] = {"fontsize": 11}
 _TITLE_PART: Final = 0.25
-"""Of the height, that a title takes at most."""
+"""Largest fraction of the height for the title."""
 _FOOT_PART: Final = 0.35
-"""That the speeds of wheels take at most."""
+"""Largest fraction of the height for the speeds of wheels."""
 _LEAST: Final = 0.6
 """Letters so many times smaller are still read."""
 
@@ -454,9 +454,9 @@ def draw_disc(
 
 _AROUND: Final = np.deg2rad([0.0, 45.0, -45.0, 90.0, -90.0, 135.0, -135.0, 180.0])
 _FAR: Final = (0.75, 1.4, 2.2)
-"""From the point to the text, in heights of the text."""
+"""Distances from the point to the text, in heights of the text."""
 _APART: Final = 0.1
-"""Least space between two names, in the same."""
+"""Least space between two names, in heights of the text."""
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,7 @@ _MODULES: Final = (
     "vectors", "double", "elliptic", "free", "frames", "trail", "labels", "camera", "theme", "surface",
     "solid", "clock", "wheels", "views", "energy", "live", "main",
 )  # fmt: skip
-"""Of the folder ``page``, each after those that it imports; a browser reads them as one."""
+"""Modules of the folder ``page``, each after those that it imports; a browser reads them as one."""
 _SHARED: Final = {
     "SECONDS": SECONDS,
     "PICTURES": RATE,
@@ -41,7 +41,7 @@ _SHARED: Final = {
     "RINGS": RINGS,
     "TINTS": BOX_TINTS.tolist(),
 }
-"""What the package and the page both know: the module ``shared`` that others import is written of it."""
+"""Constants that the package and the page share, written as the page's module ``shared``."""
 
 _SHORT: Final = (1e-30, 1e30)
 """Sizes that keep their digits in floats of four bytes."""

@@ -44,7 +44,7 @@ _AxesArgument = TypeVar("_AxesArgument")
 _FRAME: Final = 56.0
 """Points that labels, numbers and margins take of the height of a picture over time."""
 _ENTRY: Final = 4.2
-"""What a legend adds to a text for its line and the room to the next entry, in sizes of its font."""
+"""Width of a legend's line and of the gap to the next entry, in sizes of its font."""
 
 
 def matplotlib(module: str) -> Any:

@@ -316,7 +316,7 @@ def _disc(ax: Axes3D, height: float, radius: float) -> None:
 
 _AROUND: Final = np.linspace(0.0, 2.0 * np.pi, 121)
 _INK: Final = "#222222"
-"""Of the circle on which axes lie anywhere."""
+"""Colour of the circle of axes with any direction in a plane."""
 
 
 def error_ellipses(

@@ -342,7 +342,7 @@ def _over_time(ax: Axes, time_label: str, quantity: str, note: str | None = None
 
 
 _INK: Final = "0.35"
-"""Of what the legend says of bands."""
+"""Colour of the legend's entry of bands."""
 
 
 def of_omega(trajectory: Trajectory, turn: Floats | None, coverage: float | None) -> Floats | str | None:

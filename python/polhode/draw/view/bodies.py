@@ -257,7 +257,7 @@ def add_surface(plotter: Plotter, shape: Shape, name: str, opacity: float) -> li
 
 
 AXIS_STYLE: Final[dict[str, Any]] = {"lighting": False, "reset_camera": False}
-"""Of lines: in their own colour from every side."""
+"""Style of lines: in their own colour from every side."""
 
 
 def pyvista() -> Any:

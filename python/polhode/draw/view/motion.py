@@ -265,9 +265,9 @@ class _Player:
 
 _RING: Final = np.linspace(0.0, 2.0 * np.pi, 49)
 _BESIDE: Final = 1.3
-"""How far its name stands from the middle, in radii."""
+"""Distance of a wheel's name from its middle, in radii."""
 _ABOVE: Final = 1.03
-"""How far the marks stand from the middle, in half thicknesses: outside of the faces."""
+"""Distance of the marks from the middle, in half thicknesses: outside of the faces."""
 
 
 class WheelActors:

@@ -38,7 +38,7 @@ __all__ = [
 
 SIGMAS: Final = tuple(f"sigma_{name}" for name in NUMBERS)
 _OWN: Final = (*NUMBERS, *SIGMAS, "growth", "density", "sigma_density")
-"""What the row of a part states in numbers; that of a node with children must not."""
+"""Columns of numbers in the row of a part; a node with children must not have them."""
 COLUMNS: Final = (
     "id", "parent", "name", "comment", *_OWN,
     "POIconv", "Ipoint", "about", "source", "file", "solid", "arguments", "predicted_mass",

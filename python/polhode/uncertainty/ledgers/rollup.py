@@ -201,7 +201,7 @@ def groups(above: Integers) -> tuple[Integers, Integers, Integers]:
 
 
 _ROUNDING: Final = 1e-15
-"""Of the sum of their sizes: what is left of effects that cancel."""
+"""Effects that cancel leave this fraction of the sum of their sizes."""
 
 
 class Contributions(NamedTuple):
