@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Recipe = tuple[str, tuple[Any, ...]]
-    Changed = Callable[[Floats], Recipe]
+    RecipeMaker = Callable[[Floats], Recipe]
     from polhode.motion.trajectory import Trajectory
 
 __all__ = [
@@ -56,7 +56,7 @@ def known_states(load: _core.Load | None, made: list[Recipe]) -> set[str]:
     return {name for (kind, given), name in own if kind == "wheel" and given[-1]["speed"] is not None}
 
 
-def numbers(recipe: Recipe) -> Iterator[tuple[str, Floats, Changed]]:
+def numbers(recipe: Recipe) -> Iterator[tuple[str, Floats, RecipeMaker]]:
     """Return the numbers among the arguments of a part by name, and the recipe with others in their place."""
     around, recipe = _split_recipe(recipe)
     if around:
@@ -91,7 +91,7 @@ def _split_recipe(recipe: Recipe) -> tuple[list[Recipe], Recipe]:
     return around, recipe
 
 
-def _nest_recipe(around: list[Recipe], changed: Changed) -> Changed:
+def _nest_recipe(around: list[Recipe], changed: RecipeMaker) -> RecipeMaker:
     def nest(values: Floats) -> Recipe:
         recipe = changed(values)
         for name, arguments in reversed(around):
@@ -120,11 +120,11 @@ def _within(path: Any, name: str, placed: Callable[[Floats], Any]) -> Callable[[
     return lambda values: replace(path, **{name: placed(values)})
 
 
-def _with(made_by: str, named: dict[str, Any], name: str, placed: Callable[[Floats], Any]) -> Changed:
+def _with(made_by: str, named: dict[str, Any], name: str, placed: Callable[[Floats], Any]) -> RecipeMaker:
     return lambda values: (made_by, (named | {name: placed(values)},))
 
 
-def _with_load(made_by: str, named: dict[str, Any], name: str, changed: Changed) -> Changed:
+def _with_load(made_by: str, named: dict[str, Any], name: str, changed: RecipeMaker) -> RecipeMaker:
     return lambda values: (made_by, (named | {name: _core.Load._from_parts([changed(values)])},))
 
 
@@ -301,7 +301,7 @@ class _Row:
             yield found
 
     def other_load(
-        self, place: int, changed: Changed, values: Floats, index: tuple[int, ...], step: float
+        self, place: int, changed: RecipeMaker, values: Floats, index: tuple[int, ...], step: float
     ) -> _core.Load:
         """Return the load with one number of a part increased by a step."""
         others = values.copy()

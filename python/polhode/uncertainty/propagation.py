@@ -314,7 +314,7 @@ CLOSE: Final = 4.0
 """Moments within this many deviations of their gap may change places; then tensor elements are used
 instead of angles."""
 TRIES: Final = 1000
-"""Number of impossible draws in a row after which an error is raised."""
+"""Number of impossible draws after which an error is raised, if few draws are possible."""
 HALVINGS: Final = 40
 """Number of halvings of a step after which no neighbouring body exists."""
 ORDER: Final = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
