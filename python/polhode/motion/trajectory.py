@@ -827,6 +827,12 @@ class Trajectory(metaclass=Hinting):
 
         return state_sigma(self)
 
+    def _spin_covariance(self, frame: Literal["space", "body"]) -> Floats | None:
+        """Return the covariance of L = I_P ω at every time, components in this frame; None as `covariance`."""
+        from polhode.uncertainty.motion import spin_covariance
+
+        return spin_covariance(self, frame)
+
     def show(self, *, height: int = 460, **options: Any) -> HtmlPage:
         """Show the motion of one body as an interactive page: below a notebook's cell, or in the browser.
 
