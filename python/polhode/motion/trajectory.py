@@ -828,7 +828,7 @@ class Trajectory(metaclass=Hinting):
         return state_sigma(self)
 
     def _spin_covariance(self, frame: Literal["space", "body"]) -> Floats | None:
-        """Return the covariance of L = I_P ω at every time, components in this frame; None as `covariance`."""
+        """Return the covariance of L = I_P ω at every time, in this frame; None as `covariance`."""
         from polhode.uncertainty.motion import spin_covariance
 
         return spin_covariance(self, frame)
