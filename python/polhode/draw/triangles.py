@@ -8,15 +8,13 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
     Integers = NDArray[np.int64]
-    from collections.abc import Callable
-
-    Surface = tuple[Floats, NDArray[np.int64]]
-    Faces = NDArray[np.int64]
-    Surface = tuple[Floats, Faces]
+    Surface = tuple[Floats, Integers]
 
 __all__ = [
     "both_sides",
@@ -256,7 +254,7 @@ _BALL: Final = 0.06
 """Radius of the heaviest particle, of the size of all."""
 
 
-def both_sides(vertices: Floats, faces: Faces) -> Surface:
+def both_sides(vertices: Floats, faces: Integers) -> Surface:
     """Return a sheet with triangles on both sides."""
     return vertices, np.concatenate([faces, faces[:, ::-1]])
 
@@ -367,7 +365,7 @@ def _flat(points: Floats) -> Floats:
     return np.column_stack([points, np.zeros(len(points))])
 
 
-def _ears(corners: Floats) -> Faces:
+def _ears(corners: Floats) -> Integers:
     """Divide a simple polygon into triangles by cutting ears: convex corners that hold no other corner."""
     x, y = (corners - corners.mean(axis=0)).T
     rest = list(range(len(corners)))
