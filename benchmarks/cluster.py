@@ -35,7 +35,7 @@ def clones(n: int, chunk: int, client: Any = None) -> Any:
     )
     moments = distributions.normal((0.64, 0.97, 1.0), sigma=(0.012, 0.008, 0.008))
     return ensemble(
-        distributions.made(RigidBody.from_principal, 1.0, moments),
+        distributions.apply(RigidBody.from_principal, 1.0, moments),
         [0.0, SPAN],
         distributions.normal(np.array((0.09, 0.03, 0.19)) / HOUR, sigma=0.01 / HOUR),
         distributions.uniform_rotation(),

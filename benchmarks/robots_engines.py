@@ -156,7 +156,7 @@ def lost_by_fix(path: Path, packages: tuple[Path, ...]) -> tuple[int, list[str]]
     lost = []
     for words in (robots.FAILURES, robots.FAILURES | {"suspect"}):
         fixed = path.with_name(f"fixed-{path.name}")
-        fixed.write_bytes(robots.fixed(robot, verdicts, words))
+        fixed.write_bytes(robots.fix(robot, verdicts, words))
         after = _loading(fixed)
         fixed.unlink()
         lost += [f"{engine}: {after[engine]}" for engine, why in before.items() if not why and after[engine]]

@@ -8,7 +8,7 @@ Start here. A body comes from a shape (:mod:`polhode.solids`, ``laminae``, ``rod
 >>> brick.principal_moments
 array([ 5., 10., 13.])
 
-It tells its energy, its angular momentum and its motion:
+Its methods compute energy, angular momentum and motion:
 
 >>> brick.kinetic_energy((0.0, 0.0, 2.0)).total
 26.0

@@ -54,7 +54,7 @@ def _round_for_repr(value: Any) -> Any:
 
 _DIGITS = 7
 _ROUNDING = 1e-15
-"""Of the value: a sigma below it is what rounding left of zero."""
+"""A sigma below this fraction of the value is zero with rounding errors."""
 _LARGE = 1e7
 _SMALL = 1e-4
 
@@ -97,7 +97,7 @@ def _round_to_place(value: float, last: int) -> str:
 
 
 def at_least(number: float, digits: int = 3) -> str:
-    """Write a positive number with so many digits, rounded up: what is told as enough is enough.
+    """Write a positive number with so many digits, rounded up: for values that are stated as sufficient.
 
     Examples
     --------
@@ -112,7 +112,7 @@ def at_least(number: float, digits: int = 3) -> str:
 
 
 def at_most(number: float, digits: int = 3) -> str:
-    """Write a positive number with so many digits, rounded down: what is told as allowed is allowed.
+    """Write a positive number with so many digits, rounded down: for values that are stated as allowed.
 
     Examples
     --------

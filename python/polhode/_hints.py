@@ -1,4 +1,4 @@
-"""Names and arguments that others have: each is refused with what to write here.
+"""Names and arguments of other libraries. Each is refused with the name to write here.
 
 Names of modules, attributes of classes and arguments of functions have one table each, here alone; the
 extension asks it too. A message is not a second spelling: only what it names works.
@@ -94,7 +94,7 @@ _OF_MODULES: Final = {
         "load": 'read_robot("robot.urdf") reads a file',
         "read": 'read_robot("robot.urdf") reads a file',
         "from_file": 'read_robot("robot.urdf") reads a file',
-        "fix": "fixed(robot, verdicts) makes the bytes of a better file",
+        "fixed": "fix(robot, verdicts) makes the bytes of a better file",
         "validate": "check(robot) is it",
     },
     "polhode.plot": {
@@ -159,7 +159,7 @@ _OF_MODULES: Final = {
         "polyline": "RigidBody.from_curve takes points",
     },
 }
-"""What people look for in a module, and what they find instead."""
+"""Names that people look for in a module, with the text that names the right one."""
 
 _OF_CLASSES: Final = {
     "Trajectory": {
@@ -247,7 +247,7 @@ _OF_CLASSES: Final = {
         **dict.fromkeys(("load", "read"), "RigidBody.from_file(path) reads a file"),
     },
 }
-"""What people look for in an object, and what they find instead; FreeMotion stands for all closed forms."""
+"""Names that people look for in an object, with the text of the right one; FreeMotion: all closed forms."""
 
 _OTHER_ARGUMENTS: Final = {
     "center_of_mass": ("center", "centre", "centre_of_mass", "com", "cog", "center_of_gravity"),
@@ -277,7 +277,7 @@ _OTHER_ARGUMENTS: Final = {
     "velocity": ("v",),
     "t": ("time", "times", "t_eval", "t_span"),
 }
-"""Names under which people look for an argument, by the argument."""
+"""Other names of an argument, by the argument."""
 
 _INSTEAD: Final = {
     "diameter": "half of it is the radius",
@@ -332,7 +332,7 @@ _MADE_BY: Final = {
     ("RigidBody", "Trajectory"): "trajectory.body is its body",
     ("RigidBody", "FreeMotion"): "motion.body is its body",
 }
-"""How something of a kind is made of what was given instead of it."""
+"""Conversions: by the expected and the given class."""
 
 
 class Hinting(type):
@@ -353,20 +353,20 @@ def _or_nearest(way_out: str | None, name: str, known: Iterable[str]) -> str:
 
 
 def no_name(module: str, name: str, known: Iterable[str]) -> AttributeError:
-    """Make the error for a name that a module does not have, with what is meant by it."""
+    """Make the error for a name that a module does not have; the error proposes the right name."""
     way_out = _or_nearest(_OF_MODULES.get(module, {}).get(name), name, known)
     return AttributeError(f"module {module!r} has no attribute {name!r}{way_out}", name=name)
 
 
 def no_attribute(kind: str, name: str, known: Iterable[str], what: str | None = None) -> AttributeError:
-    """Make the error for an attribute that objects of a class do not have, with what is meant by it."""
+    """Make the error for an attribute that a class does not have; the error proposes the right name."""
     table = _OF_CLASSES.get("FreeMotion" if kind in ("HeavyTop", "GyrostatMotion") else kind, {})
     way_out = _or_nearest(table.get(name), name, known)
     return AttributeError(f"{what or f'{kind!r} object'} has no attribute {name!r}{way_out}", name=name)
 
 
 def no_keyword(function: str, given: str, known: Iterable[str]) -> TypeError:
-    """Make the error for a keyword that a function does not take, with the one that is meant."""
+    """Make the error for an unknown keyword of a function; the error proposes the right one."""
     known = [name for name in known if name != given]
     meant = [name for name, others in _OTHER_ARGUMENTS.items() if name in known and given in others]
     meant = meant or get_close_matches(given, known, 1)
@@ -390,7 +390,7 @@ def check_no_tensor(values: object) -> None:
 
 
 def check_kind(value: object, argument: str, *kinds: str) -> None:
-    """Refuse an argument that is of another class than those named, with how one is made of it."""
+    """Refuse an argument of a wrong class; the error says how to convert it."""
     if not {kind.__name__ for kind in type(value).__mro__}.isdisjoint(kinds):
         return
     got = "path" if hasattr(value, "__fspath__") else type(value).__name__
@@ -402,7 +402,7 @@ def check_kind(value: object, argument: str, *kinds: str) -> None:
 
 
 def explain_calls(names: dict[str, Any], public: Iterable[str]) -> None:
-    """Let the functions of a module say what to write instead of arguments that they do not take.
+    """Make the functions of a module propose the right name for an unknown argument.
 
     Parameters
     ----------
@@ -433,7 +433,7 @@ def explain_module_call(module: str, way_out: str) -> None:
 
 
 def with_hints(function: Callable[_Takes, _Returns], name: str | None = None) -> Callable[_Takes, _Returns]:
-    """Let a function say what to write instead of arguments that it does not take."""
+    """Make a function propose the right name for an unknown argument."""
 
     @wraps(function)
     def call(*args: _Takes.args, **kwargs: _Takes.kwargs) -> _Returns:

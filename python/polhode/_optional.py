@@ -1,4 +1,4 @@
-"""Optional libraries: imported where they are used, and named with their remedy when they are absent."""
+"""Import optional libraries where they are used. If one is absent, the error says how to install it."""
 
 from __future__ import annotations
 

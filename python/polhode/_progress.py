@@ -1,4 +1,4 @@
-"""A bar on stderr that shows how far long work is and when it will be over."""
+"""A progress bar on stderr, with the estimated time that remains."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     Tell: TypeAlias = Callable[[float], object]
     Progress: TypeAlias = bool | Tell | None
 
-__all__ = ["bar_of_core", "duration", "watched"]
+__all__ = ["bar_of_core", "duration", "progress_bar"]
 
 _SILENT: Final = 2.0
 """Seconds within which nothing is shown: most work is over by then."""
@@ -26,8 +26,8 @@ _under_way: Final[list[_Bar]] = []
 
 
 @contextmanager
-def watched(what: str, progress: Progress = None) -> Iterator[Tell | None]:
-    """Return a function that takes the fraction done; None where nobody is told.
+def progress_bar(what: str, progress: Progress = None) -> Iterator[Tell | None]:
+    """Open a progress bar, and return the function that updates it; None where no progress is shown.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def bar_of_core() -> _Bar | None:
 
 
 def duration(seconds: float) -> str:
-    """Write a time span in words that are as long as they need to be.
+    """Write a time span in words.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def duration(seconds: float) -> str:
 
 
 class _Bar:
-    """A line that is written over."""
+    """A line of the terminal that each update replaces."""
 
     def __init__(self, what: str, stream: TextIO, silent: float) -> None:
         self.what, self.stream = what, stream

@@ -119,7 +119,7 @@ def animate(
         `frames`, `duration` or `fps` is given; or if the end of the motion is not shown. A page for which the
         closed form gives the states needs no warning.
     """
-    file = _checked(path)
+    file = _check_suffix(path)
     if fps is not None and not 1.0 <= fps <= (GIF_RATE if file.suffix.lower() == ".gif" else 240.0):
         raise ValueError(f"fps: {fps} is not from 1 to 240 pictures a second, or 50 of a GIF")
     scene = scene_of(
@@ -165,7 +165,7 @@ def scene_of(
 
 
 def page_of(motion: Any, end: float | None = None, **options: Any) -> tuple[str, tuple[str, ...]]:
-    """Return the page of a motion as a text, and what it does not show of it."""
+    """Return the page of a motion as a text, and notes on what the page does not show."""
     given: dict[str, Any] = {
         "duration": None,
         "shape": None,
@@ -200,14 +200,14 @@ def animate_motion(
     tuple of str
         What the viewer does not see of the motion.
     """
-    file = _checked(path)
+    file = _check_suffix(path)
     is_page = file.suffix.lower() == ".html"
     scene = Scene.of_motion(motion, end, shape=shape, title=title, is_film=not is_page, is_page=is_page)
     _write(scene, file, progress)
     return scene.notes
 
 
-def _checked(path: str | PathLike[str]) -> Path:
+def _check_suffix(path: str | PathLike[str]) -> Path:
     file = Path(path)
     suffix = file.suffix.lower()
     if suffix not in ANIMATION_SUFFIXES:

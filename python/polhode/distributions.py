@@ -35,13 +35,13 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Distribution",
-    "Made",
+    "FunctionOfDraws",
     "Normal",
     "PerMember",
     "Samples",
     "Uniform",
     "UniformRotation",
-    "made",
+    "apply",
     "normal",
     "per_member",
     "samples",
@@ -94,16 +94,16 @@ def normal(
     array([[0.04, 0.03],
            [0.03, 0.09]])
     """
-    middle = _fixed(mean, "mean")
+    middle = _freeze_finite(mean, "mean")
     if (covariance is None) == (sigma is None):
         raise TypeError("normal: give either covariance or sigma")
     _check_name(name)
     if sigma is not None:
-        widths = _fixed(sigma, "sigma")
+        widths = _freeze_finite(sigma, "sigma")
         if (widths < 0.0).any():
             raise ValueError(f"sigma: expected numbers that are zero or more, got {widths.min():.6g}")
-        return Normal(middle, _broadcast(widths, middle.shape, "sigma"), _kept(np.zeros((0, 0))), name)
-    matrix = _fixed(covariance, "covariance")
+        return Normal(middle, _broadcast(widths, middle.shape, "sigma"), _freeze(np.zeros((0, 0))), name)
+    matrix = _freeze_finite(covariance, "covariance")
     if matrix.shape != (middle.size, middle.size):
         size = middle.size
         raise ValueError(
@@ -118,8 +118,10 @@ def normal(
         raise PolhodeError(f"{error}; the least eigenvalue of the matrix is {least:.3g}") from None
     if not np.count_nonzero(matrix - np.diag(np.diagonal(matrix))):
         factor = np.zeros((0, 0))
-        return Normal(middle, _kept(np.sqrt(np.diagonal(matrix)).reshape(middle.shape)), _kept(factor), name)
-    return Normal(middle, None, _kept(factor), name)
+        return Normal(
+            middle, _freeze(np.sqrt(np.diagonal(matrix)).reshape(middle.shape)), _freeze(factor), name
+        )
+    return Normal(middle, None, _freeze(factor), name)
 
 
 def uniform(low: ArrayLike, high: ArrayLike, *, name: str | None = None) -> Uniform:
@@ -143,7 +145,7 @@ def uniform(low: ArrayLike, high: ArrayLike, *, name: str | None = None) -> Unif
     array([2.414, 2.323, 2.658])
     """
     _check_name(name)
-    below, above = _fixed(low, "low"), _fixed(high, "high")
+    below, above = _freeze_finite(low, "low"), _freeze_finite(high, "high")
     try:
         shape = np.broadcast_shapes(below.shape, above.shape)
     except ValueError:
@@ -209,7 +211,7 @@ def samples(
     array([2., 1., 4.])
     """
     _check_name(name)
-    rows = _fixed(values, "values")
+    rows = _freeze_finite(values, "values")
     if not rows.ndim or not len(rows):
         raise ValueError(f"values: expected shape (rows, ...) with one row at least, got {rows.shape}")
     if order not in ("as given", "shuffled", "with replacement"):
@@ -248,8 +250,10 @@ def per_member(function: Callable[[np.random.Generator], Any], *, name: str | No
     return PerMember(function, name)
 
 
-def made(function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Made:
-    """Make bodies or loads from drawn numbers, by one call for all members of a chunk.
+def apply(function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> FunctionOfDraws:
+    """Apply a function to distributions: make bodies or loads of drawn numbers.
+
+    The function is called once for all members of a chunk.
 
     Parameters
     ----------
@@ -262,21 +266,23 @@ def made(function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Made:
 
     Returns
     -------
-    Made
+    FunctionOfDraws
 
     Examples
     --------
     >>> from polhode import RigidBody, distributions
-    >>> distributions.made(RigidBody.from_principal, 1.0, distributions.normal((1, 2, 2.5), sigma=0.01))
-    Made(RigidBody.from_principal, 1.0, Normal(mean=[1.0, 2.0, 2.5], sigma=[0.01, 0.01, 0.01]))
+    >>> distributions.apply(RigidBody.from_principal, 1.0, distributions.normal((1, 2, 2.5), sigma=0.01))
+    FunctionOfDraws(RigidBody.from_principal, 1.0, Normal(mean=[1.0, 2.0, 2.5], sigma=[0.01, 0.01, 0.01]))
     """
     if not callable(function):
         raise TypeError(f"function: expected a function that makes bodies or loads, got {function!r}")
-    return Made(function, tuple(map(_own, args)), {name: _own(part) for name, part in kwargs.items()})
+    return FunctionOfDraws(
+        function, tuple(map(_own, args)), {name: _own(part) for name, part in kwargs.items()}
+    )
 
 
 def _own(part: Any) -> Any:
-    """Return an argument, an array as one that nobody changes."""
+    """Return an argument; an array is copied and made read-only."""
     if not isinstance(part, np.ndarray):
         return part
     copy = part.copy()
@@ -284,16 +290,16 @@ def _own(part: Any) -> Any:
     return copy
 
 
-def _fixed(value: Any, name: str) -> Floats:
-    """Return an array of finite numbers that stays as it is."""
+def _freeze_finite(value: Any, name: str) -> Floats:
+    """Return a read-only array of finite numbers."""
     array = _core.real_numbers(value, name)
     wrong = ~np.isfinite(array)
     if wrong.any():
         raise ValueError(f"{name} must be finite, got {array[wrong][0]}")
-    return _kept(array)
+    return _freeze(array)
 
 
-def _kept(array: Floats) -> Floats:
+def _freeze(array: Floats) -> Floats:
     array = np.array(array, dtype=np.float64)
     array.setflags(write=False)
     return array
@@ -301,7 +307,7 @@ def _kept(array: Floats) -> Floats:
 
 def _broadcast(array: Floats, shape: tuple[int, ...], name: str) -> Floats:
     try:
-        return _kept(np.broadcast_to(array, shape))
+        return _freeze(np.broadcast_to(array, shape))
     except ValueError:
         raise ValueError(f"{name}: shape {array.shape} does not broadcast to {shape}") from None
 
@@ -316,7 +322,7 @@ MOST: Final = 2**64
 
 
 class Source(NamedTuple):
-    """Whose numbers are drawn: a seed, and a number that stands for an argument's name."""
+    """A stream of random numbers: the seed, and a number computed from the name of the argument."""
 
     seed: int
     stream: int
@@ -354,7 +360,7 @@ class Distribution(ABC):
     name: str | None
 
     def draw(self, n: int, *, seed: int, argument: str = "omega", first: int = 0) -> Any:
-        """Draw the numbers that members of an ensemble with this seed get.
+        """Draw the numbers of the members of an ensemble with this seed.
 
         Parameters
         ----------
@@ -452,7 +458,7 @@ class Normal(Distribution):
 
     def __repr__(self) -> str:
         spread = {"factor": self.factor} if self.sigma is None else {"sigma": self.sigma}
-        return one_line(self, {"mean": self.mean, **spread} | _named(self))
+        return one_line(self, {"mean": self.mean, **spread} | _name_argument(self))
 
 
 @final
@@ -477,7 +483,7 @@ class Uniform(Distribution):
         return found
 
     def __repr__(self) -> str:
-        return one_line(self, {"low": self.low, "high": self.high} | _named(self))
+        return one_line(self, {"low": self.low, "high": self.high} | _name_argument(self))
 
 
 @final
@@ -498,7 +504,7 @@ class UniformRotation(Distribution):
         return found
 
     def __repr__(self) -> str:
-        return one_line(self, _named(self))
+        return one_line(self, _name_argument(self))
 
 
 @final
@@ -526,7 +532,7 @@ class Samples(Distribution):
             return found
         self.check(first + count, "n")
         if self.order == "shuffled":
-            return self.values[_shuffled(source, size)[first : first + count]]
+            return self.values[_shuffle(source, size)[first : first + count]]
         return self.values[first : first + count]
 
     @property
@@ -535,12 +541,12 @@ class Samples(Distribution):
         return None if self.order == "with replacement" else len(self.values)
 
     def __repr__(self) -> str:
-        return one_line(self, {"values": self.values, "order": self.order} | _named(self))
+        return one_line(self, {"values": self.values, "order": self.order} | _name_argument(self))
 
 
 @dataclass(frozen=True)
 class Refusal:
-    """What stands for the value of a member whose numbers are refused."""
+    """Placeholder for the value of a member whose numbers are refused."""
 
     error: PolhodeError
 
@@ -548,7 +554,7 @@ class Refusal:
 @final
 @dataclass(frozen=True, eq=False, repr=False)
 class PerMember(Distribution):
-    """What a function gives for each member, see :func:`per_member`.
+    """Values of a function that is called for each member, see :func:`per_member`.
 
     Attributes
     ----------
@@ -571,18 +577,18 @@ class PerMember(Distribution):
                 # Of this member alone: whoever asks for its value is told.
                 found.append(Refusal(error))
             except Exception as error:
-                error.add_note(f"raised by {_called(self.function)} for member {member}")
+                error.add_note(f"raised by {_function_name(self.function)} for member {member}")
                 raise
         return found
 
     def __repr__(self) -> str:
-        return f"PerMember({_called(self.function)}{_and_name(self)})"
+        return f"PerMember({_function_name(self.function)}{_and_name(self)})"
 
 
 @final
 @dataclass(frozen=True, eq=False, repr=False)
-class Made:
-    """What a function makes of values that are drawn, see :func:`made`.
+class FunctionOfDraws:
+    """A function of random numbers, see :func:`apply`.
 
     Attributes
     ----------
@@ -602,26 +608,26 @@ class Made:
     def __repr__(self) -> str:
         words = [repr(part) for part in self.args]
         words += [f"{name}={part!r}" for name, part in self.kwargs.items()]
-        return f"Made({', '.join([_called(self.function), *words])})"
+        return f"FunctionOfDraws({', '.join([_function_name(self.function), *words])})"
 
 
 @lru_cache(maxsize=4)
-def _shuffled(source: Source, size: int) -> NDArray[np.int64]:
+def _shuffle(source: Source, size: int) -> NDArray[np.int64]:
     words = _core.random_numbers("bits", *source, 0, size, 1)[:, 0]
     order: NDArray[np.int64] = np.argsort(words, kind="stable")
     return order
 
 
 def _counter(member: int) -> NDArray[np.uint64]:
-    """Return where a member's own generator begins; counters of the core end in 0."""
+    """Return the start of the counter of a member's own generator; counters of the core end in 0."""
     return np.array([0, 0, member, 1], dtype=np.uint64)
 
 
-def _called(function: Any) -> str:
+def _function_name(function: Any) -> str:
     return str(getattr(function, "__qualname__", repr(function)))
 
 
-def _named(distribution: Distribution) -> dict[str, Any]:
+def _name_argument(distribution: Distribution) -> dict[str, Any]:
     return {} if distribution.name is None else {"name": distribution.name}
 
 

@@ -113,7 +113,7 @@ class FileFormatError(PolhodeError):
 
 
 class IntegrationError(PolhodeError):
-    """An integration could not go on; the message tells why.
+    """An integration could not go on; the message says why.
 
     Attributes
     ----------

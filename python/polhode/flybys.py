@@ -39,14 +39,14 @@ __all__ = ["Flyby", "Tumble", "clones", "flyby"]
 F = TypeVar("F", bound="Callable[..., Any]")
 
 ROUNDING: Final = 1e-9
-"""By so much a parabola that was made from a position and a velocity may be an ellipse."""
+"""Tolerance for a parabola: with rounding errors of its state it may be an ellipse."""
 
 
 def _names_modes(function: F) -> F:
-    """Let a call without `mode` say which modes there are."""
+    """Make a call without `mode` raise an error that names the modes."""
 
     @wraps(function)
-    def called(*args: Any, **kwargs: Any) -> Any:
+    def check_mode(*args: Any, **kwargs: Any) -> Any:
         if "mode" not in kwargs:
             raise TypeError(
                 'mode: state which of the two motions has these periods: mode="long-axis", where the angular '
@@ -55,7 +55,7 @@ def _names_modes(function: F) -> F:
             )
         return function(*args, **kwargs)
 
-    return cast("F", called)
+    return cast("F", check_mode)
 
 
 class Tumble(NamedTuple):
@@ -200,13 +200,15 @@ def clones(
         known = cast("float", rotation_period)
         phase = distributions.uniform(0.0, float(known), name="phase")
         bodies: Any = body
-        start = distributions.made(_at, motion, phase)
+        start = distributions.apply(_at, motion, phase)
     else:
         share = distributions.uniform(0.0, 1.0, name="phase")
-        bodies = distributions.made(_bodies, body, numbers)
-        start = distributions.made(_start, bodies, numbers, mode, sense, share)
+        bodies = distributions.apply(_bodies, body, numbers)
+        start = distributions.apply(_start, bodies, numbers, mode, sense, share)
     if pole is None:
-        attitude = distributions.made(_turned, start, distributions.uniform_rotation(name="direction"))
+        attitude = distributions.apply(
+            _turn_attitudes, start, distributions.uniform_rotation(name="direction")
+        )
     else:
         toward = _core.real_numbers(pole, "pole")
         if toward.shape != (3,) or not np.isfinite(toward).all() or not toward.any():
@@ -214,11 +216,11 @@ def clones(
         around = distributions.uniform(0.0, 2 * np.pi, name="azimuth")
         toward = toward / np.abs(toward).max()
         tilt = distributions.normal(np.zeros(2), sigma=spread, name="direction")
-        attitude = distributions.made(_toward, start, toward / np.linalg.norm(toward), around, tilt)
+        attitude = distributions.apply(_toward, start, toward / np.linalg.norm(toward), around, tilt)
     return ensemble(
         bodies,
         [orbit.begins, orbit.begins + long],
-        distributions.made(_omega, start),
+        distributions.apply(_omega, start),
         attitude,
         loads.gravity_gradient(orbit),
         n=n,
@@ -286,7 +288,7 @@ def flyby(
     }  # fmt: skip
     many = clones(body, orbit, span, **given, n=n, seed=seed, progress=progress, **options)
     motion = body.free_motion_from_periods(rotation_period, precession_period, mode)
-    found = _told(body, _numbers(motion), seed, many.compute())
+    found = _describe(body, _numbers(motion), seed, many.compute())
     if found.failed.all():
         # Why tells a clone alone.
         clones(body, orbit, span, **given, n=1, seed=seed, on_failure="raise", **options).compute()
@@ -331,7 +333,7 @@ def _numbers(motion: FreeMotion) -> distributions.Normal | None:
     return distributions.normal(found.value, found.covariance, name="moments and periods")
 
 
-def _told(body: RigidBody, numbers: distributions.Normal | None, seed: int, states: Any) -> Flyby:
+def _describe(body: RigidBody, numbers: distributions.Normal | None, seed: int, states: Any) -> Flyby:
     """Describe how clones tumble at the start and at the end, from the states of their ensemble."""
     omega, quaternion = states.omega.to_numpy(), states.quaternion.to_numpy()
     failed = ~np.isfinite(omega[:, -1]).all(axis=-1)
@@ -347,7 +349,7 @@ def _tumble(body: RigidBody, drawn: Floats | None, omega: Floats, quaternion: Fl
     momentum = motion.angular_momentum
     periods = motion.periods
 
-    def spread(values: Any, fill: Any) -> Any:
+    def expand(values: Any, fill: Any) -> Any:
         values = np.asarray(values)
         found = np.full((len(known), *values.shape[1:]), fill, values.dtype)
         found[known] = values
@@ -355,11 +357,11 @@ def _tumble(body: RigidBody, drawn: Floats | None, omega: Floats, quaternion: Fl
 
     energy = np.asarray(bodies.kinetic_energy(omega[known]).rotational)
     return Tumble(
-        spread(motion.mode, ""),
-        spread(np.where(np.isnan(periods.spin), periods.rotation, periods.spin), np.nan),
-        spread(periods.precession, np.nan),
-        spread(2.0 * energy / np.linalg.norm(momentum, axis=-1), np.nan),
-        spread(momentum, np.nan),
+        expand(motion.mode, ""),
+        expand(np.where(np.isnan(periods.spin), periods.rotation, periods.spin), np.nan),
+        expand(periods.precession, np.nan),
+        expand(2.0 * energy / np.linalg.norm(momentum, axis=-1), np.nan),
+        expand(momentum, np.nan),
     )
 
 
@@ -371,7 +373,7 @@ def _number(given: Any, name: str) -> float:
 
 
 def _bodies(body: RigidBody, numbers: Floats) -> RigidBody:
-    """Return the bodies of clones: that body with other principal moments."""
+    """Return the bodies of clones: the given body with other principal moments."""
     axes, center = body.principal.axes, body.center_of_mass
     return _core.RigidBody.from_principal(body.mass, numbers[..., :3], axes, center)
 
@@ -389,13 +391,13 @@ def _omega(start: Trajectory | FreeMotion) -> Floats:
     return start.omega
 
 
-def _turned(start: Trajectory | FreeMotion, turn: Floats) -> Floats:
-    """Attitudes of starts, with L in any direction."""
+def _turn_attitudes(start: Trajectory | FreeMotion, turn: Floats) -> Floats:
+    """Return attitudes at the start, with L in any direction."""
     return _product(turn, start.quaternion)
 
 
 def _toward(start: Trajectory | FreeMotion, pole: Floats, around: Floats, tilt: Floats) -> Floats:
-    """Attitudes of starts, with L near a direction."""
+    """Return attitudes at the start, with L near a direction."""
     side = np.eye(3)[int(np.argmin(np.abs(pole)))]
     one = np.cross(pole, side) / np.linalg.norm(np.cross(pole, side))
     two = np.cross(pole, one)

@@ -69,7 +69,7 @@ def bodies(masses: ArrayLike, positions: ArrayLike, labels: ArrayLike) -> Labell
     >>> found.bodies.mass
     array([4., 4.])
     """
-    weights, places, own = _checked(masses, positions, labels)
+    weights, places, own = _check_particles(masses, positions, labels)
     names, rows = _ranks(own)
     try:
         return Labelled(names, RigidBody.from_labelled_particles(weights, places, rows))
@@ -111,7 +111,7 @@ class Accumulator:
         masses, positions, labels : array_like
             As of :func:`bodies`.
         """
-        weights, places, own = _checked(masses, positions, labels)
+        weights, places, own = _check_particles(masses, positions, labels)
         order = np.argsort(own, kind="stable")
         names, starts = np.unique(own[order], return_index=True)
         for name, part in zip(names.tolist(), np.split(order, starts[1:]), strict=True):
@@ -149,7 +149,7 @@ class Accumulator:
         return Labelled(np.array(names, np.int64), RigidBody.stack(found))
 
 
-def _checked(
+def _check_particles(
     masses: ArrayLike, positions: ArrayLike, labels: ArrayLike
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], Integers]:
     weights, places = real_numbers(masses, "masses"), real_numbers(positions, "positions")

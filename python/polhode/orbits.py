@@ -108,12 +108,12 @@ class LocalFrame(NamedTuple):
 
 
 class Path(ABC):
-    """What all orbits tell."""
+    """Base class of all orbits."""
 
     @property
     @abstractmethod
     def begins(self) -> float:
-        """Its epoch, which is zero where there is none; of a table the first of its times."""
+        """Epoch of the orbit; zero if there is none. For a table, the first of its times."""
 
     @abstractmethod
     def at(self, t: ArrayLike) -> OrbitState:
@@ -194,7 +194,7 @@ class SampledOrbit(Path):
             Arrays of shape (..., T..., 3): axes of the stack, axes of the times, components.
         """
         times = _core.real_numbers(t, "t")
-        return reshaped(_core.sampled_states(self.times, self.position, times.ravel()), times.shape)
+        return reshape_times(_core.sampled_states(self.times, self.position, times.ravel()), times.shape)
 
 
 @dataclass(frozen=True, eq=False)
@@ -227,19 +227,19 @@ class DipoleField:
         return _core.dipole_field(moment, self.orbit.at(t).position)
 
 
-def kept(numbers: Floats) -> Any:
-    """Numbers that nobody changes; one as a float."""
+def freeze(numbers: Floats) -> Any:
+    """Return a read-only array; a single number as a float."""
     numbers.flags.writeable = False
     return float(numbers) if numbers.ndim == 0 else numbers
 
 
-def reshaped(states: tuple[Floats, Floats], times: tuple[int, ...]) -> OrbitState:
-    """Return states at a list of times those at times of a shape."""
+def reshape_times(states: tuple[Floats, Floats], times: tuple[int, ...]) -> OrbitState:
+    """Reshape states at a list of times to the shape of the times."""
     return OrbitState(*(one.reshape(*one.shape[:-2], *times, 3) for one in states))
 
 
 def do_broadcast(*arrays: Floats) -> bool:
-    """Whether arrays broadcast."""
+    """Return whether arrays broadcast."""
     try:
         np.broadcast_shapes(*(one.shape for one in arrays))
     except ValueError:
@@ -248,7 +248,7 @@ def do_broadcast(*arrays: Floats) -> bool:
 
 
 def vector(given: ArrayLike, name: str) -> Floats:
-    """Vectors of shape (..., 3), finite, that nobody changes."""
+    """Return finite vectors of shape (..., 3), read-only."""
     found = np.array(_core.real_numbers(given, name))  # not the caller's
     if found.shape[-1:] != (3,):
         raise ValueError(f"{name}: expected shape (..., 3), got {found.shape}")
@@ -375,7 +375,7 @@ class Orbit(Path):
                 self.pole,
                 times.ravel() - self.begins,
             )
-            return reshaped(found, times.shape)
+            return reshape_times(found, times.shape)
         new = (np.newaxis,) * times.ndim
         return OrbitState(
             *_core.kepler_states(
@@ -440,13 +440,13 @@ def kepler(
         raise ValueError(f"epoch: must be finite, got {when}")
     _core.kepler_states(mass, place, speed, np.zeros(()))  # checks them
     if j2 is None and radius is None:
-        return Orbit(kept(mass), place, speed, when)
+        return Orbit(freeze(mass), place, speed, when)
     if j2 is None or radius is None:
         raise TypeError("j2 and radius: give both of an oblate attractor, or none")
     bulge = np.array(_core.real_numbers(j2, "j2")), np.array(_core.real_numbers(radius, "radius"))
     axis = vector(pole, "pole")
     _core.oblate_states(mass, place, speed, *bulge, axis, np.zeros(1))  # checks them
-    return Orbit(kept(mass), place, speed, when, kept(bulge[0]), kept(bulge[1]), axis)
+    return Orbit(freeze(mass), place, speed, when, freeze(bulge[0]), freeze(bulge[1]), axis)
 
 
 def sampled(mu: ArrayLike, t: ArrayLike, position: ArrayLike) -> SampledOrbit:
@@ -484,7 +484,7 @@ def sampled(mu: ArrayLike, t: ArrayLike, position: ArrayLike) -> SampledOrbit:
     if not do_broadcast(mass, places[..., 0, 0]):
         raise ValueError(f"mu and position: shapes {mass.shape} and {places.shape} do not broadcast")
     times.flags.writeable = False
-    return SampledOrbit(kept(mass), times, places)
+    return SampledOrbit(freeze(mass), times, places)
 
 
 def from_elements(

@@ -142,7 +142,7 @@ def continuous(self: PrincipalAxes, axis: int = 0, rtol: float | None = None) ->
 
 
 def _turned_to(before: Floats, axes: Floats, close: NDArray[np.bool_]) -> Floats:
-    """Turn axes of nearly equal moments within what they span, to be nearest to the frame before."""
+    """Rotate axes of nearly equal moments within their span, nearest to those of the frame before."""
     turned = axes.copy()
     for pair, together in (((0, 1), close[:, 0] & ~close[:, 1]), ((1, 2), close[:, 1] & ~close[:, 0])):
         rows = np.flatnonzero(together)
@@ -314,7 +314,7 @@ class PrincipalAxes:
         return PrincipalAxes(self.moments, axes, self.top_rtol, self.sigma)
 
     def derivative(self, tangent: ArrayLike, rtol: float = 1e-12) -> PrincipalDerivative:
-        """Return the derivatives of moments and axes for a small change of the tensor.
+        """Compute the derivatives of moments and axes for a small change of the tensor.
 
         Parameters
         ----------

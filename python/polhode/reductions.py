@@ -78,15 +78,15 @@ class Reduction(ABC):
         return array
 
     @abstractmethod
-    def begun(self, values: Floats, n: int) -> Any:
+    def start(self, values: Floats, n: int) -> Any:
         """Return the state of a block with these values, of an ensemble with n members."""
 
     @abstractmethod
-    def merged(self, one: Any, other: Any, n: int) -> Any:
-        """Merge the states of two neighbouring blocks, and give the state of both together."""
+    def merge(self, one: Any, other: Any, n: int) -> Any:
+        """Merge the states of two neighbouring blocks, and return the state of both together."""
 
     @abstractmethod
-    def finished(self, state: Any, left_out: int) -> Any:
+    def finish(self, state: Any, left_out: int) -> Any:
         """Return the result. If there was no member, the state is None."""
 
     def __repr__(self) -> str:
@@ -97,8 +97,8 @@ class Reduction(ABC):
         return one_line(self, parts).removeprefix("_")
 
 
-class Kept(NamedTuple):
-    """A state, and the shape of what is reduced."""
+class BlockState(NamedTuple):
+    """The state of a block, and the shape of the quantity that is reduced."""
 
     shape: Shape
     of: Any
@@ -113,13 +113,13 @@ def _flat(values: Floats) -> Floats:
 class _Mean(Reduction):
     of: Of
 
-    def begun(self, values: Floats, n: int) -> Kept:  # noqa: ARG002
-        return Kept(values.shape[1:], moments(_flat(values), products=False))
+    def start(self, values: Floats, n: int) -> BlockState:  # noqa: ARG002
+        return BlockState(values.shape[1:], moments(_flat(values), products=False))
 
-    def merged(self, one: Kept, other: Kept, n: int) -> Kept:  # noqa: ARG002
-        return Kept(one.shape, one.of.merged(other.of))
+    def merge(self, one: BlockState, other: BlockState, n: int) -> BlockState:  # noqa: ARG002
+        return BlockState(one.shape, one.of.merge(other.of))
 
-    def finished(self, state: Kept | None, left_out: int) -> Means:
+    def finish(self, state: BlockState | None, left_out: int) -> Means:
         if state is None:
             return Means(np.array(np.nan), 0, left_out)
         found: Moments = state.of
@@ -131,7 +131,7 @@ class _Mean(Reduction):
 class _Covariance(Reduction):
     of: Of
 
-    def begun(self, values: Floats, n: int) -> Kept:  # noqa: ARG002
+    def start(self, values: Floats, n: int) -> BlockState:  # noqa: ARG002
         rows = _flat(values)
         if not rows.shape[1]:
             raise ValueError(
@@ -142,12 +142,12 @@ class _Covariance(Reduction):
                 f"of: a covariance is of {MOST_CORRELATED} numbers of a member at most, got {rows.shape[1]}; "
                 "take those that matter, such as lambda motion: motion.omega[:, -1]"
             )
-        return Kept(values.shape[1:], moments(rows, products=True))
+        return BlockState(values.shape[1:], moments(rows, products=True))
 
-    def merged(self, one: Kept, other: Kept, n: int) -> Kept:  # noqa: ARG002
-        return Kept(one.shape, one.of.merged(other.of))
+    def merge(self, one: BlockState, other: BlockState, n: int) -> BlockState:  # noqa: ARG002
+        return BlockState(one.shape, one.of.merge(other.of))
 
-    def finished(self, state: Kept | None, left_out: int) -> MeansAndCovariance:
+    def finish(self, state: BlockState | None, left_out: int) -> MeansAndCovariance:
         if state is None:
             return MeansAndCovariance(np.full(0, np.nan), np.full((0, 0), np.nan), 0, left_out)
         found: Moments = state.of
@@ -162,19 +162,19 @@ class _Histogram(Reduction):
     bins: Floats
     of: Of
 
-    def begun(self, values: Floats, n: int) -> Kept:  # noqa: ARG002
+    def start(self, values: Floats, n: int) -> BlockState:  # noqa: ARG002
         rows, size = _flat(values), len(self.bins) - 1
         place = np.searchsorted(self.bins, rows, side="right")
         place[rows == self.bins[-1]] = size  # the last bin has both of its edges
         place[np.isnan(rows)] = size + 2
         columns = np.arange(rows.shape[1]) * (size + 3)
         counts = np.bincount((place + columns).ravel(), minlength=rows.shape[1] * (size + 3))
-        return Kept(values.shape[1:], (len(rows), counts.reshape(rows.shape[1], size + 3)))
+        return BlockState(values.shape[1:], (len(rows), counts.reshape(rows.shape[1], size + 3)))
 
-    def merged(self, one: Kept, other: Kept, n: int) -> Kept:  # noqa: ARG002
-        return Kept(one.shape, (one.of[0] + other.of[0], one.of[1] + other.of[1]))
+    def merge(self, one: BlockState, other: BlockState, n: int) -> BlockState:  # noqa: ARG002
+        return BlockState(one.shape, (one.of[0] + other.of[0], one.of[1] + other.of[1]))
 
-    def finished(self, state: Kept | None, left_out: int) -> HistogramCounts:
+    def finish(self, state: BlockState | None, left_out: int) -> HistogramCounts:
         size = len(self.bins) - 1
         shape, (count, counts) = (
             ((), (0, np.zeros((1, size + 3), dtype=np.int64))) if state is None else (state.shape, state.of)
@@ -190,16 +190,16 @@ class _Quantiles(Reduction):
     q: Floats
     of: Of
 
-    def begun(self, values: Floats, n: int) -> Kept:  # noqa: ARG002
+    def start(self, values: Floats, n: int) -> BlockState:  # noqa: ARG002
         rows = _flat(values)
-        return Kept(values.shape[1:], (len(rows), np.isnan(rows).any(axis=0), ordered(rows)))
+        return BlockState(values.shape[1:], (len(rows), np.isnan(rows).any(axis=0), sort_columns(rows)))
 
-    def merged(self, one: Kept, other: Kept, n: int) -> Kept:
+    def merge(self, one: BlockState, other: BlockState, n: int) -> BlockState:
         most = None if n <= MOST_EXACT else KEPT
         (count, strange, order), (more, others, beside) = one.of, other.of
-        return Kept(one.shape, (count + more, strange | others, order.merged(beside, most)))
+        return BlockState(one.shape, (count + more, strange | others, order.merge(beside, most)))
 
-    def finished(self, state: Kept | None, left_out: int) -> QuantileLevels:
+    def finish(self, state: BlockState | None, left_out: int) -> QuantileLevels:
         if state is None:
             return QuantileLevels(self.q, np.full(len(self.q), np.nan), 0.0, 0, left_out)
         order: Order
@@ -227,15 +227,15 @@ class _ModeChanges(Reduction):
             found.append([places[mode] for mode in modes])
         return np.array(found, dtype=float).T
 
-    def begun(self, values: Floats, n: int) -> Kept:  # noqa: ARG002
+    def start(self, values: Floats, n: int) -> BlockState:  # noqa: ARG002
         size = len(MODES)
         code = values[:, 0].astype(np.int64) * size + values[:, 1].astype(np.int64)
-        return Kept((), np.bincount(code, minlength=size * size).reshape(size, size))
+        return BlockState((), np.bincount(code, minlength=size * size).reshape(size, size))
 
-    def merged(self, one: Kept, other: Kept, n: int) -> Kept:  # noqa: ARG002
-        return Kept((), one.of + other.of)
+    def merge(self, one: BlockState, other: BlockState, n: int) -> BlockState:  # noqa: ARG002
+        return BlockState((), one.of + other.of)
 
-    def finished(self, state: Kept | None, left_out: int) -> ModeTable:
+    def finish(self, state: BlockState | None, left_out: int) -> ModeTable:
         size = len(MODES)
         table = np.zeros((size, size), dtype=np.int64) if state is None else state.of
         return ModeTable(MODES, table, int(table.sum()), left_out)
@@ -470,7 +470,7 @@ class ModeTable(NamedTuple):
         return short(self)
 
 
-def halved(rows: Floats) -> Floats:
+def sum_by_halves(rows: Floats) -> Floats:
     """Sum over the first axis, by halves."""
     while len(rows) > 1:
         half = len(rows) // 2
@@ -480,14 +480,14 @@ def halved(rows: Floats) -> Floats:
 
 
 class Moments(NamedTuple):
-    """Of some members: how many, their mean, and, where asked for, the products of deviations summed."""
+    """Number of members, their mean and, if asked for, the sums of products of deviations."""
 
     members: int
     mean: Floats
     products: Floats | None
 
-    def merged(self, other: Moments) -> Moments:
-        """Those of both, after Chan, Golub and LeVeque."""
+    def merge(self, other: Moments) -> Moments:
+        """Return the moments of both, after Chan, Golub and LeVeque."""
         count = self.members + other.members
         with np.errstate(invalid="ignore"):
             step = other.mean - self.mean
@@ -504,20 +504,21 @@ class Moments(NamedTuple):
 def moments(values: Floats, *, products: bool) -> Moments:
     """Return the moments of rows, shape (n, k).
 
-    Infinite values have an infinite mean, those of both signs none; no products with them are numbers.
+    Infinite values of one sign give an infinite mean, of both signs NaN; covariances with infinite values are
+    NaN.
     """
     count = len(values)
     with np.errstate(invalid="ignore"):
-        mean = halved(values) / count
+        mean = sum_by_halves(values) / count
         if not products:
             return Moments(count, mean, None)
         off = values - mean
-        rows = [halved(off[:, [k]] * off) for k in range(off.shape[1])]
+        rows = [sum_by_halves(off[:, [k]] * off) for k in range(off.shape[1])]
         return Moments(count, mean, np.stack(rows))
 
 
 class Order(NamedTuple):
-    """Numbers of some members in order, each standing for as many as its weight says.
+    """Sorted numbers of some members, each with a weight: how many numbers it represents.
 
     Attributes
     ----------
@@ -530,8 +531,8 @@ class Order(NamedTuple):
     buffers: dict[int, Floats]
     error: int = 0
 
-    def merged(self, other: Order, most: int | None) -> Order:
-        """Those of both; beyond `most` numbers of a weight every other one is left out."""
+    def merge(self, other: Order, most: int | None) -> Order:
+        """Return the numbers of both; beyond `most` numbers of one weight every other one is dropped."""
         buffers = dict(self.buffers)
         for weight, values in other.buffers.items():
             held = buffers.get(weight)
@@ -540,15 +541,15 @@ class Order(NamedTuple):
                 values if held is None else np.sort(np.concatenate([held, values]), axis=0, kind="stable")
             )
         both = Order(buffers, self.error + other.error)
-        return both if most is None else compacted(both, most)
+        return both if most is None else compact(both, most)
 
 
-def ordered(values: Floats) -> Order:
+def sort_columns(values: Floats) -> Order:
     """Sort rows, shape (n, k), each column by itself."""
     return Order({1: np.sort(values, axis=0, kind="stable")})
 
 
-def compacted(order: Order, most: int) -> Order:
+def compact(order: Order, most: int) -> Order:
     """Leave out every other number where there are more than `most` of one weight.
 
     Of 2m numbers in order either those in odd or those in even places stay, with twice the weight: a rank is
@@ -587,7 +588,7 @@ def _coin(row: Floats, weight: int) -> int:
 
 
 def level_of(order: Order, parts: Floats) -> Floats:
-    """Return the numbers below which these parts of all lie, shape (q, k).
+    """Return the quantiles for these fractions, shape (q, k).
 
     Between the two nearest, where every number is there; else one of them.
     """

@@ -1,4 +1,4 @@
-"""What polhode's computations return: values that only hold results."""
+"""Results of computations, as named tuples and small classes."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ class BoxFit(NamedTuple):
 
 
 class Linear(NamedTuple):
-    """For which results standard deviations to first order are enough, to about a percent.
+    """Flags for each result: True if its standard deviation to first order is accurate to about a percent.
 
     Attributes
     ----------

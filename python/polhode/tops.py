@@ -29,7 +29,7 @@ __all__ = [
 
 
 class NutationDamping(NamedTuple):
-    """What a small slug does to the nutation of a free symmetric top: ``tan θ = tan θ0 exp(rate t)``.
+    """Effect of a small slug on the nutation of a free symmetric top: ``tan θ = tan θ0 exp(rate t)``.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class NutationDamping(NamedTuple):
 
     @property
     def verdict(self) -> Any:
-        """In a word: ``"damps"``, ``"flat spin"``, or ``"neutral"`` for three equal moments."""
+        """Result as a word: ``"damps"``, ``"flat spin"``, or ``"neutral"`` for three equal moments."""
         words = np.array(["damps", "neutral", "flat spin"])[np.sign(self.rate).astype(int) + 1]
         return words if words.ndim else str(words)
 
@@ -72,7 +72,7 @@ class NutationDamping(NamedTuple):
         return np.rad2deg(found) if degrees else found
 
     def time(self, start_angle: ArrayLike, end_angle: ArrayLike, *, degrees: bool = False) -> Any:
-        """Time in which θ comes from `start_angle` to `end_angle`; negative where it runs the other way.
+        """Time from `start_angle` to `end_angle`; negative if θ moves the other way.
 
         Parameters
         ----------

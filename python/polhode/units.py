@@ -1,4 +1,4 @@
-"""Units: of files that state none, and of numbers as they are typed, such as ``"2.7 g/cm^3"``.
+"""Units of files that state none, and of numbers as the user types them, such as ``"2.7 g/cm^3"``.
 
 A bare number is in the unit that the option states. pint converts, in decimal arithmetic so that 2.7 g/cm^3
 is 2700 kg/m^3 to the last digit, and is only loaded where a unit was typed. An amount may have a sigma:
@@ -97,7 +97,7 @@ _OWN_UNITS: Final = (
     "pcf = pound / foot ** 3",
     "pci = pound / inch ** 3",
 )
-"""What drawings and printouts of the desk say, beside what pint knows."""
+"""Units of drawings and printouts, besides those of pint."""
 _COUNTS_ANGLES: Final = ("rad", "rad/s")
 """A unit that counts no angle, as ``min^-1``, is no unit of these: it may mean turns as well as radians."""
 _EXAMPLES: Final = {
@@ -113,7 +113,7 @@ _EXAMPLES: Final = {
 }
 
 
-class _Typed(NamedTuple):
+class _Quantity(NamedTuple):
     """A number as it was typed, its unit, and its sigma with the unit of that; None where there is none."""
 
     number: str
@@ -124,7 +124,7 @@ class _Typed(NamedTuple):
 
 def has_unit(text: str) -> bool:
     """Return whether the number has a unit."""
-    typed = _typed(text)
+    typed = _parse(text)
     return typed is not None and typed.unit is not None
 
 
@@ -150,7 +150,7 @@ def quantity(text: str, unit: str, option: str) -> float:
         If it is no number, has a sigma, is not finite, of another dimension or in a unit that pint does not
         know.
     """
-    typed = _typed(text)
+    typed = _parse(text)
     if typed is None:
         raise PolhodeError(
             f"{option}: {text!r} is not a number with or without a unit; write {_example(unit)}"
@@ -159,7 +159,7 @@ def quantity(text: str, unit: str, option: str) -> float:
         raise PolhodeError(
             f"{option}: {text!r} has a sigma, which {option} does not take; write the number alone"
         )
-    return _converted(text, typed, unit, option)
+    return _convert(text, typed, unit, option)
 
 
 def amount(text: str, unit: str, option: str) -> float | _core.Uncertain:
@@ -183,7 +183,7 @@ def amount(text: str, unit: str, option: str) -> float | _core.Uncertain:
     PolhodeError
         See `quantity`; also where a sigma has no unit and its number has one.
     """
-    typed = _typed(text)
+    typed = _parse(text)
     if typed is None or typed.sigma is None:
         if typed is None and _has_sigma(text):
             raise PolhodeError(
@@ -195,7 +195,7 @@ def amount(text: str, unit: str, option: str) -> float | _core.Uncertain:
             f"{option}: {text!r}: the sigma has no unit, but its number has one; "
             f"write {_sigma_examples(unit)}"
         )
-    value, sigma = _converted(text, typed, unit, option), typed.sigma
+    value, sigma = _convert(text, typed, unit, option), typed.sigma
     if typed.sigma_unit not in (None, unit):
         sigma *= _factor(str(typed.sigma_unit), unit, option)
     if not _is_held(sigma):
@@ -294,19 +294,19 @@ def split(texts: Sequence[str], count: int | None, unit: str, option: str) -> li
     return parts
 
 
-def _typed(text: str) -> _Typed | None:
-    """Take a number, its sigma and their units apart; None where it is no number."""
+def _parse(text: str) -> _Quantity | None:
+    """Split a text into a number, its sigma and their units; None if it is no number."""
     if not _has_sigma(text):
         match = _QUANTITY.fullmatch(text)
-        return None if match is None else _Typed(match["number"], match["unit"])
+        return None if match is None else _Quantity(match["number"], match["unit"])
     last = _LAST_PLACES.fullmatch(text)
     if last is not None:
         number, power = last["number"], last["power"] or ""
         place = Decimal(number + power).as_tuple().exponent
-        return _Typed(number + power, last["unit"], Decimal(last["last"]).scaleb(int(place)), last["unit"])
+        return _Quantity(number + power, last["unit"], Decimal(last["last"]).scaleb(int(place)), last["unit"])
     around = _IN_BRACKETS.fullmatch(text)
     if around is not None:
-        inner = _typed(around["inner"])
+        inner = _parse(around["inner"])
         if inner is None or inner.unit is not None:
             return None
         return inner._replace(unit=around["unit"], sigma_unit=around["unit"])
@@ -320,16 +320,16 @@ def _typed(text: str) -> _Typed | None:
         if unit is not None and after is not None:
             return None
         size *= abs(Decimal(number)) / 100
-        return _Typed(number, unit or after, size, unit or after)
+        return _Quantity(number, unit or after, size, unit or after)
     after = sigma["rest"] or None
-    return _Typed(number, unit or after, size, after)
+    return _Quantity(number, unit or after, size, after)
 
 
 def _has_sigma(text: str) -> bool:
     return _PLUS_MINUS.search(text) is not None or re.search(r"[\d.]\(", text) is not None
 
 
-def _converted(text: str, typed: _Typed, unit: str, option: str) -> float:
+def _convert(text: str, typed: _Quantity, unit: str, option: str) -> float:
     value = Decimal(typed.number)
     if typed.unit not in (None, unit):
         value *= _factor(str(typed.unit), unit, option)
@@ -339,7 +339,7 @@ def _converted(text: str, typed: _Typed, unit: str, option: str) -> float:
 
 
 def _is_held(number: Decimal) -> bool:
-    """Return whether a float can hold it: neither infinite, nor zero unless it is."""
+    """Return whether a float can hold a number: no overflow, and no underflow to zero."""
     held = float(number)
     return math.isfinite(held) and (held != 0.0 or number == 0)
 

@@ -1,7 +1,7 @@
-"""Tests whether a tensor can be that of a body, and of a body of a given size.
+"""Tests whether any body can have a tensor, and whether a body of a given size can.
 
-:class:`polhode.RigidBody` refuses a tensor that no body can have. The functions here tell how far a tensor is
-from a possible one, and whether a body with given mass properties can be as small as a given box.
+:class:`polhode.RigidBody` refuses a tensor that no body can have. The functions here compute how far a tensor
+is from a possible one, and whether a body with given mass properties can be as small as a given box.
 """
 
 from __future__ import annotations

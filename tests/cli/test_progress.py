@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from polhode import RigidBody, solids
-from polhode._progress import duration, watched
+from polhode._progress import duration, progress_bar
 from polhode.uncertainty import propagate
 
 
@@ -30,7 +30,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
 
 def shown(monkeypatch: pytest.MonkeyPatch, stream: Any, progress: Any, clock: list[float]) -> str:
     monkeypatch.setattr(sys, "stderr", stream)
-    with watched("work", progress) as tell:
+    with progress_bar("work", progress) as tell:
         for step in range(1, 101):
             clock[0] += 0.0625
             if tell is not None:
@@ -55,14 +55,14 @@ def test_nothing_in_a_pipe_unless_asked_for(monkeypatch: pytest.MonkeyPatch, clo
     assert shown(monkeypatch, Terminal(), False, clock) == ""
     assert "work [" in shown(monkeypatch, io.StringIO(), True, clock)
     monkeypatch.setattr(sys, "stderr", None)
-    with watched("work") as tell:
+    with progress_bar("work") as tell:
         assert tell is None
 
 
 def test_short_work_shows_nothing(monkeypatch: pytest.MonkeyPatch, clock: list[float]) -> None:
     stream = Terminal()
     monkeypatch.setattr(sys, "stderr", stream)
-    with watched("work") as tell:
+    with progress_bar("work") as tell:
         assert tell is not None
         clock[0] += 1.9
         tell(0.99)
@@ -71,14 +71,17 @@ def test_short_work_shows_nothing(monkeypatch: pytest.MonkeyPatch, clock: list[f
 
 def test_a_function_of_ones_own() -> None:
     told: list[float] = []
-    with watched("work", told.append) as tell:
+    with progress_bar("work", told.append) as tell:
         assert tell is not None
         tell(0.5)
     assert told == [0.5]
 
 
 def test_what_is_neither_is_refused() -> None:
-    with pytest.raises(TypeError, match="progress: expected True, False, None or a function"), watched("", 3):  # type: ignore[arg-type]
+    with (
+        pytest.raises(TypeError, match="progress: expected True, False, None or a function"),
+        progress_bar("", 3),  # type: ignore[arg-type]
+    ):
         pass
 
 

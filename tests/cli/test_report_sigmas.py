@@ -8,7 +8,7 @@ import numpy as np
 import polhode
 from polhode import Uncertain
 from polhode.cli.layout import Field, Report
-from polhode.cli.tables import about_point, angle_field, moments_slopes, note_linear, squared
+from polhode.cli.tables import about_point, angle_field, moments_slopes, note_linear, sigmas_of_square
 from polhode.draw.html import body_html
 
 if TYPE_CHECKING:
@@ -103,12 +103,12 @@ def test_slopes_of_moments_against_differences(rng: np.random.Generator) -> None
 
 
 def test_squares() -> None:
-    told: Any = squared(
+    told: Any = sigmas_of_square(
         np.array([2.0, 1.0]), {"sigma": np.array([0.1, 0.3]), "linear": np.array([True, True])}
     )
     assert told["sigma"].tolist() == [0.4, 0.6]
     assert told["linear"].tolist() == [True, False]
-    assert squared(np.ones(3), {}) == {}
+    assert sigmas_of_square(np.ones(3), {}) == {}
 
 
 def test_axes_that_are_not_determined() -> None:

@@ -246,7 +246,16 @@ def test_heavy_top() -> None:
     """A top let go without precession: the other turning point solves 1 - u^2 = p (u0 - u)."""
     mass, length, i_t, i_s, rate, tilt, g = 0.5, 0.04, 2e-4, 3e-4, 150.0, 0.6, 9.81
     start = ("--omega", f"0 0 {rate}", "--attitude", f"0, {math.degrees(tilt)} deg, 0", "--gravity", g)
-    asked = ("--moments", f"{i_t} {i_t} {i_s}", "--mass", mass, "--center-of-mass", "0 0 4 cm", "--format", "json")
+    asked = (
+        "--moments",
+        f"{i_t} {i_t} {i_s}",
+        "--mass",
+        mass,
+        "--center-of-mass",
+        "0 0 4 cm",
+        "--format",
+        "json",
+    )
     code, out, err = run("spin", *asked, *start, "--end", "30")
     assert (code, err) == (0, "")
     report = json.loads(out)

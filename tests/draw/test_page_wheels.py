@@ -14,7 +14,7 @@ from polhode import RigidBody, Trajectory, loads
 from polhode.animation import animate
 from polhode.draw.sampling import TURN
 from polhode.draw.scene import Scene
-from polhode.draw.wheels import slowed
+from polhode.draw.wheels import slowdown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -153,18 +153,18 @@ def test_discs_stand_outside_of_the_body_and_apart() -> None:
 
 class TestSlowMotion:
     def test_both_sides_of_what_an_eye_follows(self) -> None:
-        assert slowed(0.0) == slowed(TURN) == 1.0
-        assert slowed(1.001 * TURN) == slowed(2.0 * TURN) == 2.0
-        assert slowed(2.001 * TURN) == slowed(5.0 * TURN) == 5.0
-        assert slowed(np.pi) == 10.0
+        assert slowdown(0.0) == slowdown(TURN) == 1.0
+        assert slowdown(1.001 * TURN) == slowdown(2.0 * TURN) == 2.0
+        assert slowdown(2.001 * TURN) == slowdown(5.0 * TURN) == 5.0
+        assert slowdown(np.pi) == 10.0
         for turn in np.geomspace(1e-3, 1e9, 301):
-            factor = slowed(float(turn))
+            factor = slowdown(float(turn))
             assert turn / factor <= TURN * (1.0 + 1e-6)
             assert factor == 1.0 or turn / factor > TURN / 2.6  # no slower than needed
 
     def test_a_film_names_it(self, tmp_path: Path) -> None:
         (disc,) = scene(spin_up()).discs
-        assert disc.factor(0.05) == slowed(float(np.max(speed(disc))) * 0.05) == 10.0
+        assert disc.factor(0.05) == slowdown(float(np.max(speed(disc))) * 0.05) == 10.0
         assert disc.words(0, disc.factor(0.05), "s") == "roll wheel: 3 rad/s, drawn 10× slower"
         assert disc.words(0, disc.factor(0.0005), "s") == "roll wheel: 3 rad/s"
         pytest.importorskip("matplotlib")
@@ -224,7 +224,7 @@ class TestInABrowser:
         browser.open(spin_up(314.0).animate(tmp_path / "a.html"), "#t=0")
         turns = np.geomspace(0.01, 1e6, 300)
         found = browser.run(f"{turns.tolist()}.map(polhode.slowed)")
-        np.testing.assert_allclose(found, [slowed(float(turn)) for turn in turns], rtol=1e-12)
+        np.testing.assert_allclose(found, [slowdown(float(turn)) for turn in turns], rtol=1e-12)
         told = "[...document.querySelectorAll('#readouts div')].map((row) => row.textContent)"
         assert "roll wheel314.0 rad/s, drawn 50× slower" in browser.run(told)
         names = browser.run("polhode.views.space.written.map((one) => one.name)")

@@ -20,10 +20,10 @@ TIMES = (0.0, 1.5, 4.0)
 
 def twisted(n: int = 300, *, t: Any = TIMES, seed: int = 5, **options: Any) -> polhode.Ensemble:
     """Bodies, starts and loads that are all drawn; a few bodies break the triangle inequality."""
-    bodies = distributions.made(
+    bodies = distributions.apply(
         RigidBody.from_principal, 1.0, distributions.normal((1.0, 2.0, 2.9), sigma=0.04)
     )
-    twist = distributions.made(loads.constant_torque, distributions.normal((0.0, 0.1, 0.0), sigma=0.1))
+    twist = distributions.apply(loads.constant_torque, distributions.normal((0.0, 0.1, 0.0), sigma=0.1))
     return polhode.ensemble(
         bodies, t, SPIN, distributions.uniform_rotation(), twist, n=n, seed=seed, **options
     )

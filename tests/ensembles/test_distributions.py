@@ -11,7 +11,7 @@ import mpmath
 import numpy as np
 import pytest
 from polhode import RigidBody, _core, distributions, loads
-from polhode.distributions import made, normal, per_member, samples, uniform, uniform_rotation
+from polhode.distributions import apply, normal, per_member, samples, uniform, uniform_rotation
 from polhode.errors import PolhodeError
 from scipy import stats
 
@@ -224,8 +224,8 @@ PRINTED = [
     (uniform_rotation, "UniformRotation()"),
     (lambda: samples(np.zeros((9, 3))), "Samples(values=<shape (9, 3)>, order='as given')"),
     (lambda: per_member(id, name="b"), "PerMember(id, name='b')"),
-    (lambda: made(operator.add, 1, uniform(0, 1)), "Made(add, 1, Uniform(low=0.0, high=1.0))"),
-    (lambda: made(loads.damping, matrix=2), "Made(damping, matrix=2)"),
+    (lambda: apply(operator.add, 1, uniform(0, 1)), "FunctionOfDraws(add, 1, Uniform(low=0.0, high=1.0))"),
+    (lambda: apply(loads.damping, matrix=2), "FunctionOfDraws(damping, matrix=2)"),
 ]
 
 
@@ -251,7 +251,7 @@ REFUSED: list[tuple[Any, type[Exception], str]] = [
     (lambda: samples(3.0), ValueError, "with one row at least"),
     (lambda: samples([1.0], "random"), ValueError, "order: expected"),  # type: ignore[arg-type]
     (lambda: samples([1.0]).draw(2, seed=1), ValueError, "2 members want a row each"),
-    (lambda: made(3), TypeError, "function: expected a function"),  # type: ignore[arg-type]
+    (lambda: apply(3), TypeError, "function: expected a function"),  # type: ignore[arg-type]
     (lambda: per_member(3), TypeError, "function: expected a function"),  # type: ignore[arg-type]
     (lambda: uniform(0, 1, name=""), TypeError, "name: expected a word"),
     (lambda: uniform(0, 1).draw(1, seed=-1), ValueError, "seed: expected an integer from 0"),
@@ -268,6 +268,6 @@ def test_refused(call: Any, kind: type[Exception], told: str) -> None:
 
 
 def test_made_bodies_have_the_numbers_that_are_drawn() -> None:
-    recipe = made(RigidBody.from_principal, 1.0, normal((1.0, 2.0, 2.5), sigma=0.01))
+    recipe = apply(RigidBody.from_principal, 1.0, normal((1.0, 2.0, 2.5), sigma=0.01))
     assert list(recipe.parts()) == ["0", "1"]
-    assert distributions.made(dict, b=1, a=2).parts() == {"a": 2, "b": 1}
+    assert distributions.apply(dict, b=1, a=2).parts() == {"a": 2, "b": 1}

@@ -54,7 +54,7 @@ class TestMembers:
     @pytest.mark.parametrize("method", ["auto", "taylor", "dop853", "splitting"])
     def test_chunks_change_no_bit(self, method: str) -> None:
         torque = distributions.normal((0, 0.1, 0), sigma=0.1)
-        twist = distributions.made(loads.constant_torque, torque, "space") if method == "taylor" else None
+        twist = distributions.apply(loads.constant_torque, torque, "space") if method == "taylor" else None
         found = {
             all_bytes(
                 ensemble(BODY, TIMES, SPIN, load=twist, n=50, seed=2, chunk=chunk, method=method).compute()
@@ -71,7 +71,7 @@ class TestMembers:
 
         friction = distributions.samples(np.where(np.arange(30) % 3 == 1, 0.02, 0.0))
         many = [
-            ensemble(BODY, TIMES, SPIN, load=distributions.made(wheel, friction), n=30, seed=1, chunk=chunk)
+            ensemble(BODY, TIMES, SPIN, load=distributions.apply(wheel, friction), n=30, seed=1, chunk=chunk)
             for chunk in (1, 3, 30)
         ]
         assert len({all_bytes(one.compute()) for one in many}) == 1
@@ -81,7 +81,7 @@ class TestMembers:
         # Who has dry friction later than in the first members is told.
         late = distributions.samples(np.where(np.arange(30) == 29, 0.02, 0.0))
         with pytest.raises(ValueError, match='the method "taylor" needs loads whose series'):
-            ensemble(BODY, TIMES, SPIN, load=distributions.made(wheel, late), n=30, seed=1).compute()
+            ensemble(BODY, TIMES, SPIN, load=distributions.apply(wheel, late), n=30, seed=1).compute()
 
     def test_threads_and_lanes_change_no_bit(self) -> None:
         code = (
@@ -111,7 +111,7 @@ class TestMembers:
         assert few.omega.dims == ("member", "omega_0"), "what was drawn, where the state is not kept"
 
     def test_orbits_are_drawn_too(self) -> None:
-        pull = distributions.made(
+        pull = distributions.apply(
             loads.gravity_gradient,
             4.0,
             position=distributions.normal((3, 0, 0), sigma=0.01),
@@ -160,7 +160,7 @@ class TestSources:
         assert np.array_equal(named.omega, named.velocity)
 
     def test_rotations_are_made(self) -> None:
-        turn = distributions.made(Rotation.from_rotvec, distributions.normal((0, 0, 0), sigma=1.0))
+        turn = distributions.apply(Rotation.from_rotvec, distributions.normal((0, 0, 0), sigma=1.0))
         found = ensemble(BODY, [0.0], SPIN, turn, n=5, seed=1).compute()
         want = Rotation.from_rotvec(found["attitude.0"].values)
         assert (want.inv() * Rotation.from_quat(found.quaternion[:, 0].values)).magnitude().max() < 1e-15
@@ -172,15 +172,15 @@ class TestSources:
         }
         both = [
             ensemble(BODY, TIMES, SPIN, n=3, seed=1,
-                     load=distributions.made(loads.gravity_gradient, 4.0, **dict(order)))
+                     load=distributions.apply(loads.gravity_gradient, 4.0, **dict(order)))
             for order in (parts.items(), reversed(parts.items()))
         ]  # fmt: skip
         assert all_bytes(both[0].compute()) == all_bytes(both[1].compute())
         assert fingerprint(both[0].plan) == fingerprint(both[1].plan)
 
     def test_sums_of_loads_are_made(self) -> None:
-        part = distributions.made(loads.constant_torque, distributions.normal((0, 0, 0), sigma=0.1))
-        load = distributions.made(operator.add, part, loads.damping(np.eye(3) * 0.1))
+        part = distributions.apply(loads.constant_torque, distributions.normal((0, 0, 0), sigma=0.1))
+        load = distributions.apply(operator.add, part, loads.damping(np.eye(3) * 0.1))
         found = ensemble(BODY, TIMES, SPIN, load=load, n=3, seed=1).compute()
         one = loads.constant_torque(found["load.0.0"][1].values) + loads.damping(np.eye(3) * 0.1)
         assert np.array_equal(BODY.simulate(TIMES, found.omega[1, 0].values, load=one).omega, found.omega[1])
@@ -223,7 +223,7 @@ class TestFailures:
             ensemble(BODY, TIMES, omega, n=3, seed=1)
 
     def test_a_call_that_nobody_can_begin_is_wrong(self) -> None:
-        flat = distributions.made(RigidBody.from_principal, 1.0, distributions.normal((1, 1, 9), sigma=0.1))
+        flat = distributions.apply(RigidBody.from_principal, 1.0, distributions.normal((1, 1, 9), sigma=0.1))
         with pytest.raises(InvalidInertiaError, match="none of the first 16 members can begin; member 0"):
             ensemble(flat, TIMES, SPIN, n=100, seed=1)
 
@@ -243,7 +243,7 @@ REFUSED: list[tuple[dict[str, Any], type[Exception], str]] = [
     ({"body": RigidBody.stack([BODY, BODY])}, ValueError, "body: expected one for all members"),
     ({"body": BODY.with_sigma(mass=0.1)}, ValueError, "body: carries a covariance"),
     ({"omega": Uncertain((0, 0, 1), sigma=0.1)}, TypeError, "omega: an Uncertain is given"),
-    ({"body": distributions.made(abs, 2.0)}, TypeError, "body: expected a RigidBody for each member"),
+    ({"body": distributions.apply(abs, 2.0)}, TypeError, "body: expected a RigidBody for each member"),
     ({"load": 3.0}, TypeError, "load: expected a Load, a distribution"),
     ({"load": lambda _: 3.0}, TypeError, "load: expected a Load for each member, got float"),
     ({"method": "euler"}, ValueError, "method: expected one of"),
@@ -262,7 +262,7 @@ REFUSED: list[tuple[dict[str, Any], type[Exception], str]] = [
     ({"client": 3}, TypeError, "client: expected a dask.distributed.Client, got int"),
     ({"progress": 3}, TypeError, "progress: expected True, False, None or a function"),
     (
-        {"about": "origin", "body": distributions.made(RigidBody.from_principal, MASS, (1.0, 1.0, 1.5))},
+        {"about": "origin", "body": distributions.apply(RigidBody.from_principal, MASS, (1.0, 1.0, 1.5))},
         ValueError,
         'method: "auto" would choose by the bodies of a chunk',
     ),

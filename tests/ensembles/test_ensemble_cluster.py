@@ -194,7 +194,7 @@ def test_workers_with_another_polhode_are_refused(workers: Any, monkeypatch: pyt
 
 def test_a_worker_that_comes_later_is_refused_too() -> None:
     with pytest.raises(RuntimeError, match=r"this worker has polhode .* and the client polhode 0\.0\.9"):
-        cluster_of_ensembles._received(b"", ("0.0.9", "0" * 32))
+        cluster_of_ensembles._deserialize(b"", ("0.0.9", "0" * 32))
 
 
 def test_ctrl_c_cancels(workers: Any) -> None:

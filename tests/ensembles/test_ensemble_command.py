@@ -17,7 +17,7 @@ import pytest
 from command_line import one_line, run, write_obj
 from oracles.meshes import cube
 from polhode import RigidBody, distributions, ensemble, loads
-from polhode.cli.ensemble import kept, numbers
+from polhode.cli.ensemble import make_reductions, numbers
 from polhode.euler_angles import to_quaternion
 from scipy.spatial.transform import Rotation
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 MOMENTS = ("--moments", "1.00 ± 0.01, 2.00(2), 2.5")
 SPIN = ("--omega", "0, 1.00 ± 0.05, 0.01")
 FREE = (*MOMENTS, *SPIN, "--attitude", "any", "--end", "20 s", "--n", "5000", "--seed", "7")
-BODY = distributions.made(
+BODY = distributions.apply(
     RigidBody.from_principal,
     1.0,
     distributions.normal((1.0, 2.0, 2.5), sigma=(0.01, 0.02, 0.0)),
@@ -65,7 +65,7 @@ def rows_of(values: dict[str, Any]) -> Any:
 class TestSpread:
     def test_it_is_that_of_python_to_the_last_bit(self) -> None:
         values = told(*FREE)
-        want = free(reduce=kept(has_modes=True))
+        want = free(reduce=make_reductions(has_modes=True))
         assert rows_of(values).tobytes() == as_rows(want).tobytes()
         table = want.compute()["modes"].table.sum(axis=0)
         assert sum(row["share"] for row in values["modes"]) == pytest.approx(1.0)
@@ -86,7 +86,7 @@ class TestSpread:
                     "--moments", "1.0 to 1.1, 2, 2.5", "--mass", "2.0 ± 0.1 kg", "--omega", "0 0 1",
                     "--wheel", "e1, 0.5", "--wheel", "0, 3, 4, 1 N m s", "--attitude", "0 0.5 0",
                 ),
-                distributions.made(
+                distributions.apply(
                     RigidBody.from_principal,
                     distributions.normal(2.0, sigma=0.1),
                     distributions.uniform((1.0, 2, 2.5), (1.1, 2, 2.5)),
@@ -103,7 +103,7 @@ class TestSpread:
                     "--gravity", "9.81", "--omega", "0, 0, 20.0 ± 0.5", "--attitude", "0, 0.5 ± 0.1, 0",
                     "--method", "exact",
                 ),
-                distributions.made(
+                distributions.apply(
                     RigidBody.from_principal,
                     distributions.normal(1.0, sigma=0.1),
                     np.array((2.0, 2.0, 1.0)),
@@ -114,7 +114,7 @@ class TestSpread:
                     "load": loads.uniform_gravity((0, 0, -9.81)),
                     "about": "origin",
                     "method": "exact",
-                    "attitude": distributions.made(
+                    "attitude": distributions.apply(
                         to_quaternion, distributions.normal((0, 0.5, 0), sigma=(0, 0.1, 0))
                     ),
                 },
@@ -126,7 +126,7 @@ class TestSpread:
         self, words: tuple[str, ...], body: Any, omega: Any, more: dict[str, Any]
     ) -> None:
         values = told(*words, "--end", "3", "--n", "300")
-        want = ensemble(body, [0, 3], omega, n=300, seed=0, reduce=kept(has_modes=False), **more)
+        want = ensemble(body, [0, 3], omega, n=300, seed=0, reduce=make_reductions(has_modes=False), **more)
         assert rows_of(values).tobytes() == as_rows(want).tobytes()
         assert "modes" not in values
 
@@ -139,7 +139,7 @@ class TestSpread:
             distributions.uniform((0, 0, 1), (0, 0, 2)),
             n=50,
             seed=0,
-            reduce=kept(has_modes=True),
+            reduce=make_reductions(has_modes=True),
         )
         assert rows_of(values).tobytes() == as_rows(want).tobytes()
         assert "density 1 was used" in " ".join(values["notes"])

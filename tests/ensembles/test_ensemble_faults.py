@@ -202,7 +202,7 @@ class TestWhatCannotBeSent:
         with pytest.raises(
             TypeError, match=r"client: a function .* cannot be sent to workers: .*lock.*; make locks"
         ):
-            cluster_of_ensembles._sent(self.held().plan)
+            cluster_of_ensembles._serialize(self.held().plan)
         with pytest.raises(
             TypeError, match=r"cannot be told from another one in files: .*lock.*; make locks"
         ):
@@ -227,7 +227,7 @@ def inverse(numbers: Any) -> Any:
             ["raised by ", "for member 0", "in the argument 'omega' of the ensemble"],
         ),
         (
-            lambda: once(body=distributions.made(inverse, distributions.normal(1.0, sigma=0.1))),
+            lambda: once(body=distributions.apply(inverse, distributions.normal(1.0, sigma=0.1))),
             ["in the argument 'body' of the ensemble"],
         ),
         (

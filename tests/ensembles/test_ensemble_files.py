@@ -260,7 +260,7 @@ class TestCheckpoints:
         """A run may be ended while two nodes are merged."""
         path = tmp_path / "kept.npz"
         mean = all_reductions()["mean"]
-        merged, calls = type(mean).merged, 0
+        merged, calls = type(mean).merge, 0
 
         def ends(*arguments: Any) -> Any:
             nonlocal calls
@@ -271,7 +271,7 @@ class TestCheckpoints:
 
         monkeypatch.setattr("polhode.ensembles.checkpoints._BETWEEN", 0.0)
         with monkeypatch.context() as patch:
-            patch.setattr(type(mean), "merged", ends)
+            patch.setattr(type(mean), "merge", ends)
             with pytest.raises(KeyboardInterrupt):
                 self.reduced(reduce=mean).compute(checkpoint=path)
         told: list[float] = []

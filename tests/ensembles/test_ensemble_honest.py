@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from polhode import RigidBody, distributions, ensemble, flybys, loads, orbits, reductions
 from polhode.errors import PolhodeError
-from polhode.reductions import Order, level_of, ordered
+from polhode.reductions import Order, level_of, sort_columns
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -57,7 +57,7 @@ def test_drawn_elements_that_make_no_orbit_refuse_their_members() -> None:
             orbits.from_elements(1.0, eccentricity=eccentricity, periapsis=3.0, epoch=0.0)
         )
 
-    drawn = distributions.made(pull, distributions.uniform(-1.0, 1.0))
+    drawn = distributions.apply(pull, distributions.uniform(-1.0, 1.0))
     states = ensemble(BODY, [0, 1], SPIN, load=drawn, n=50, seed=1).compute()
     assert 10 < (states.status == "refused").sum() < 40
 
@@ -73,7 +73,7 @@ def test_a_state_needs_a_name_of_its_own(name: str) -> None:
     def made(friction: np.ndarray) -> loads.Load:
         return wheel(name=name, friction=friction)
 
-    drawn = distributions.made(made, friction=distributions.uniform(0.0, 0.1))
+    drawn = distributions.apply(made, friction=distributions.uniform(0.0, 0.1))
     with pytest.raises(ValueError, match=r"load: a state has the name .* by name="):
         ensemble(BODY, [0, 1], SPIN, load=drawn, n=2, seed=1)
 
@@ -91,7 +91,7 @@ def test_any_other_word_may_name_a_state(name: str, tmp_path: Path) -> None:
     [
         (lambda: few([0, 1], loads.damping(0.1), method="splitting"), "splitting"),
         (lambda: few([1, 0], wheel(dry_friction=0.02)), "ascending"),
-        (lambda: few([0, 1], distributions.made(wheel, **{"a.b": SPIN})), "no name"),
+        (lambda: few([0, 1], distributions.apply(wheel, **{"a.b": SPIN})), "no name"),
         (lambda: SPIN.draw(-1, seed=1), "n: expected"),
         (lambda: distributions.samples([1.0, 2.0]).draw(1, seed=1, first=-1), "first: expected"),
         (
@@ -110,7 +110,7 @@ def test_a_call_that_is_wrong_for_all_is_told_at_once(make: Callable[[], object]
 
 def test_arrays_that_are_given_may_change_afterwards() -> None:
     moments = np.array([1.0, 2.0, 2.5])
-    drawn = distributions.made(RigidBody.from_principal, distributions.uniform(1, 2), moments)
+    drawn = distributions.apply(RigidBody.from_principal, distributions.uniform(1, 2), moments)
     many = ensemble(drawn, [0, 1], (0.1, 0.2, 1.0), n=3, seed=1)
     before = many.compute().omega.to_numpy()
     moments[2] = 2.9
@@ -171,10 +171,10 @@ def test_what_is_reduced_has_one_shape() -> None:
 def sketched(seed: int) -> float:
     """Sketch 64 blocks in a tree of equals; by how much ranks are off, in parts of the bound, on average."""
     rng = np.random.default_rng(seed)
-    blocks = [ordered(rng.uniform(size=(64, 1))) for _ in range(64)]
+    blocks = [sort_columns(rng.uniform(size=(64, 1))) for _ in range(64)]
     every = np.sort(np.concatenate([block.buffers[1] for block in blocks]), axis=0)[:, 0]
     while len(blocks) > 1:
-        blocks = [one.merged(other, 64) for one, other in zip(blocks[::2], blocks[1::2], strict=True)]
+        blocks = [one.merge(other, 64) for one, other in zip(blocks[::2], blocks[1::2], strict=True)]
     sketch: Order = blocks[0]
     parts = np.linspace(0.05, 0.95, 91)
     off = np.searchsorted(every, level_of(sketch, parts)[:, 0]) - parts * (len(every) - 1)

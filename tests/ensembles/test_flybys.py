@@ -269,9 +269,7 @@ def test_an_orbit_just_beyond_the_planet_and_a_parabola_are_flybys() -> None:
     assert not passed(3, radius=38011.48).failed.any()
     parabola = orbits.from_elements(EARTH, eccentricity=1.0, periapsis=4e4, since_periapsis=-DAY)
     assert not flybys.flyby(APOPHIS, parabola, 2 * DAY, n=3, **PERIODS).failed.any()
-    code, _, err = run(
-        "flyby", *WORDS[:-6], "--eccentricity", "1", "--periapsis", "6371.1 km", "--n", "3"
-    )
+    code, _, err = run("flyby", *WORDS[:-6], "--eccentricity", "1", "--periapsis", "6371.1 km", "--n", "3")
     assert code == 0, err
 
 

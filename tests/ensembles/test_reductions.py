@@ -11,7 +11,7 @@ import pytest
 from ensemble_cases import BODY, SPIN, TIMES, all_bytes, all_reductions, last_spin, twisted
 from polhode import RigidBody, distributions, ensemble, loads, reductions
 from polhode.ensembles.reduce import Tree
-from polhode.reductions import compacted, halved, level_of, moments, ordered
+from polhode.reductions import compact, level_of, moments, sort_columns, sum_by_halves
 
 N = 10_000
 
@@ -106,12 +106,12 @@ class TestSums:
     def test_halves_hold_every_row_once(self, count: int, rng: np.random.Generator) -> None:
         rows = rng.normal(size=(count, 2))
         exact = [float(sum(map(Fraction, column.tolist()))) for column in rows.T]
-        assert np.abs(halved(rows) - exact).max() < 1e-15 * count**0.5 * 4
+        assert np.abs(sum_by_halves(rows) - exact).max() < 1e-15 * count**0.5 * 4
 
     def test_moments_of_parts_are_those_of_all(self, rng: np.random.Generator) -> None:
         rows = 1e8 + rng.normal(size=(1000, 3))
         parts = [moments(part, products=True) for part in np.split(rows, [1, 300, 777])]
-        both = parts[0].merged(parts[1]).merged(parts[2].merged(parts[3]))
+        both = parts[0].merge(parts[1]).merge(parts[2].merge(parts[3]))
         assert both.members == 1000
         assert np.abs(both.mean - rows.mean(axis=0)).max() < 1e-7
         assert np.abs(np.asarray(both.products) / 999 - np.cov(rows.T)).max() < 1e-6
@@ -122,7 +122,7 @@ class TestSums:
         rows[place, :4] = np.inf, -np.inf, np.nan, np.inf
         rows[100, 3] = -np.inf
         one, other = (moments(part, products=True) for part in np.split(rows, 2))
-        for both in (one.merged(other), other.merged(one)):
+        for both in (one.merge(other), other.merge(one)):
             assert np.array_equal(both.mean[:4], [np.inf, -np.inf, np.nan, np.nan], equal_nan=True)
             products = np.asarray(both.products)
             assert np.isnan(products[:4]).all()
@@ -149,9 +149,9 @@ class TestSketch:
             values = np.sort(values, axis=0)
         if kind == "few values":
             values = np.round(values * 2)
-        tree: Tree[Any] = Tree(100, lambda one, other: one.merged(other, most))
+        tree: Tree[Any] = Tree(100, lambda one, other: one.merge(other, most))
         for index, part in enumerate(np.split(values, 100)):
-            tree.add((0, index), compacted(ordered(part), most))
+            tree.add((0, index), compact(sort_columns(part), most))
         sketch = tree.root
         assert sum(weight * len(held) for weight, held in sketch.buffers.items()) == 20_000
         assert sum(map(len, sketch.buffers.values())) < 12 * most

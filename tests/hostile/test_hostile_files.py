@@ -110,7 +110,7 @@ class TestBudget:
         most = least + int(Fraction(per_byte) * size)
         budget = Budget("a.file", size)
         budget.spend(kind, most)
-        assert budget.left(kind) == 0
+        assert budget.remaining(kind) == 0
         with pytest.raises(LimitError, match=rf"^a\.file: there are more than {most} {kind}") as caught:
             budget.spend(kind)
         assert str(caught.value).endswith(f"; {way_out}")

@@ -143,7 +143,7 @@ def _triangles(path: Path) -> object:
 def _robot(path: Path) -> object:
     robot = robots.read_robot(path)
     verdicts = robots.check(robot)
-    robots.fixed(robot, verdicts)
+    robots.fix(robot, verdicts)
     return [(link.name, link.inertial.mass if link.inertial else None) for link in robot.links]
 
 

@@ -38,7 +38,10 @@ class TestReport:
         if has_union:
             alone = self.report(path, "--length-unit", "m", "--density", "2", "--union")
             assert alone["mass"] == pytest.approx(2 * 1.21, rel=1e-12)
-            assert any("the error bounds do not include how far this moves corners" in note for note in alone["notes"])
+            assert any(
+                "the error bounds do not include how far this moves corners" in note
+                for note in alone["notes"]
+            )
 
     @pytest.mark.parametrize("marks", [" # of {}", " \\\n", "/1/1 \\\r\n "])
     def test_names_of_groups_whatever_stands_in_the_lines_of_faces(self, tmp_path: Path, marks: str) -> None:

@@ -14,7 +14,7 @@ from polhode import RigidBody, solids
 from polhode.errors import MeshError
 from polhode.io import components
 from polhode.io.components import labels, overlaps, parts_of, winding
-from polhode.io.union import shared_volume, united
+from polhode.io.union import shared_volume, unite
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -148,12 +148,12 @@ class TestOverlaps:
 
     def test_many_are_told_in_few_lines(self) -> None:
         known = [components.Overlap("1", str(k), 0.1 * k, False) for k in range(2, 12)]
-        lines = components.told(known, 10.0, " m^3")
+        lines = components.describe_overlaps(known, 10.0, " m^3")
         assert lines[0] == "components 1 and 11 overlap: 1.1 m^3 (11 % of the volume) counts twice"
         assert len(lines) == 9
         assert lines[-1] == "2 more pairs of components overlap"
         unknown = [components.Overlap("1", str(k), float("nan"), False) for k in range(2, 12)]
-        (line,) = components.told(unknown, 10.0)
+        (line,) = components.describe_overlaps(unknown, 10.0)
         assert line.startswith("components 1 and 2, 1 and 3, ")
         assert " and 2 pairs more overlap: what they share counts twice; " in line
 
@@ -167,7 +167,7 @@ class TestUnion:
         for open_faces in (faces[:-1], faces[:9], np.concatenate([faces[:-1], faces[-1:, ::-1]])):
             assert np.isnan(shared_volume((vertices, open_faces), other))
             with pytest.raises(MeshError, match="a component is open"):
-                united([(vertices, open_faces), other], "OBJ")
+                unite([(vertices, open_faces), other], "OBJ")
         assert shared_volume((vertices, faces), other) == pytest.approx(0.5, rel=1e-12)
 
     @pytest.mark.parametrize("count", [2, 3, 4])

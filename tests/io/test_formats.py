@@ -313,14 +313,14 @@ class TestPacked:
         data = ascii_stl(*CUBE)
         path = written(tmp_path / "part.stl.gz", gzip.compress(data))
         monkeypatch.setitem(LIMITS, "unpacked bytes", Limit(len(data), 0.0, "unpack it"))
-        with unpacked.unpacked(path) as inside:
+        with unpacked.unpack(path) as inside:
             assert inside.read_bytes() == data
         monkeypatch.setitem(LIMITS, "unpacked bytes", Limit(len(data) - 1, 0.0, "unpack it"))
         with (
             pytest.raises(
                 FileFormatError, match=f"there are more than {len(data) - 1} unpacked bytes; unpack it"
             ),
-            unpacked.unpacked(path),
+            unpacked.unpack(path),
         ):
             pass
         assert not inside.exists()

@@ -164,9 +164,9 @@ def test_an_error_leaves_an_accumulator_as_it_was(cloud: Any, tmp_path: Path) ->
 
 
 def test_files_are_read_in_pieces(cloud: Any, whole: RigidBody, tmp_path: Path, monkeypatch: Any) -> None:
-    from polhode.ensembles.lazy_arrays import particles
+    from polhode.ensembles import lazy_arrays
 
-    monkeypatch.setattr(particles, "_PIECE", 8192)
+    monkeypatch.setattr(lazy_arrays, "_PIECE", 8192)
     masses, positions = cloud
     rows = np.column_stack([masses, positions])
     np.save(tmp_path / "rows.npy", rows)
@@ -238,9 +238,9 @@ def test_masks_and_units_within_chunks_are_refused(cloud: Any) -> None:
 
 @pytest.mark.parametrize("start", [0, 100])
 def test_errors_name_the_rows_of_the_whole(start: int, tmp_path: Path, monkeypatch: Any) -> None:
-    from polhode.ensembles.lazy_arrays import particles
+    from polhode.ensembles import lazy_arrays
 
-    monkeypatch.setattr(particles, "_PIECE", 4096)
+    monkeypatch.setattr(lazy_arrays, "_PIECE", 4096)
     row, places = 4096 + 17, np.ones((10_000, 3))
     masses, masked = np.ones(10_000), np.ma.ones(10_000)
     masses[row], masked[row] = -1.0, np.ma.masked
@@ -289,9 +289,9 @@ def test_no_library_is_imported_for_others() -> None:
 
 
 def test_workers_with_another_polhode_are_refused(cloud: Any) -> None:
-    from polhode.ensembles.lazy_arrays import particles
+    from polhode.ensembles import lazy_arrays
 
     with pytest.raises(
         RuntimeError, match=r"this worker has polhode .* and the client polhode 0\.0\.9 \(core 0000"
     ):
-        particles._placed(cloud[0], cloud[1], (slice(0, 1),), first=0, wanted=("0.0.9", "0" * 32))
+        lazy_arrays._sum_chunk(cloud[0], cloud[1], (slice(0, 1),), first=0, wanted=("0.0.9", "0" * 32))

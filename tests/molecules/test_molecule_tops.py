@@ -351,7 +351,10 @@ class TestTheCommand:
         assert exact["top_rtol"] == [1e-6, 1e-6, 1e-6]
         assert "the file has enough digits" in exact["top_rtol_from"]
         (tmp_path / "whole.xyz").write_text("2\n\nO 0 0 0\nO 0 0 1\n")
-        assert "the coordinates in the file have no decimals" in self.report(tmp_path / "whole.xyz")["top_rtol_from"]
+        assert (
+            "the coordinates in the file have no decimals"
+            in self.report(tmp_path / "whole.xyz")["top_rtol_from"]
+        )
         for command in ("report", "spin"):
             words = ("--omega", 0, 0, 1) if command == "spin" else ()
             told = json.loads(run(command, path, *words, "--format", "json")[1])

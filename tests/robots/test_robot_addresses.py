@@ -267,7 +267,7 @@ def test_devices_are_not_read_even_where_all_is_allowed(arm: Path) -> None:
 
 
 def test_a_code_that_no_file_name_has() -> None:
-    shape = robots.Shape("mesh", (1.0, 1.0, 1.0), robots.Place.here(), "collision", mesh="a\0b")
+    shape = robots.Shape("mesh", (1.0, 1.0, 1.0), robots.Place.identity(), "collision", mesh="a\0b")
     link = robots.Link("a", 1, robots.Inertial(1.0, np.zeros(3), np.eye(3)), shapes=(shape,))
     (verdict,) = robots.check(robots.Robot("URDF", "r", (link,), Path(), b""))
     assert "a character of code 0" in verdict.notes[0]

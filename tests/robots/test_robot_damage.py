@@ -58,7 +58,7 @@ def judged(path: Path) -> str:
     verdicts = robots.check(robot, density=1000.0)
     assert {verdict.verdict for verdict in verdicts} <= WORDS
     assert all(len(verdict.reason) < 1500 for verdict in verdicts)
-    better = robots.fixed(robot, verdicts, WORDS)
+    better = robots.fix(robot, verdicts, WORDS)
     again = robots.parse_robot(better, name="better", folder=robot.folder)
     own, written = ([link.name for link in each.links if not link.file] for each in (robot, again))
     assert own == written

@@ -1,4 +1,4 @@
-"""What ``fixed`` and ``check --fix`` write: what is missing, in the form of the file, with warnings."""
+"""What ``fix`` and ``check --fix`` write: what is missing, in the form of the file, with warnings."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class TestWhatIsMissing:
         robot = parsed(ARM)
         verdicts = robots.check(robot)
         assert [v.verdict for v in verdicts] == ["none", "missing"]
-        assert robots.fixed(robot, verdicts) == robot.source
+        assert robots.fix(robot, verdicts) == robot.source
 
     @pytest.mark.parametrize(
         "text",
@@ -75,7 +75,7 @@ class TestWhatIsMissing:
     )
     def test_is_what_the_shape_says(self, text: str) -> None:
         robot = parsed(text)
-        fixed = robots.fixed(robot, robots.check(robot, density=1000.0))
+        fixed = robots.fix(robot, robots.check(robot, density=1000.0))
         again = parsed(fixed)
         a = again.links[-1]
         inertial = there(a.inertial)
@@ -87,7 +87,7 @@ class TestWhatIsMissing:
     def test_stands_in_the_form_of_the_file(self) -> None:
         robot = parsed(INDENTED)
         before = INDENTED.splitlines()
-        after = robots.fixed(robot, robots.check(robot, density=1000.0)).decode().splitlines()
+        after = robots.fix(robot, robots.check(robot, density=1000.0)).decode().splitlines()
         added = [
             "\t\t<inertial>",
             '\t\t\t<origin xyz="0.0 0.0 1.0" rpy="0 0 0"/>',

@@ -13,7 +13,7 @@ from command_line import one_line, run
 from polhode import robots
 from polhode.errors import FileFormatError
 from polhode.io.reading import LIMITS
-from polhode.io.xml_source import Edit, edited, parse_xml
+from polhode.io.xml_source import Edit, apply_edits, parse_xml
 from polhode.robots.sources import read_source, read_stream
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ def read_and_fixed(text: str) -> Callable[[], object]:
         better = robots.Inertial(2.0, np.zeros(3), np.diag([1.0, 2.0, 2.5]))
         found = robots.Verdict("", 1, "impossible", "", better=better)
         verdicts = [found for _ in robot.links]
-        robots.fixed(robot, verdicts)
+        robots.fix(robot, verdicts)
 
     return work
 
@@ -113,11 +113,11 @@ class TestEdits:
             want = source
             for edit in reversed(edits):
                 want = want[: edit.start] + edit.text.encode() + want[edit.end :]
-            assert edited(source, [edits[i] for i in rng.permutation(len(edits))]) == want
+            assert apply_edits(source, [edits[i] for i in rng.permutation(len(edits))]) == want
 
     def test_one_within_another_is_refused(self) -> None:
         with pytest.raises(ValueError, match="starts at byte 2, within another"):
-            edited(b"abcdef", [Edit(0, 3, ""), Edit(2, 4, "")])
+            apply_edits(b"abcdef", [Edit(0, 3, ""), Edit(2, 4, "")])
 
 
 class TestDepth:
@@ -294,7 +294,7 @@ class TestEncodings:
         robot = robots.parse_robot(text.encode("latin-1"), name="r", folder=".")
         (verdict,) = robots.check(robot)
         assert verdict.name == "Gerät"
-        fixed = robots.fixed(robot, [verdict])
+        fixed = robots.fix(robot, [verdict])
         assert "<!-- für -->".encode("latin-1") in fixed
         (again,) = robots.check(robots.parse_robot(fixed, name="r", folder="."))
         assert again.verdict == "good"

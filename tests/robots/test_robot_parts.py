@@ -187,7 +187,7 @@ class TestMuJoCoParts:
         robot = robots.read_robot(main)
         verdicts = robots.check(robot)
         assert [verdict.verdict for verdict in verdicts] == ["impossible", "placeholder"]
-        after = robots.fixed(robot, verdicts).decode()
+        after = robots.fix(robot, verdicts).decode()
         assert '<include file="b.xml"/>' in after
         assert after.count('diaginertia="0.02 0.02 0.02"') == 1
 

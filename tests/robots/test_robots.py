@@ -101,7 +101,7 @@ def test_a_declaration_may_stand_after_blanks_and_comments(before: str) -> None:
     <collision><geometry><sphere radius="0.1"/></geometry></collision></link></robot>"""
     source = (before + text).encode()
     robot = robots.parse_robot(source, name="one", folder=".")
-    better = robots.fixed(robot, robots.check(robot))
+    better = robots.fix(robot, robots.check(robot))
     assert better == source.replace(b'"1" iyy="1" izz="1"', b'"0.02" iyy="0.02" izz="0.02"').replace(
         b'ixy="0" ixz="0" iyz="0"', b'ixy="0" ixz="0" iyz="0"'
     )
@@ -128,7 +128,7 @@ def test_what_xml_forbids_and_simulators_pass_over(marks: str, note: str) -> Non
     source = (begin + text).encode()
     robot = robots.parse_robot(source, name="one", folder=".")
     assert any(told.startswith(note) and "simulators pass over it" in told for told in robot.notes)
-    better = robots.fixed(robot, robots.check(robot))
+    better = robots.fix(robot, robots.check(robot))
     assert better == source.replace(b'"1" iyy="1" izz="1"', b'"0.02" iyy="0.02" izz="0.02"')
 
 
@@ -174,7 +174,7 @@ class TestThreeFormats:
         robot = written(format_name, (0, 0, 0), np.diag([1.0, 1.0, 1.0]))
         (verdict,) = robots.check(robot)
         assert verdict.verdict == "placeholder"
-        better = robots.fixed(robot, [verdict])
+        better = robots.fix(robot, [verdict])
         again = robots.parse_robot(better, name="better", folder=".")
         np.testing.assert_allclose(there(again.links[0].inertial).inertia, tensor, rtol=0, atol=1e-9)
         np.testing.assert_allclose(there(again.links[0].inertial).center_of_mass, center, rtol=0, atol=1e-9)
@@ -202,14 +202,14 @@ class TestThreeFormats:
         robot = written(format_name, (0.1, 0, 0), np.diag([4e-4, 4e-4, 4e-4 + 1e-5]))
         (verdict,) = robots.check(robot)
         assert verdict.verdict == "suspect"
-        assert robots.fixed(robot, [verdict]) == robot.source
-        assert robots.fixed(robot, [verdict], {"suspect"}) != robot.source
+        assert robots.fix(robot, [verdict]) == robot.source
+        assert robots.fix(robot, [verdict], {"suspect"}) != robot.source
 
 
 class TestFix:
     def test_every_other_byte_stays(self) -> None:
         robot = written("URDF", (0, 0, 0), np.diag([1.0, 1.0, 1.0]))
-        fixed = robots.fixed(robot, robots.check(robot)).decode()
+        fixed = robots.fix(robot, robots.check(robot)).decode()
         before = robot.source.decode().splitlines()
         after = fixed.splitlines()
         assert len(before) == len(after)
@@ -229,7 +229,7 @@ class TestFix:
         (verdict,) = robots.check(robot)
         assert verdict.verdict == "impossible"
         np.testing.assert_allclose(there(verdict.moments), [7.8627e-5, 1.47497e-4, 2.31876e-4], rtol=1e-5)
-        again = robots.parse_robot(robots.fixed(robot, [verdict]), name="r", folder=".")
+        again = robots.parse_robot(robots.fix(robot, [verdict]), name="r", folder=".")
         (better,) = robots.check(again)
         assert better.verdict == "good"
         deficit = 2.31876e-4 - 7.8627e-5 - 1.47497e-4
@@ -245,7 +245,7 @@ class TestFix:
         robot = robots.parse_robot(text, name="r", folder=".")
         (verdict,) = robots.check(robot)
         assert verdict.verdict == "placeholder"  # what the format takes where nothing stands
-        fixed = robots.parse_robot(robots.fixed(robot, [verdict]), name="r", folder=".")
+        fixed = robots.parse_robot(robots.fix(robot, [verdict]), name="r", folder=".")
         again = there(fixed.links[0].inertial)
         np.testing.assert_allclose(again.inertia, np.diag([2.5, 2.5, 1.0]), rtol=1e-9)
         np.testing.assert_allclose(again.center_of_mass, [0, 0, 1], rtol=1e-12)
@@ -318,7 +318,7 @@ def test_what_is_put_right_is_a_body(moments: list[float], size: list[float]) ->
         </geometry></visual></link></robot>"""
     robot = robots.parse_robot(text.encode(), name="r", folder=".")
     verdicts = robots.check(robot)
-    again = robots.parse_robot(robots.fixed(robot, verdicts), name="r", folder=".")
+    again = robots.parse_robot(robots.fix(robot, verdicts), name="r", folder=".")
     (verdict,) = robots.check(again)
     if 2.0 / np.prod(size) > 25_000.0:  # a marker
         assert verdict.shapes == ""

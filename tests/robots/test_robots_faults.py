@@ -43,7 +43,7 @@ class TestOneBadItem:
             assert one.verdict == "unreadable"
             assert re.match(r"line \d+: .* (has|have) to stand$|line \d+: .*correct it$", one.reason)
             assert len(one.reason) < 300
-            assert robots.fixed(robot, [one, two]) == text.encode()
+            assert robots.fix(robot, [one, two]) == text.encode()
 
     @pytest.mark.parametrize(
         ("part", "says"),
@@ -103,7 +103,7 @@ class TestOneBadItem:
         one, two = robots.check(robot)
         assert (one.mass, two.verdict) == (float(mass), "none")
         assert len(one.reason) < 300
-        robots.check(robots.parse_robot(robots.fixed(robot, [one, two]), name="r", folder="."))
+        robots.check(robots.parse_robot(robots.fix(robot, [one, two]), name="r", folder="."))
 
 
 class TestSafety:
@@ -141,7 +141,7 @@ class TestSafety:
             source[data.draw(st.integers(0, len(source) - 1))] = data.draw(st.integers(32, 126))
         with contextlib.suppress(FileFormatError):
             robot = robots.parse_robot(bytes(source), name="r", folder=".")
-            robots.fixed(robot, robots.check(robot))
+            robots.fix(robot, robots.check(robot))
 
 
 def test_what_a_urdf_says_twice_or_amiss_is_told() -> None:

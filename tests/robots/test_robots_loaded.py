@@ -135,7 +135,7 @@ def check_law(seed: int, count: int) -> Counter[str]:
                 verdicts = robots.check(robot, density=density)
             except PolhodeError as error:
                 raise AssertionError(text) from error
-            fixed = robots.fixed(robot, verdicts, words).decode()
+            fixed = robots.fix(robot, verdicts, words).decode()
             for engine, was_loaded in before.items():
                 is_now = is_loaded(engine, fixed)
                 assert is_now or not was_loaded, f"{engine} no longer loads it:\n{text}\n{fixed}"

@@ -220,7 +220,7 @@ def check_fixes(given: Sequence[Floats], rng: np.random.Generator) -> None:
     for text in (urdf_of(in_urdf, 'rpy="0.1 1.2 -2"'), sdf_of(in_sdf), mjcf_of(in_mjcf)):
         robot = parsed(text)
         verdicts = robots.check(robot)
-        fixed = robots.fixed(robot, verdicts)
+        fixed = robots.fix(robot, verdicts)
         again = parsed(fixed)
         for link, verdict in zip(again.links, robots.check(again), strict=True):
             if link.inertial is None:
@@ -347,7 +347,7 @@ class TestFix:
         robot = parsed(around[program])
         verdicts = robots.check(robot)
         assert verdicts[-1].inside is None
-        assert robots.fixed(robot, verdicts) == robot.source
+        assert robots.fix(robot, verdicts) == robot.source
         says = "no extent" if program == "sdf" else "MuJoCo refuses what has no more than 1e-1"
         assert any(says in note for note in verdicts[-1].notes)
 
@@ -355,7 +355,7 @@ class TestFix:
         robot = parsed(self.PLATE.format("1.9999999e-6"))
         verdicts = robots.check(robot)
         assert [verdict.inside for verdict in verdicts] == [None, None]
-        assert robots.fixed(robot, verdicts) == robot.source
+        assert robots.fix(robot, verdicts) == robot.source
 
     @pytest.mark.parametrize(("share", "is_written"), [(0.99, False), (1.01, True)])
     def test_moments_that_mujoco_refuses_are_not_written(self, share: float, is_written: bool) -> None:
@@ -368,7 +368,7 @@ class TestFix:
         (verdict,) = robots.check(robot)
         assert verdict.verdict == "placeholder"
         assert (verdict.better is not None) == is_written
-        assert (robots.fixed(robot, [verdict]) != robot.source) == is_written
+        assert (robots.fix(robot, [verdict]) != robot.source) == is_written
         assert any("MuJoCo refuses what has no more than 1e-14" in n for n in verdict.notes) != is_written
         half = 0.5 * (6e-15 / 1e-10 * share) ** 0.5
         text = mjcf_of(
@@ -380,7 +380,7 @@ class TestFix:
         robot = parsed(text)
         (verdict,) = robots.check(robot)
         assert any("MuJoCo refuses what has no more than 1e-15" in n for n in verdict.notes) != is_written
-        fixed = robots.fixed(robot, [verdict])
+        fixed = robots.fix(robot, [verdict])
         assert (fixed != robot.source) == is_written
         assert refused_by_mujoco(fixed.decode()) == ""
 

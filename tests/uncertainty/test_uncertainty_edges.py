@@ -141,7 +141,7 @@ class TestStarts:
         ):
             assert later.uncertain_start is None
             for name in ("covariance", "sigma"):
-                with pytest.raises(ValueError, match="motion before it"):
+                with pytest.raises(ValueError, match="the motion was resumed"):
                     getattr(later, name)
         certain = polhode.RigidBody(2.0, TENSOR).simulate([0.0, 2.0], SPIN).resume([2.0, 4.0])
         assert certain.covariance is None

@@ -85,7 +85,7 @@ def body_of_part(kind: str, table: Mapping[str, Any], scope: Scope, folder: Path
         if kind == "solid":
             made = _solid(table, scope)
         elif kind == "inertia":
-            made = Matter(_printed(table, scope), scope.metres)
+            made = Matter(_read_inertia(table, scope), scope.metres)
         else:
             made = _file(table, scope, folder)
     except PartError:
@@ -146,7 +146,7 @@ def _solid(table: Mapping[str, Any], scope: Scope) -> Matter:
         raise PartError(f"{scope.where}: {name}: {error}") from None
 
 
-def _printed(table: Mapping[str, Any], scope: Scope) -> RigidBody:
+def _read_inertia(table: Mapping[str, Any], scope: Scope) -> RigidBody:
     given = table["inertia"]
     where = f"{scope.where}: inertia"
     if not isinstance(given, dict):

@@ -1,8 +1,8 @@
 """Where the parts of an assembly share space, so that matter counts twice.
 
-Compared are solids and closed meshes. What two spheres share has a closed form; else manifold3d (extra
-``union``) computes it from the triangles of both. Round solids are taken with two numbers of facets, and the
-volume is extrapolated to smooth ones: their facets differ by the square of their size.
+Solids and closed meshes are compared. The volume that two spheres share has a closed form; else manifold3d
+(extra ``union``) computes it from the triangles of both. Round solids are taken with two numbers of facets,
+and the volume is extrapolated to smooth ones: their facets differ by the square of their size.
 """
 
 from __future__ import annotations
@@ -32,19 +32,19 @@ if TYPE_CHECKING:
     Integers = NDArray[np.int64]
     Surface = tuple[Floats, Integers]
 
-__all__ = ["Form", "Placed", "find_overlaps", "overlap_notes"]
+__all__ = ["Form", "Instance", "find_overlaps", "overlap_notes"]
 
 _FINE, _COARSE = 64, 32
 """Facets around a round solid."""
 _LITTLE: Final = 1e-3
-"""What is shared by less than this, of the smaller part, is contact."""
+"""A shared volume below this fraction of the smaller part is contact."""
 _MOST_PARTS: Final = 3000
 _MOST_PAIRS: Final = 20_000
 _MOST_SURFACES: Final = 300
-"""Of solids, which are made when something is near."""
+"""Largest number of surfaces of solids, which are made only for near parts."""
 _MOST_SIDES: Final = 1000
 _MOST_TRIANGLES: Final = 400_000
-"""Of the parts that are compared, counted once for each pair."""
+"""Largest number of triangles of the compared parts, counted once for each pair."""
 _MOST_TOLD: Final = 8
 _FLAT: Final = ("box", "cube", "prism", "pyramid", "tetrahedron", "wedge")
 
@@ -69,12 +69,12 @@ class Form:
 
     @property
     def is_round(self) -> bool:
-        """Whether its facets only stand for it."""
+        """Whether the surface is curved, so that the facets only approximate it."""
         return self._mesh is None and self.solid not in _FLAT
 
     @property
     def radius(self) -> float | None:
-        """Of a sphere."""
+        """Radius, if the form is a sphere."""
         return float(self._numbers[0]) if self.solid == "sphere" else None
 
     def surface(self, segments: int = _FINE) -> Surface | None:
@@ -96,7 +96,7 @@ class Form:
 
     @cached_property
     def volume(self) -> float:
-        """In m^3; not a number where it has none."""
+        """Volume in m^3; NaN if the form has no volume."""
         surface = self.surface()
         if surface is None:
             return math.nan
@@ -108,12 +108,12 @@ class Form:
 
     @property
     def key(self) -> tuple[object, ...]:
-        """What differs between forms that differ."""
+        """A key that is equal only for equal forms."""
         return self.solid, self._numbers.tobytes(), 0 if self._mesh is None else len(self._mesh[1])
 
     @cached_property
     def reach(self) -> tuple[Floats, Floats]:
-        """Opposite corners of a box that is wide enough, which costs little."""
+        """Opposite corners of a wide bounding box, which is cheap to compute."""
         if self._mesh is None:  # a solid with its centre of mass at the origin is within the sum of its sizes
             size = float(np.abs(self._numbers[1 if self.solid == "prism" else 0 :]).sum())
             return np.full(3, -size), np.full(3, size)
@@ -123,7 +123,7 @@ class Form:
 
     @property
     def is_made(self) -> bool:
-        """Whether its triangles are there."""
+        """Whether the triangles have been computed."""
         return self._mesh is not None or _FINE in self._known
 
     @cached_property
@@ -139,7 +139,7 @@ class Form:
         return (low - more, high + more) if np.isfinite(low).all() and np.isfinite(high).all() else None
 
 
-class Placed(NamedTuple):
+class Instance(NamedTuple):
     """A part at its place."""
 
     name: str
@@ -148,12 +148,12 @@ class Placed(NamedTuple):
     form: Form | None
 
 
-def find_overlaps(parts: Sequence[Placed]) -> tuple[list[Overlap], list[str]]:
-    """Find the parts that share space, and say which were not compared.
+def find_overlaps(parts: Sequence[Instance]) -> tuple[list[Overlap], list[str]]:
+    """Find the parts that share space; return notes on the parts that were not compared.
 
     Parameters
     ----------
-    parts : sequence of Placed
+    parts : sequence of Instance
 
     Returns
     -------
@@ -176,7 +176,7 @@ def find_overlaps(parts: Sequence[Placed]) -> tuple[list[Overlap], list[str]]:
     for i, k in pairs:
         pair = shown[i], shown[k]
         if (volume := _of_spheres(*pair)) is not None:
-            found += _told(*pair, volume, 0.0)
+            found += _describe_overlap(*pair, volume, 0.0)
             continue
         making = sum(not part.form.is_made for part in pair if part.form)
         if making > unmade:
@@ -200,7 +200,7 @@ def find_overlaps(parts: Sequence[Placed]) -> tuple[list[Overlap], list[str]]:
     return found, notes
 
 
-def _at_one_place(parts: Sequence[Placed]) -> tuple[list[Overlap], set[int]]:
+def _at_one_place(parts: Sequence[Instance]) -> tuple[list[Overlap], set[int]]:
     """Find parts that are the same as an earlier one, bit for bit, at the same place."""
     first: dict[tuple[object, ...], int] = {}
     found, twins = [], set()
@@ -218,7 +218,7 @@ def _at_one_place(parts: Sequence[Placed]) -> tuple[list[Overlap], set[int]]:
     return found, twins
 
 
-def _meeting(parts: Sequence[Placed]) -> tuple[list[tuple[int, int]], int]:
+def _meeting(parts: Sequence[Instance]) -> tuple[list[tuple[int, int]], int]:
     """Find pairs that may be near each other, by wide boxes along the axes of the whole; count the rest."""
     if not parts:
         return [], 0
@@ -234,7 +234,7 @@ def _meeting(parts: Sequence[Placed]) -> tuple[list[tuple[int, int]], int]:
     return pairs, more
 
 
-def _near(one: Placed, other: Placed) -> bool:
+def _near(one: Instance, other: Instance) -> bool:
     """Return whether the boxes around the triangles of two parts meet."""
     known = [part.form.box for part in (one, other) if part.form]
     if None in known:
@@ -243,21 +243,21 @@ def _near(one: Placed, other: Placed) -> bool:
     return bool((np.abs(middles[1] - middles[0]) < reach[0] + reach[1]).all())
 
 
-def _boxes(parts: Sequence[Placed], boxes: Floats) -> tuple[Floats, Floats]:
-    """Return the middles and half sides of boxes along the axes of the whole around boxes of parts."""
+def _boxes(parts: Sequence[Instance], boxes: Floats) -> tuple[Floats, Floats]:
+    """Return the middle and half sides of the bounding box of each part, along the axes of the whole."""
     turns = np.array([part.place.rotation for part in parts])
     shifts = np.array([part.place.displacement for part in parts])
     middles = np.einsum("nij,nj->ni", turns, boxes.mean(axis=1)) + shifts
     return middles, np.einsum("nij,nj->ni", np.abs(turns), np.ptp(boxes, axis=1) / 2.0)
 
 
-def _triangles(part: Placed) -> int:
+def _triangles(part: Instance) -> int:
     surface = part.form.surface() if part.form else None
     return len(surface[1]) if surface else 0
 
 
-def _of_spheres(one: Placed, other: Placed) -> float | None:
-    """Compute what two spheres share, in closed form; None for other solids."""
+def _of_spheres(one: Instance, other: Instance) -> float | None:
+    """Compute the volume that two spheres share, in closed form; None for other solids."""
     if one.form is None or other.form is None or one.form.radius is None or other.form.radius is None:
         return None
     a, b = one.form.radius, other.form.radius
@@ -274,13 +274,13 @@ def _of_spheres(one: Placed, other: Placed) -> float | None:
     return volume
 
 
-def _shared(one: Placed, other: Placed) -> list[Overlap]:
+def _shared(one: Instance, other: Instance) -> list[Overlap]:
     """Compare two parts by their triangles."""
     assert one.form is not None  # parts without a form are not compared
     assert other.form is not None
     if not has_union():
         pair = [
-            Part(part.name, *_placed(part, _FINE), part.form.volume, 0)
+            Part(part.name, *_place_surface(part, _FINE), part.form.volume, 0)
             for part in (one, other)
             if part.form is not None
         ]
@@ -290,12 +290,12 @@ def _shared(one: Placed, other: Placed) -> list[Overlap]:
         ]
     fine = _volume(one, other, _FINE)
     if not (one.form.is_round or other.form.is_round):
-        return _told(one, other, fine, 0.0)
-    return _told(one, other, *_smooth(fine, _volume(one, other, _COARSE)))
+        return _describe_overlap(one, other, fine, 0.0)
+    return _describe_overlap(one, other, *_smooth(fine, _volume(one, other, _COARSE)))
 
 
-def _told(one: Placed, other: Placed, volume: float, doubt: float) -> list[Overlap]:
-    """Say that two parts share so much, unless it is contact."""
+def _describe_overlap(one: Instance, other: Instance, volume: float, doubt: float) -> list[Overlap]:
+    """Return the overlap of two parts that share this volume; nothing if they only touch."""
     large, small = sorted((one, other), key=lambda part: -(part.form.volume if part.form else 0.0))
     whole = small.form.volume if small.form else math.nan
     if volume <= max(_LITTLE * whole, doubt):
@@ -304,9 +304,9 @@ def _told(one: Placed, other: Placed, volume: float, doubt: float) -> list[Overl
     return [Overlap("inside" if is_inside else "across", large.name, small.name, volume)]
 
 
-def _volume(one: Placed, other: Placed, segments: int) -> float:
+def _volume(one: Instance, other: Instance, segments: int) -> float:
     try:
-        return shared_volume(_placed(one, segments), _placed(other, segments))
+        return shared_volume(_place_surface(one, segments), _place_surface(other, segments))
     except MeshError:
         return math.nan
 
@@ -321,7 +321,7 @@ def _volume_of(surface: Surface) -> float:
     return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0
 
 
-def _placed(part: Placed, segments: int) -> Surface:
+def _place_surface(part: Instance, segments: int) -> Surface:
     surface = part.form.surface(segments) if part.form else None
     assert surface is not None
     vertices, faces = surface

@@ -8,7 +8,7 @@ import numpy as np
 
 from polhode._hints import with_hints
 from polhode.draw.shape import body_shape
-from polhode.draw.triangles import joined
+from polhode.draw.triangles import cluster_vertices
 from polhode.io.content import is_molecule
 from polhode.io.loaded import CAD_SUFFIXES, SAVED_SUFFIXES, load
 from polhode.io.unpacked import inner_suffix
@@ -68,10 +68,10 @@ def _surface(part: Member, most: int) -> tuple[Floats, NDArray[np.int64]]:
     """Return the triangles of a part where it stands."""
     if part.file is not None and _is_mesh(part.file):
         mesh = load(part.file).mesh
-        vertices, faces, _ = joined(mesh.vertices * part.metres, mesh.faces, most)
+        vertices, faces, _ = cluster_vertices(mesh.vertices * part.metres, mesh.faces, most)
         return vertices @ part.rotation.T + part.displacement, faces
     drawn, _ = body_shape(part.body, np.zeros(3), is_cut=False)
-    vertices, faces, _ = joined(drawn.vertices, drawn.faces, most)
+    vertices, faces, _ = cluster_vertices(drawn.vertices, drawn.faces, most)
     return vertices, faces
 
 

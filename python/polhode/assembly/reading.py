@@ -1,4 +1,4 @@
-"""An assembly's file, read into a tree of placed bodies; what it nests is read once."""
+"""Read the file of an assembly into a tree of placed bodies. A nested file is read once."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from polhode.assembly.matter import body_of_part, kind_of
-from polhode.assembly.overlaps import Form, Placed, find_overlaps, overlap_notes
+from polhode.assembly.overlaps import Form, Instance, find_overlaps, overlap_notes
 from polhode.assembly.result import Assembly, Member
 from polhode.assembly.tables import COMMON, HERE, TOP, Place, Scope, check_keys, copies, place_of, text_of
 from polhode.errors import FileFormatError, PolhodeError
@@ -109,7 +109,7 @@ def read(
         whole = _tree(dict(assembly), Path(folder), Scope(""), {}, (), Budget("assembly", 0))
     else:
         whole = _file(Path(assembly), {}, (), Budget(str(assembly), 0))
-    return _assembled(whole)
+    return _assemble(whole)
 
 
 def _file(path: Path, known: dict[Path, _Unit], inside: tuple[Path, ...], budget: Budget) -> _Unit:
@@ -246,21 +246,21 @@ def _check_name(name: str, where: str) -> None:
         )
 
 
-def _assembled(whole: _Unit) -> Assembly:
+def _assemble(whole: _Unit) -> Assembly:
     """Place every part in the axes of the whole, and roll them up."""
     ids, parents, comments = [], [], []
     bodies: list[RigidBody | None] = []
     members: dict[str, Member] = {}
-    placed: list[Placed] = []
+    placed: list[Instance] = []
     for name, parent, place, unit in _walk(whole):
         ids.append(name)
         parents.append(parent)
         comments.append(unit.comment)
-        body = None if unit.body is None else place.placed(unit.body)
+        body = None if unit.body is None else place.place(unit.body)
         bodies.append(body)
         if body is not None:
             members[name] = Member(name, body, unit.shape, unit.arguments, unit.file, unit.metres, *place)
-            placed.append(Placed(name, body, place, unit.form))
+            placed.append(Instance(name, body, place, unit.form))
     found, unseen = find_overlaps(placed)
     return Assembly(
         name=whole.name,

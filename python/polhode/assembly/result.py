@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from polhode._core import RigidBody
-from polhode.assembly.tables import meant
+from polhode.assembly.tables import suggest_name
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
@@ -107,7 +107,9 @@ class Assembly:
     def __getitem__(self, name: str) -> Part:
         """Return a node of the tree by its names with / between them, as ``"arm/motor"``."""
         if name not in self.ledger:
-            raise PolhodeError(f"there is no part {name!r} in {self.name!r}; {meant(name, self.ledger.ids)}")
+            raise PolhodeError(
+                f"there is no part {name!r} in {self.name!r}; {suggest_name(name, self.ledger.ids)}"
+            )
         return self.ledger[name]
 
     def __len__(self) -> int:

@@ -34,21 +34,21 @@ __all__ = [
     "Scope",
     "check_keys",
     "copies",
-    "meant",
     "place_of",
+    "suggest_name",
     "text_of",
     "unknown",
 ]
 
 TOP: Final = ("name", "comment", "length_unit", "part")
 KINDS: Final = ("solid", "file", "assembly", "inertia")
-"""One of them says what a part is."""
+"""Keys that define a part; exactly one is needed."""
 REPEATED: Final = ("count", "step", "turn")
 COMMON: Final = ("name", "comment", *KINDS, "length_unit", "position", "rotation", *REPEATED)
 FILE: Final = ("mass", "density", "weld", "closure", "orient", "union", "repair", "index_base")
 _MOST_NAMES: Final = 30
 PRINTED: Final = ("mass", "com", "tensor", "products", "about", "rtol")
-"""Of `inertia`, as CAD programs print it."""
+"""Keys of `inertia`, as CAD programs print it."""
 
 
 class PartError(PolhodeError):
@@ -65,7 +65,7 @@ def _as_part_error() -> Iterator[None]:
 
 
 def check_keys(table: Mapping[str, Any], known: Collection[str], where: str) -> None:
-    """Refuse a key that is not known, with the nearest one that is."""
+    """Refuse an unknown key; the error proposes the nearest known key."""
     for key in table:
         if key not in known:
             raise PartError(f"{where}: {unknown(str(key), known)}")
@@ -73,11 +73,11 @@ def check_keys(table: Mapping[str, Any], known: Collection[str], where: str) -> 
 
 def unknown(key: str, known: Collection[str]) -> str:
     """Say that a key is not known, and which are."""
-    return f"{key[:40]!r} is not a known key; {meant(key, known)}"
+    return f"{key[:40]!r} is not a known key; {suggest_name(key, known)}"
 
 
-def meant(name: str, known: Collection[str]) -> str:
-    """Ask for the nearest of the names that there are, or tell them."""
+def suggest_name(name: str, known: Collection[str]) -> str:
+    """Propose the known name that is nearest to a wrong one, or list the known names."""
     near = difflib.get_close_matches(name, known, n=1)
     names = [*known][:_MOST_NAMES]
     more = f" and {len(known) - len(names)} more" if len(known) > len(names) else ""
@@ -122,7 +122,7 @@ class Scope:
             return Scope(where, self.length_unit)
         if not isinstance(length_unit, str):
             raise PartError(
-                f"{where}: length_unit: {_shown(length_unit)} is not the name of a unit; write one, as 'mm'"
+                f"{where}: length_unit: {_shorten(length_unit)} is not the name of a unit; write one, as 'mm'"
             )
         try:
             metres_per(length_unit)
@@ -166,7 +166,7 @@ class Scope:
             if count is None:
                 return found[0]
         if count is not None and len(found) != count:
-            raise PartError(f"{option}: expected {count} numbers, got {len(found)} in {_shown(value)}")
+            raise PartError(f"{option}: expected {count} numbers, got {len(found)} in {_shorten(value)}")
         return found
 
     def amount(self, key: str, value: Any, unit: str) -> float | _core.Uncertain:
@@ -180,7 +180,7 @@ class Scope:
     def _option(self, key: str, value: Any) -> str:
         option = f"{self.where}: {key}" if self.where else key
         if isinstance(value, str) and len(value) > _LONGEST:
-            raise PartError(f"{option}: {_shown(value)} has more than {_LONGEST} letters; write a number")
+            raise PartError(f"{option}: {_shorten(value)} has more than {_LONGEST} letters; write a number")
         return option
 
     def _number(self, option: str, value: Any, unit: str, bare: float) -> float:
@@ -188,17 +188,17 @@ class Scope:
             with _as_part_error():
                 return quantity(value, unit, option) * (1.0 if has_unit(value) else bare)
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise PartError(f"{option}: {_shown(value)} is not a number; write one, as in 2.5")
+            raise PartError(f"{option}: {_shorten(value)} is not a number; write one, as in 2.5")
         try:
             number = float(value) * bare
         except OverflowError:
             number = math.inf
         if not math.isfinite(number):
-            raise PartError(f"{option}: {_shown(value)} is not finite; write one that is")
+            raise PartError(f"{option}: {_shorten(value)} is not finite; write one that is")
         return number
 
 
-def _shown(value: Any) -> str:
+def _shorten(value: Any) -> str:
     text = repr(value)
     return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 3]}..."
 
@@ -207,9 +207,9 @@ _FORMS: Final = ("axis", "sequence", "quaternion_xyzw", "matrix")
 _ANGLES: Final = ("degrees", "radians")
 _EXAMPLE: Final = "rotation = { axis = [0, 0, 1], degrees = 90 }"
 _OFF_UNITY: Final = 1e-6
-"""By which a quaternion or a matrix of few digits may be off; it is made exact."""
+"""Tolerance for a quaternion or a matrix of few digits; it is then normalized."""
 MOST_COPIES: Final = 100_000
-"""Of one part."""
+"""Largest number of copies of one part."""
 
 
 class Place(NamedTuple):
@@ -219,10 +219,10 @@ class Place(NamedTuple):
     displacement: Floats
 
     def of(self, inner: Place) -> Place:
-        """Place what is placed within: first `inner`, then this one."""
+        """Compose two placements: first `inner`, then this one."""
         return Place(self.rotation @ inner.rotation, self.rotation @ inner.displacement + self.displacement)
 
-    def placed(self, body: _core.RigidBody) -> _core.RigidBody:
+    def place(self, body: _core.RigidBody) -> _core.RigidBody:
         """Place a body."""
         if not np.array_equal(self.rotation, np.eye(3)):
             body = body.rotated(_core.quaternion_from_matrix(self.rotation))
@@ -233,13 +233,13 @@ HERE: Final = Place(np.eye(3), np.zeros(3))
 
 
 def place_of(table: Mapping[str, Any], scope: Scope) -> Place:
-    """Read where a part stands."""
+    """Read the position and rotation of a part."""
     position = scope.lengths("position", table["position"], 3) if "position" in table else (0.0, 0.0, 0.0)
     return Place(_rotation(table.get("rotation"), "rotation", scope), np.array(position))
 
 
 def copies(table: Mapping[str, Any], scope: Scope) -> list[Place]:
-    """Read how often a part is there: by how much each copy is moved, the first by nothing."""
+    """Read the number of copies of a part; return the placement of each, the identity for the first."""
     count = table.get("count", 1)
     if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MOST_COPIES:
         raise PartError(
@@ -260,7 +260,7 @@ def copies(table: Mapping[str, Any], scope: Scope) -> list[Place]:
 
 
 def _rotation(given: Any, key: str, scope: Scope) -> Floats:
-    """Read a rotation: it takes the axes of the part to where they stand, v = R v_part."""
+    """Read a rotation R from the axes of the part to those of the assembly: v = R v_part."""
     if given is None:
         return np.eye(3)
     where = f"{scope.where}: {key}"
@@ -305,7 +305,7 @@ def _rotation(given: Any, key: str, scope: Scope) -> Floats:
 
 
 def _angles(given: Mapping[str, Any], unit: str, count: int, scope: Scope) -> list[tuple[float, float]]:
-    """Return cosines and sines; those of whole quarter turns in degrees are exact."""
+    """Return cosines and sines; multiples of 90 degrees are exact."""
     angles = scope.numbers(unit, given[unit], "1", count=count)
     if unit == "radians":
         return [(float(np.cos(x)), float(np.sin(x))) for x in angles]

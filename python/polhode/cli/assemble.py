@@ -44,7 +44,7 @@ def assembly_report(file: Path, options: AssembleOptions, extra: ReportOptions) 
     if extra.mass_unit is not None:
         quantity(f"1 {extra.mass_unit}", "kg", "--mass-unit")
     about = vector(extra.about, "m", "--about") if extra.about else None
-    made = _read(file)
+    made = _read_assembly(file)
     whole = made.ledger[made.ledger.root]
     report = Report()
     report.section(
@@ -59,7 +59,7 @@ def assembly_report(file: Path, options: AssembleOptions, extra: ReportOptions) 
     most = None if options.every else _MOST_ROWS
     columns = [Column("id", "part"), Column("mass", "mass", "kg")]
     columns += [Column(name, name, "m") for name in NUMBERS[1:4]]
-    rows = [node_row(node, whole) | {"id": _named(node.id, node.depth)} for node in nodes]
+    rows = [node_row(node, whole) | {"id": _name_cell(node.id, node.depth)} for node in nodes]
     report.section("parts, centres from the origin of the whole", Table("parts", columns, rows, most))
     tensors = [Column("id", "part"), *(Column(name, name, "kg m^2") for name in NUMBERS[4:])]
     report.section(
@@ -67,7 +67,7 @@ def assembly_report(file: Path, options: AssembleOptions, extra: ReportOptions) 
         Table(
             "part_tensors",
             tensors,
-            [tensor_row(node, whole) | {"id": _named(node.id, node.depth)} for node in nodes],
+            [tensor_row(node, whole) | {"id": _name_cell(node.id, node.depth)} for node in nodes],
             most,
         ),
     )
@@ -83,11 +83,11 @@ def assembly_for_program(
     check_alone(extra, form)
     if options.save:
         raise PolhodeError("--save: --as prints numbers alone; leave one of the two out")
-    made = _read(file)
+    made = _read_assembly(file)
     return to_text(made.body, str(extra.program)), list(made.notes)
 
 
-def _read(file: Path) -> Assembly:
+def _read_assembly(file: Path) -> Assembly:
     if file == STDIN:
         raise PolhodeError("-: an assembly names files beside its own; save it in one, and name that")
     return read(file)
@@ -121,5 +121,5 @@ def save_assembly(made: Assembly, path: Path) -> list[str]:
     return notes
 
 
-def _named(name: str, depth: int) -> Cell:
+def _name_cell(name: str, depth: int) -> Cell:
     return Cell("  " * depth + name.rpartition("/")[2], name)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from polhode.cli.files import shown
+from polhode.cli.files import label
 from polhode.errors import PolhodeError
 from polhode.molecules import Isotope, body_of_atoms, bonds, uncertain_masses, uncertain_positions
 
@@ -79,10 +79,10 @@ def atoms_of(
         pairs = bonds(atoms, molecule.positions)
         positions = uncertain_positions(atoms, molecule.positions, bond_sigma, pairs)
     except PolhodeError as error:
-        raise PolhodeError(f"--bond-sigma: {shown(file)}, atoms counted from 0: {error}") from None
+        raise PolhodeError(f"--bond-sigma: {label(file)}, atoms counted from 0: {error}") from None
     if not pairs:
         raise PolhodeError(
-            f"--bond-sigma: no two atoms of {shown(file)} are near enough for a bond; check --length-unit"
+            f"--bond-sigma: no two atoms of {label(file)} are near enough for a bond; check --length-unit"
         )
     told = ", ".join(f"{atoms[i].name}({i + 1})-{atoms[j].name}({j + 1})" for i, j in pairs[:_NAMED])
     more = f" and {len(pairs) - _NAMED} more" if len(pairs) > _NAMED else ""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from polhode import robots
 from polhode._format import Note
-from polhode.cli.files import STDIN, check_outputs, shown
+from polhode.cli.files import STDIN, check_outputs, label
 from polhode.cli.layout import Column, Field, Report, Table
 from polhode.cli.terminal import in_options
 from polhode.errors import FileFormatError, PolhodeError
@@ -52,14 +52,14 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
     _check_options(options)
     filling = _filling(options)
     with files_read() as read:
-        robot = _read(file, options)
+        robot = _read_robot(file, options)
         verdicts = robots.check(robot, options.packages, allow_outside=options.allow_outside, **filling)
     check_outputs([("--fix", options.fix)], read)
     failing = robots.FAILURES | ({"suspect"} if options.strict else frozenset())
     report = Report()
     report.section(
         "",
-        Field("file", "file", shown(file)),
+        Field("file", "file", label(file)),
         Field("format", "format", robot.format),
         Field("robot", "robot", robot.name or "(without a name)"),
     )
@@ -75,7 +75,7 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
         *(Field(f"count.{word}", word, count) for word, count in counts.items()),
     )
     notes = dict.fromkeys(note for verdict in verdicts for note in verdict.notes)
-    report.notes += [in_options(note) for note in (*robot.notes, *_gathered(notes))]
+    report.notes += [in_options(note) for note in (*robot.notes, *_group_notes(notes))]
     if filling and not any(is_without_mass(*each) for each in zip(robot.links, verdicts, strict=True)):
         report.notes.append(f"--{next(iter(filling))} has no effect: no failing link is without mass")
     report.notes += _warnings(robot, verdicts, failing)
@@ -90,7 +90,7 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
     return report, _fix(report, robot, verdicts, failing, options)
 
 
-def _gathered(notes: Iterable[str]) -> list[str]:
+def _group_notes(notes: Iterable[str]) -> list[str]:
     """Describe in one line each of all meshes that were not found, and of all whose hulls were taken."""
     notes = [*notes]
     told = [note for note in notes if not isinstance(note, Note) or note.kind not in (LOST, HULL)]
@@ -153,16 +153,16 @@ def _check_options(options: CheckOptions) -> None:
             raise PolhodeError(f"--packages: there is no folder {folder}; name one that holds the packages")
 
 
-def _read(file: Path, options: CheckOptions) -> robots.Robot:
+def _read_robot(file: Path, options: CheckOptions) -> robots.Robot:
     if file != STDIN:
         return robots.read_robot(file, options.packages, allow_outside=options.allow_outside)
-    source = read_stream(sys.stdin.buffer, shown(file))
+    source = read_stream(sys.stdin.buffer, label(file))
     if not source:
         raise FileFormatError("-: nothing came on standard input; send a file into it")
-    return _parsed(source, shown(file), Path.cwd(), options)
+    return _parse_robot(source, label(file), Path.cwd(), options)
 
 
-def _parsed(
+def _parse_robot(
     source: bytes, name: str, folder: Path, options: CheckOptions, roots: tuple[Path, ...] = ()
 ) -> robots.Robot:
     packages = (*options.packages, *roots)
@@ -197,7 +197,7 @@ def _fix(
     path = options.fix
     if path is None:
         return False
-    source = robots.fixed(robot, verdicts, failing)
+    source = robots.fix(robot, verdicts, failing)
     write_bytes(path, source)
     rows, left, elsewhere = [], [], []
     for number, (link, verdict) in enumerate(zip(robot.links, verdicts, strict=True)):
@@ -236,7 +236,7 @@ def _fix(
     report.section("changed", Table("changed", columns, rows))
     changed = "1 link" if len(rows) == 1 else f"{len(rows)} links"
     report.notes.append(f"wrote {path}: {changed} changed, everything else as it stands")
-    fixed = _parsed(source, str(path), robot.folder, options, robot.roots)
+    fixed = _parse_robot(source, str(path), robot.folder, options, robot.roots)
     packages = (*options.packages, *robot.roots)
     again = robots.check(fixed, packages, allow_outside=options.allow_outside)
     # Where what is tied to it has mass now, a frame needs none.

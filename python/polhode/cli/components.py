@@ -13,14 +13,14 @@ from polhode.io.components import (
     MOST_FACES,
     MOST_PARTS,
     Part,
+    describe_overlaps,
     labels,
     overlapping,
     overlaps,
     parts_of,
-    told,
 )
 from polhode.io.named_densities import OVERLAPPING, body_of_parts, named_parts
-from polhode.io.repair import repaired
+from polhode.io.repair import repair_mesh
 from polhode.units import amount, has_unit
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from polhode.io.loaded import Loaded
     from polhode.io.mesh_solid import MeshSolid
 
-__all__ = ["Components", "add_components", "components_of", "has_names", "overlaps_beside", "weighed"]
+__all__ = ["Components", "add_components", "components_of", "has_names", "overlaps_beside", "weigh"]
 
 _WAY_OUT: Final = "--union counts what components share once, where they are of one material"
 # Larger meshes are not taken apart: their triangles would all be held in memory.
@@ -77,7 +77,7 @@ def components_of(
             return None
         note = f"{count} components are more than {MOST_PARTS}: neither they nor their overlaps are listed"
         return Components([], [], [note])
-    notes = told(overlaps(parts), sum(part.volume for part in parts), _unit(options))
+    notes = describe_overlaps(overlaps(parts), sum(part.volume for part in parts), _unit(options))
     notes += [_WAY_OUT] if notes else []
     return Components(parts, [float(solid.body.mass) / solid.volume] * len(parts), notes)
 
@@ -92,7 +92,7 @@ def overlaps_beside(loaded: Loaded, solid: MeshSolid, options: BodyOptions, scal
     return [*lines, _WAY_OUT] if lines else []
 
 
-def weighed(loaded: Loaded, solid: MeshSolid, options: BodyOptions, scale: float, weld: float) -> MeshSolid:
+def weigh(loaded: Loaded, solid: MeshSolid, options: BodyOptions, scale: float, weld: float) -> MeshSolid:
     """Assign each component its own density."""
     if loaded.cad is not None:
         raise PolhodeError(
@@ -108,7 +108,7 @@ def weighed(loaded: Loaded, solid: MeshSolid, options: BodyOptions, scale: float
             raise PolhodeError(f"--{name}: components of several densities are not joined; leave it out")
     parts = named_parts(loaded, scale, weld)
     densities = _densities(options.density or "", [part.name for part in parts], options.length_unit)
-    notes = told(overlaps(parts), sum(part.volume for part in parts), _unit(options))
+    notes = describe_overlaps(overlaps(parts), sum(part.volume for part in parts), _unit(options))
     notes += [OVERLAPPING] if notes else []
     found = Components(parts, densities, notes)
     return solid._replace(body=body_of_parts(parts, densities), components=found)
@@ -138,7 +138,7 @@ def add_components(report: Report, found: Components | None, volume: str, densit
 
 def _parts(loaded: Loaded, scale: float, weld: float, *, mended: bool = False) -> list[Part]:
     if mended:
-        mesh, _, _, _ = repaired(loaded.mesh, weld)
+        mesh, _, _, _ = repair_mesh(loaded.mesh, weld)
         return parts_of(mesh.vertices * scale, mesh.faces)
     return named_parts(loaded, scale, weld)
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from polhode import RigidBody, Uncertain, distributions, ensemble, loads, reductions
 from polhode._optional import require
-from polhode.cli.files import shown
+from polhode.cli.files import label
 from polhode.cli.layout import Cell, Column, Field, Report, Table
 from polhode.cli.loading import LoadedBody
 from polhode.cli.spin import momentum_inside
@@ -45,15 +45,15 @@ __all__ = [
     "SHARES",
     "check_place",
     "client_at",
-    "drawn",
     "drawn_number",
     "ensemble_report",
-    "kept",
+    "make_reductions",
     "middle_of",
     "modes_table",
     "numbers",
     "numbers_table",
-    "saved",
+    "read_draws",
+    "save_members",
 ]
 
 MOST: Final = 2**62
@@ -77,7 +77,7 @@ def ensemble_report(file: Path | None, options: EnsembleOptions, body: BodyOptio
             chunk=options.chunk,
             method=options.method,
             rtol=options.rtol,
-            reduce=kept(has_modes=_is_free(options)) if options.save is None else None,
+            reduce=make_reductions(has_modes=_is_free(options)) if options.save is None else None,
             client=client,
             **given,
         )
@@ -113,7 +113,7 @@ def _check(file: Path | None, options: EnsembleOptions, body: BodyOptions) -> No
     if options.moments and body.inertia:
         raise PolhodeError("--moments and --inertia: both say what the body is; give one of the two")
     if file is not None and options.moments:
-        raise PolhodeError(f"--moments: the body is that of {shown(file)}; give one of the two")
+        raise PolhodeError(f"--moments: the body is that of {label(file)}; give one of the two")
     if not options.omega:
         raise PolhodeError('--omega: state the start, as in --omega "0, 6.00 ± 0.05, 0.01 ± 0.01"')
     if options.end is None:
@@ -167,13 +167,13 @@ def _arguments(
                 "ensemble: the body has sigmas, and members draw --moments, --omega and --attitude; write "
                 "the numbers of the body alone, or draw its --moments"
             )
-    found = {"body": given, "omega": drawn(options.omega, 3, "rad/s", "--omega")}
+    found = {"body": given, "omega": read_draws(options.omega, 3, "rad/s", "--omega")}
     if options.attitude:
         found["attitude"] = _attitude(options.attitude)
     if options.gravity is not None:
         g = quantity(options.gravity, "m/s^2", "--gravity")
         found |= {"load": loads.uniform_gravity((0.0, 0.0, -g)), "about": "origin"}
-        if options.method == "auto" and isinstance(given, distributions.Made):
+        if options.method == "auto" and isinstance(given, distributions.FunctionOfDraws):
             raise PolhodeError(
                 "--method: with --gravity a body that is drawn needs one; state exact where all bodies are "
                 "symmetric tops, else taylor or dop853"
@@ -191,13 +191,13 @@ def _of_moments(options: EnsembleOptions, body: BodyOptions) -> tuple[Any, Any]:
             "--gravity: the weight acts at the centre of mass; state --mass and --center-of-mass too"
         )
     mass: Any = 1.0 if body.mass is None else drawn_number(body.mass, "kg", "--mass")
-    moments: Any = drawn(options.moments, 3, "kg m^2", "--moments")
+    moments: Any = read_draws(options.moments, 3, "kg m^2", "--moments")
     center: dict[str, Any] = {}
     if body.center_of_mass:
-        center["center_of_mass"] = drawn(body.center_of_mass, 3, "m", "--center-of-mass")
+        center["center_of_mass"] = read_draws(body.center_of_mass, 3, "m", "--center-of-mass")
     numbers = (mass, moments, *center.values())
     if any(isinstance(one, distributions.Distribution) for one in numbers):
-        given: Any = distributions.made(RigidBody.from_principal, mass, moments, **center)
+        given: Any = distributions.apply(RigidBody.from_principal, mass, moments, **center)
     else:
         given = RigidBody.from_principal(mass, moments, **center)
     if not options.wheel:
@@ -209,9 +209,9 @@ def _of_moments(options: EnsembleOptions, body: BodyOptions) -> tuple[Any, Any]:
 def _attitude(words: tuple[str, ...]) -> Any:
     if words == ("any",):
         return distributions.uniform_rotation()
-    angles = drawn(words, 3, "rad", "--attitude")
+    angles = read_draws(words, 3, "rad", "--attitude")
     if isinstance(angles, distributions.Distribution):
-        return distributions.made(to_quaternion, angles)
+        return distributions.apply(to_quaternion, angles)
     return to_quaternion(angles)
 
 
@@ -245,7 +245,7 @@ def _tell_spread(report: Report, many: Ensemble, options: EnsembleOptions) -> No
 
 
 def _tell_saved(report: Report, many: Ensemble, path: Path) -> None:
-    rows = [{"status": name, "members": count} for name, count in saved(many, path).items()]
+    rows = [{"status": name, "members": count} for name, count in save_members(many, path).items()]
     columns = (Column("status", "status"), Column("members", "members"))
     report.section("how members ended", Table("status", columns, rows))
     report.notes.append(f"saved {path}")
@@ -253,7 +253,7 @@ def _tell_saved(report: Report, many: Ensemble, path: Path) -> None:
 
 def _source(file: Path | None, options: EnsembleOptions) -> str:
     if file is not None:
-        return shown(file)
+        return label(file)
     return "(moments)" if options.moments else "(inertia)"
 
 
@@ -284,7 +284,7 @@ def check_place(path: Path, *, resume: bool) -> None:
         raise PolhodeError(f"--resume: there is nothing at {path} to continue; leave --resume out")
 
 
-def saved(many: Ensemble, path: Path) -> dict[str, int]:
+def save_members(many: Ensemble, path: Path) -> dict[str, int]:
     """Run members that are missing there, and count how all of them ended.
 
     Parameters
@@ -393,7 +393,7 @@ def numbers(motion: Any) -> Any:
     return np.column_stack([motion.omega[:, -1], size[:, 1], ratio, tilt])
 
 
-def kept(*, has_modes: bool) -> dict[str, Reduction]:
+def make_reductions(*, has_modes: bool) -> dict[str, Reduction]:
     """Return the reductions; modes only of members that are free."""
     both = {"spread": reductions.covariance(numbers), "shares": reductions.quantiles(SHARES, numbers)}
     return both | ({"modes": reductions.mode_changes()} if has_modes else {})
@@ -439,7 +439,7 @@ def modes_table(found: dict[str, Any]) -> Table:
 _TO: Final = re.compile(r"\s+to\s+")
 
 
-def drawn(texts: Sequence[str], count: int, unit: str, option: str) -> Drawn:
+def read_draws(texts: Sequence[str], count: int, unit: str, option: str) -> Drawn:
     """Read numbers that are the same for all members, or their distribution.
 
     Parameters
@@ -471,8 +471,8 @@ def drawn(texts: Sequence[str], count: int, unit: str, option: str) -> Drawn:
 
 
 def drawn_number(text: str, unit: str, option: str) -> Any:
-    """Read one number, or its distribution; see `drawn`."""
-    found: Any = drawn([text], 1, unit, option)
+    """Read one number, or its distribution; see `read_draws`."""
+    found: Any = read_draws([text], 1, unit, option)
     if isinstance(found, distributions.Normal):
         return distributions.normal(found.mean.item(), sigma=np.asarray(found.sigma).item())
     if isinstance(found, distributions.Uniform):

@@ -21,7 +21,7 @@ __all__ = [
     "STDIN",
     "as_file",
     "check_outputs",
-    "shown",
+    "label",
 ]
 
 STDIN: Final = DASH
@@ -44,7 +44,7 @@ _SUFFIXES: Final = {
 }
 
 
-def shown(file: Path) -> str:
+def label(file: Path) -> str:
     """Name a file as a report does."""
     return "standard input" if file == STDIN else str(file)
 
@@ -103,7 +103,7 @@ def as_file(file: Path) -> Iterator[Path]:
         try:
             yield named
         except PolhodeError as error:
-            error.args = (str(error).replace(str(named), shown(file)),)
+            error.args = (str(error).replace(str(named), label(file)),)
             raise
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from polhode import RigidBody, orbits, plot
 from polhode._optional import require
 from polhode.cli.ensemble import client_at
-from polhode.cli.files import shown
+from polhode.cli.files import label
 from polhode.cli.layout import Cell, Column, Field, Report, Table
 from polhode.cli.options import MODES
 from polhode.cli.whole import any_body, check_moments_alone
@@ -34,12 +34,12 @@ PICTURES: Final = (".png", ".pdf", ".svg")
 
 def flyby_report(file: Path | None, options: FlybyOptions, body: BodyOptions) -> tuple[Report, Flyby]:
     """Run the clones and report on them; give them too."""
-    found, orbit, notes = _run(file, options, body)
+    found, orbit, notes = _run_flyby(file, options, body)
     report = Report()
     elements = orbit.elements
     report.section(
         "",
-        Field("file", "file", "(moments)" if file is None else shown(file)),
+        Field("file", "file", "(moments)" if file is None else label(file)),
         Field("clones", "clones", len(found.failed)),
         Field("seed", "seed", options.seed),
     )
@@ -94,7 +94,7 @@ def draw_flyby(found: Flyby, path: Path) -> None:
     save_picture(figure, path)
 
 
-def _run(
+def _run_flyby(
     file: Path | None, options: FlybyOptions, body: BodyOptions
 ) -> tuple[Flyby, orbits.Orbit, tuple[str, ...]]:
     if (file is None) == (not options.moments):

@@ -160,19 +160,21 @@ class Report:
         for _, fields in self.sections:
             for item in fields:
                 if isinstance(item, Table):
-                    _put(values, item.key, [{k: _plain(v) for k, v in row.items()} for row in item.rows])
+                    _set_nested(
+                        values, item.key, [{k: _plain(v) for k, v in row.items()} for row in item.rows]
+                    )
                     for column in item.columns:
                         if column.unit:
-                            _put(units, f"{item.key}.{column.key}", column.unit)
+                            _set_nested(units, f"{item.key}.{column.key}", column.unit)
                     continue
                 if item.value is not None:
-                    _put(values, item.key, _plain(item.value))
+                    _set_nested(values, item.key, _plain(item.value))
                 if item.sigma is not None:
-                    _put(sigmas, item.key, _plain(item.sigma))
+                    _set_nested(sigmas, item.key, _plain(item.sigma))
                 if item.linear is not None:
-                    _put(linear, item.key, _plain(item.linear))
+                    _set_nested(linear, item.key, _plain(item.linear))
                 if item.unit:
-                    _put(units, item.key if item.value is not None else f"sigma.{item.key}", item.unit)
+                    _set_nested(units, item.key if item.value is not None else f"sigma.{item.key}", item.unit)
         of_sigmas = {"sigma": sigmas, "linear": linear} if sigmas else {}
         return {**values, **of_sigmas, "units": units, "notes": list(self.notes)}
 
@@ -290,7 +292,7 @@ def _finite(value: Any) -> Any:
     return value
 
 
-def _put(target: dict[str, Any], key: str, value: object) -> None:
+def _set_nested(target: dict[str, Any], key: str, value: object) -> None:
     *path, last = key.split(".")
     for name in path:
         target = target.setdefault(name, {})
@@ -377,7 +379,7 @@ def held_against(report: Report, expected: Path, rtol: float) -> list[dict[str, 
     """
     if not (math.isfinite(rtol) and rtol >= 0.0):
         raise PolhodeError(f"--rtol: {rtol:g} is not a tolerance; give a number such as 1e-6")
-    known = _read(expected)
+    known = _read_expected(expected)
     ours = report.as_dict()
     known_units, our_units = dict(_leaves(known.get("units", {}))), dict(_leaves(ours["units"]))
     length = max(ours["radii_of_gyration"])
@@ -400,7 +402,7 @@ def held_against(report: Report, expected: Path, rtol: float) -> list[dict[str, 
         compared += 1
         difference = _difference(flat[key], value, length if key == "center_of_mass" else 0.0)
         if not difference <= rtol:
-            row = {"field": key, "found": flat[key], "expected": _shown(value), "difference": difference}
+            row = {"field": key, "found": flat[key], "expected": _as_text(value), "difference": difference}
             found.append(row | _beside_sigma(flat[key], value, our_sigmas.get(key), known_sigmas.get(key)))
     if not compared:
         raise PolhodeError(f"--expect: {expected} holds no field of the report; save one with --format json")
@@ -447,7 +449,7 @@ def _beside_sigma(ours: Any, theirs: Any, sigma: Any, other: Any) -> dict[str, A
     return {"in_sigmas": Cell(with_sigma(d, s), {"difference": d, "sigma": s})}
 
 
-def _read(path: Path) -> dict[str, Any]:
+def _read_expected(path: Path) -> dict[str, Any]:
     try:
         document = json.loads(read_text(path, "JSON"))
     except FileFormatError as error:
@@ -474,7 +476,7 @@ def _leaves(value: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]
             yield f"{prefix}{key}", item
 
 
-def _shown(value: Any) -> Any:
+def _as_text(value: Any) -> Any:
     """Return what was expected as it is, or as text where it is no array."""
     try:
         np.asarray(value, dtype=np.float64)

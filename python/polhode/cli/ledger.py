@@ -10,8 +10,8 @@ import numpy as np
 
 from polhode._format import with_sigma
 from polhode._optional import require
-from polhode.assembly.tables import meant
-from polhode.cli.files import STDIN, shown
+from polhode.assembly.tables import suggest_name
+from polhode.cli.files import STDIN, label
 from polhode.cli.layout import ROUNDING, Cell, Column, Field, Report, Table
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.io.writing import save_picture
@@ -45,7 +45,7 @@ def ledger_report(file: Path, options: LedgerOptions) -> tuple[Report, Ledger]:
     report = Report()
     report.section(
         "",
-        Field("file", "file", shown(file)),
+        Field("file", "file", label(file)),
         Field("root", "the whole", made.root),
         Field("parts", "parts", int(made.is_part.sum())),
         Field("levels", "levels", int(made.depth.max()) + 1),
@@ -110,14 +110,14 @@ def _table(file: Path) -> Any:
 def _top(made: Ledger, options: LedgerOptions) -> Part:
     name = made.root if options.at is None else options.at
     if name not in made:
-        raise PolhodeError(f"--at: no part has the id {name!r}; {meant(name, made.ids)}")
+        raise PolhodeError(f"--at: no part has the id {name!r}; {suggest_name(name, made.ids)}")
     return made[name]
 
 
 def node_row(node: Part, top: Part) -> dict[str, Any]:
     """Describe mass and centre of a node."""
     row = {
-        "id": _named(node, top),
+        "id": _name_cell(node, top),
         "parent": node.parent.id if node.parent is not None else None,
         "depth": node.depth,
         "mass": _cell(node, "mass"),
@@ -132,10 +132,10 @@ def node_row(node: Part, top: Part) -> dict[str, Any]:
 
 def tensor_row(node: Part, top: Part) -> dict[str, Any]:
     """Return the tensor of a node."""
-    return {"id": _named(node, top)} | {name: _cell(node, name) for name in NUMBERS[4:]}
+    return {"id": _name_cell(node, top)} | {name: _cell(node, name) for name in NUMBERS[4:]}
 
 
-def _named(node: Part, top: Part) -> Cell:
+def _name_cell(node: Part, top: Part) -> Cell:
     return Cell("  " * (node.depth - top.depth) + node.id, node.id)
 
 

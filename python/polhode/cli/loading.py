@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from polhode.cli.components import components_of, has_names, overlaps_beside, weighed
+from polhode.cli.components import components_of, has_names, overlaps_beside, weigh
 from polhode.cli.files import as_file
 from polhode.cli.terminal import reading_progress
 from polhode.errors import PolhodeError
@@ -129,11 +129,11 @@ def _load_mesh(file: Path, options: BodyOptions, with_shape: bool, with_componen
     weld = _weld(options)
     solid = _solid(loaded, options, density, mass, scale, weld)
     if has_names(options.density):
-        solid = weighed(loaded, solid, options, scale, weld)
+        solid = weigh(loaded, solid, options, scale, weld)
     elif with_components:
         solid = solid._replace(components=components_of(loaded, solid, options, scale, weld))
     provenance = solid.body.provenance
-    notes = [*_taken(options, unit), *_of_unit(loaded, asked), *loaded.notes]
+    notes = [*_note_units(options, unit), *_of_unit(loaded, asked), *loaded.notes]
     notes += [] if with_components else overlaps_beside(loaded, solid, options, scale)
     notes += _unusual(solid.volume, unit, loaded)
     if weld != 0.0 and not options.repair:
@@ -235,7 +235,7 @@ def _weld(options: BodyOptions) -> float:
     return weld
 
 
-def _taken(options: BodyOptions, unit: str | None) -> list[str]:
+def _note_units(options: BodyOptions, unit: str | None) -> list[str]:
     """Say in which unit bare numbers were taken."""
     if unit is None:
         return []  # the report says that no unit is known

@@ -10,18 +10,18 @@ import numpy as np
 
 from polhode._format import with_sigma
 from polhode.cli.atoms import atoms_of
-from polhode.cli.files import as_file, shown
+from polhode.cli.files import as_file, label
 from polhode.cli.layout import NOT_LINEAR, ROUNDING, Cell, Column, Field, Report, Table, number
 from polhode.cli.loading import LoadedBody, bond_sigma, loaded_molecule
 from polhode.cli.tables import (
     FileUnits,
-    Told,
+    Sigmas,
     angle_field,
     body_fields,
     moments_slopes,
     note_linear,
+    sigmas_of,
     tensor_fields,
-    told,
     top_fields,
     trust_fields,
 )
@@ -56,8 +56,8 @@ __all__ = [
     "constant_fields",
     "isotopologue_row",
     "molecule_report",
+    "note_straightening",
     "rotation_fields",
-    "straightened",
 ]
 
 _BY_NUMBER = re.compile(r"(?P<atom>\d+)=(?P<label>\w+)")
@@ -71,7 +71,7 @@ def molecule_report(file: Path, options: MoleculeOptions) -> Report:
             if suffix not in EXPECTED_CONTENT:
                 raise unread(file, suffix, MOLECULE_SUFFIXES)
             raise PolhodeError(
-                f"{shown(file)}: a molecule is an XYZ, PDB, MOL or SDF file; polhode report reads meshes"
+                f"{label(file)}: a molecule is an XYZ, PDB, MOL or SDF file; polhode report reads meshes"
             )
         read = load(path)
         molecule = read.molecule
@@ -88,7 +88,7 @@ def molecule_report(file: Path, options: MoleculeOptions) -> Report:
     if options.isotopes:
         rows = [isotopologue_row("as above", loaded.body, options.rtol)]
         for text in options.isotopes:
-            changed = _substituted(atoms, text)
+            changed = _substitute_isotopes(atoms, text)
             rows.append(isotopologue_row(_formula(changed), at.body(changed, options.masses), options.rtol))
         columns = (
             Column("isotopes", "isotopes"),
@@ -98,7 +98,7 @@ def molecule_report(file: Path, options: MoleculeOptions) -> Report:
             Column("top", "top"),
         )
         report.section("isotopologues", Table("isotopologues", columns, rows))
-    report.notes += straightened(loaded.body, options.rtol)
+    report.notes += note_straightening(loaded.body, options.rtol)
     masses = "masses of isotopes, not averages"
     if options.masses == "average":
         masses = "masses are averages over the isotopes of an element, which no single molecule has"
@@ -119,7 +119,7 @@ def atoms_report(
     report.section("rotational constants", *constant_fields(loaded.body))
     report.section("trust", *trust_fields(loaded))
     _cell(report, atoms, loaded)
-    report.notes += [*straightened(loaded.body), *loaded.notes]
+    report.notes += [*note_straightening(loaded.body), *loaded.notes]
     note_linear(report)
     return report
 
@@ -128,7 +128,7 @@ def _head(report: Report, file: Path, atoms: list[Isotope], loaded: LoadedBody) 
     counts, body = Counter(atoms), loaded.body
     report.section(
         "",
-        Field("file", "file", shown(file)),
+        Field("file", "file", label(file)),
         Field("comment", "comment", loaded.comment),
         Field("isotopes", "isotopes", _formula(atoms)),
     )
@@ -142,18 +142,18 @@ def _head(report: Report, file: Path, atoms: list[Isotope], loaded: LoadedBody) 
                 atom.mass,
                 "u",
                 decimals=9,
-                **(Told(sigma=atom.sigma, linear=True) if loaded.has_mass_sigmas else {}),
+                **(Sigmas(sigma=atom.sigma, linear=True) if loaded.has_mass_sigmas else {}),
             )
             for atom in counts
         ),
-        Field("mass", "mass", body.mass, "u", decimals=9, **told(body, "mass")),
+        Field("mass", "mass", body.mass, "u", decimals=9, **sigmas_of(body, "mass")),
         Field(
             "center_of_mass",
             "centre of mass",
             body.center_of_mass,
             "angstrom",
             scale=loaded.extent,
-            **told(body, "center_of_mass"),
+            **sigmas_of(body, "center_of_mass"),
         ),
     )
 
@@ -190,7 +190,7 @@ def _formula(atoms: list[Isotope]) -> str:
     return ", ".join(f"{n} {atom.name}" for atom, n in Counter(atoms).items())
 
 
-def _substituted(atoms: list[Isotope], text: str) -> list[Isotope]:
+def _substitute_isotopes(atoms: list[Isotope], text: str) -> list[Isotope]:
     """Put nuclides in: ``18O`` for every oxygen, ``2=13C`` for the second atom of the file."""
     changed = list(atoms)
     for part in text.split(","):
@@ -244,10 +244,10 @@ class _Moments(NamedTuple):
     def sigma(self) -> Floats | None:
         return None if self.slopes is None else np.sqrt((self.slopes**2).sum(axis=0))
 
-    def told(self) -> Told:
+    def sigmas(self) -> Sigmas:
         return {} if self.slopes is None else {"sigma": self.sigma, "linear": self.linear}
 
-    def told_of_constants(self, unit: Any) -> Told:
+    def told_of_constants(self, unit: Any) -> Sigmas:
         sigma = self.sigma
         if sigma is None:
             return {}
@@ -258,15 +258,15 @@ class _Moments(NamedTuple):
         }
 
 
-class _Derived(NamedTuple):
+class _DerivedSigmas(NamedTuple):
     """What is told of numbers that follow from the moments, of which those sigmas may cancel."""
 
-    defect: Told
-    planar: Told
-    kappa: Told
+    defect: Sigmas
+    planar: Sigmas
+    kappa: Sigmas
 
 
-def _derived(body: RigidBody, moments: _Moments, top: str) -> _Derived:
+def _derive_sigmas(body: RigidBody, moments: _Moments, top: str) -> _DerivedSigmas:
     """Sigmas of inertial defect, planar moments and Ray's kappa.
 
     Where first-order terms cancel, as those of kappa do for a molecule that is as symmetric as water, the
@@ -274,7 +274,7 @@ def _derived(body: RigidBody, moments: _Moments, top: str) -> _Derived:
     so that what is zero counts as zero.
     """
     if moments.slopes is None:
-        return _Derived({}, {}, {})
+        return _DerivedSigmas({}, {}, {})
     a, b, c = constants = rotational_constants(moments.values)
     by_constants = np.zeros(3)
     if top == "asymmetric":
@@ -283,7 +283,7 @@ def _derived(body: RigidBody, moments: _Moments, top: str) -> _Derived:
     weights = np.vstack([_DEFECT, _PLANAR, by_constants])
     sigma = np.sqrt(((moments.slopes @ weights.T) ** 2).sum(axis=0))
 
-    def raised(one: RigidBody) -> Floats:
+    def raise_by_scale(one: RigidBody) -> Floats:
         values = one.principal_moments
         if top == "linear":
             along = planar_moments(values)[0]
@@ -292,11 +292,11 @@ def _derived(body: RigidBody, moments: _Moments, top: str) -> _Derived:
         scale = float(moments.values[2])
         return np.array([inertial_defect(values) + scale, *(planar_moments(values) + scale), kappa + 2.0])
 
-    linear = propagate(raised, body).linear
-    return _Derived(
-        Told(sigma=sigma[0], linear=linear[0]),
-        Told(sigma=sigma[1:4], linear=linear[1:4]),
-        Told(sigma=sigma[4], linear=linear[4]),
+    linear = propagate(raise_by_scale, body).linear
+    return _DerivedSigmas(
+        Sigmas(sigma=sigma[0], linear=linear[0]),
+        Sigmas(sigma=sigma[1:4], linear=linear[1:4]),
+        Sigmas(sigma=sigma[4], linear=linear[4]),
     )
 
 
@@ -317,7 +317,7 @@ def _moments(body: RigidBody, rtol: float | None = None) -> _Moments:
     return _Moments(np.array([0.0, along, along]), slopes, linear)
 
 
-def straightened(body: RigidBody, rtol: float | None = None) -> list[str]:
+def note_straightening(body: RigidBody, rtol: float | None = None) -> list[str]:
     """Return a note where a molecule counts as linear although the last digits of its file bend it."""
     least = body.principal_moments[0]
     if least == 0.0 or body.principal.classify(rtol) != "linear":
@@ -341,7 +341,7 @@ def constant_fields(body: RigidBody, rtol: float | None = None) -> list[Field]:
     top = str(body.principal.classify(rtol))
     if top == "asymmetric":
         kappa = float(ray_kappa(frequencies))
-        of_kappa = _derived(body, moments, top).kappa
+        of_kappa = _derive_sigmas(body, moments, top).kappa
         fields.append(Field("ray_kappa", "Ray's kappa", kappa, scale=1.0 if of_kappa else 0.0, **of_kappa))
     return fields
 
@@ -351,10 +351,10 @@ def rotation_fields(loaded: LoadedBody, rtol: float | None) -> list[Field]:
     body = loaded.body
     moments = _moments(body, rtol)
     values, scale = moments.values, float(moments.values[2])
-    derived = _derived(body, moments, str(body.principal.classify(rtol)))
+    derived = _derive_sigmas(body, moments, str(body.principal.classify(rtol)))
     return [
         *top_fields(loaded, rtol),
-        Field("principal_moments", "Ia Ib Ic", values, _UNIT, **moments.told()),
+        Field("principal_moments", "Ia Ib Ic", values, _UNIT, **moments.sigmas()),
         Field("axes", "axes a b c", body.principal.axes, hint="columns", scale=1.0),
         *angle_field(body),
         *constant_fields(body, rtol),
@@ -397,10 +397,10 @@ def isotopologue_row(name: str, body: RigidBody, rtol: float | None) -> dict[str
     }
     if body.sigma is None:
         return row
-    derived = _derived(body, moments, top)
+    derived = _derive_sigmas(body, moments, top)
     tellings = {
-        "mass": Told(sigma=body.sigma.mass, linear=body.sigma.linear.mass),
-        "principal_moments": moments.told(),
+        "mass": Sigmas(sigma=body.sigma.mass, linear=body.sigma.linear.mass),
+        "principal_moments": moments.sigmas(),
         "rotational_constants_MHz": moments.told_of_constants("MHz"),
         "rotational_constants_cm^-1": moments.told_of_constants("cm^-1"),
         "inertial_defect": derived.defect,
@@ -419,7 +419,7 @@ def isotopologue_row(name: str, body: RigidBody, rtol: float | None) -> dict[str
     }
 
 
-def _text(value: Any, told: Told, decimals: int, scale: float) -> str:
+def _text(value: Any, told: Sigmas, decimals: int, scale: float) -> str:
     sigmas, flags = np.ravel(np.asarray(told["sigma"])), np.ravel(np.asarray(told["linear"]))
     words = []
     for x, sigma, is_linear in zip(np.ravel(value).tolist(), sigmas.tolist(), flags.tolist(), strict=True):

@@ -5,18 +5,18 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from polhode.cli.components import add_components
-from polhode.cli.files import STDIN, shown
+from polhode.cli.files import STDIN, label
 from polhode.cli.layout import Column, Field, Report, Table
 from polhode.cli.loading import in_file_unit
 from polhode.cli.options import ReportOptions
 from polhode.cli.tables import (
     FileUnits,
-    Told,
+    Sigmas,
     body_fields,
     ellipsoid_fields,
     note_linear,
+    sigmas_of,
     tensor_fields,
-    told,
     trust_fields,
 )
 from polhode.cli.whole import any_body, whole_report
@@ -52,7 +52,7 @@ def file_report(file: Path | None, options: BodyOptions, extra: ReportOptions = 
     if isinstance(loaded.source, MeshSolid):
         return _mesh_report(file, loaded, loaded.source, units, about)
     if extra.mass_unit is not None:
-        raise PolhodeError(f"--mass-unit: {shown(file)} is a molecule, in u and angstrom; leave it out")
+        raise PolhodeError(f"--mass-unit: {label(file)} is a molecule, in u and angstrom; leave it out")
     from polhode.cli.molecule import atoms_report
 
     return atoms_report(file, loaded, loaded.source, about)
@@ -68,7 +68,7 @@ def for_program(
         reason = "is a molecule, in u and angstrom" if loaded.mass_unit == "u" else "does not say its unit"
         way_out = "leave --as out" if loaded.mass_unit == "u" else "state --length-unit"
         raise PolhodeError(
-            f"--as: other programs take kg and m, and {shown(file or STDIN)} {reason}; {way_out}"
+            f"--as: other programs take kg and m, and {label(file or STDIN)} {reason}; {way_out}"
         )
     if loaded.assumed:
         raise PolhodeError("--as: neither density nor mass is given; state --density or --mass")
@@ -139,7 +139,7 @@ def _mesh_report(
     hint = "(the file's own)" if loaded.states_unit else "" if unit else "(state it with --length-unit)"
     report.section(
         "",
-        Field("file", "file", shown(file)),
+        Field("file", "file", label(file)),
         Field("format", "format", mesh.format),
         Field("length_unit", "length unit", unit or UNKNOWN, hint=hint),
     )
@@ -169,9 +169,9 @@ def _mesh_report(
             "density",
             loaded.density,
             f"{loaded.mass_unit}/{volume}",
-            **({} if body.sigma is None else Told(sigma=body.sigma.mass / loaded.volume, linear=True)),
+            **({} if body.sigma is None else Sigmas(sigma=body.sigma.mass / loaded.volume, linear=True)),
         ),
-        *units.fields("mass", "mass", body.mass, loaded.mass_unit, mass=1, **told(body, "mass")),
+        *units.fields("mass", "mass", body.mass, loaded.mass_unit, mass=1, **sigmas_of(body, "mass")),
         *units.fields(
             "center_of_mass",
             "centre of mass",
@@ -179,7 +179,7 @@ def _mesh_report(
             loaded.length,
             length=1,
             scale=extent,
-            **told(body, "center_of_mass"),
+            **sigmas_of(body, "center_of_mass"),
         ),
     )
     report.section("inertia, file axes", *tensor_fields(loaded, units, about))

@@ -12,16 +12,16 @@ from polhode import RigidBody, Uncertain, _core
 from polhode._format import at_most
 from polhode._optional import require
 from polhode.animation import ANIMATION_SUFFIXES, animate_motion
-from polhode.cli.files import STDIN, shown
+from polhode.cli.files import STDIN, label
 from polhode.cli.layout import Cell, Column, Field, Report, Table
 from polhode.cli.loading import LoadedBody
 from polhode.cli.options import MODES
-from polhode.cli.tables import note_linear, told, top_fields
+from polhode.cli.tables import note_linear, sigmas_of, top_fields
 from polhode.cli.terminal import printable, progress
 from polhode.cli.whole import any_body, check_moments_alone
 from polhode.draw.pivot import path_of
 from polhode.draw.sampling import TURN, fastest, motion_times, turns
-from polhode.draw.triangles import joined
+from polhode.draw.triangles import cluster_vertices
 from polhode.errors import PolhodeError
 from polhode.euler_angles import to_quaternion
 from polhode.io.saved import TRAJECTORY_SUFFIXES
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from polhode import Trajectory
-    from polhode.cli.tables import Told
+    from polhode.cli.tables import Sigmas
 
     Part: TypeAlias = tuple[NDArray[np.float64], NDArray[np.int64]]
 
@@ -64,7 +64,7 @@ __all__ = [
 
 def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> Report:
     """Compute the motion of a body, save it as asked for and report on it."""
-    end = _checked(file, spin, options)
+    end = _check_options(file, spin, options)
     loaded = _body(file, spin, options)
     body = loaded.body
     axes = body.principal.axes if spin.axes == "principal" else np.eye(3)
@@ -88,13 +88,13 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
     rate, rate_unit = (180.0 / np.pi, "deg/s") if spin.degrees else (1.0, "rad/s")
     report.section(
         "body",
-        Field("mass", "mass", body.mass, loaded.mass_unit, **told(body, "mass")),
+        Field("mass", "mass", body.mass, loaded.mass_unit, **sigmas_of(body, "mass")),
         Field(
             "principal_moments",
             "I1 I2 I3",
             body.principal_moments,
             loaded.moment_unit,
-            **told(body, "principal_moments"),
+            **sigmas_of(body, "principal_moments"),
         ),
         *top_fields(loaded),
     )
@@ -146,7 +146,7 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
         return report
     part, note = drawable(loaded, options)
     report.notes += [note] if note else []
-    title = "" if file is None else printable(Path(shown(file)).name)
+    title = "" if file is None else printable(Path(label(file)).name)
     for path in spin.save:
         saved = save(motion, trajectory, path, spin, title=title, part=part)
         report.notes.append(f"saved {path}")
@@ -154,7 +154,7 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
     return report
 
 
-def _checked(file: Path | None, spin: SpinOptions, options: BodyOptions) -> float | None:
+def _check_options(file: Path | None, spin: SpinOptions, options: BodyOptions) -> float | None:
     """Refuse wrong options before anything is computed; give the time of the end."""
     if file is None and not (spin.moments or options.inertia):
         raise PolhodeError(
@@ -163,7 +163,7 @@ def _checked(file: Path | None, spin: SpinOptions, options: BodyOptions) -> floa
     if spin.moments and options.inertia:
         raise PolhodeError("--moments and --inertia: both say what the body is; give one of the two")
     if file is not None and spin.moments:
-        raise PolhodeError(f"--moments: the body is that of {shown(file)}; give one of the two")
+        raise PolhodeError(f"--moments: the body is that of {label(file)}; give one of the two")
     if file is not None and file != STDIN:
         file.stat()  # a wrong path is told before a start that is missing
     if bool(spin.omega) == bool(spin.periods):
@@ -284,7 +284,7 @@ def _heavy_top(body: RigidBody, axes: Floats, spin: SpinOptions) -> HeavyTop:
 
 def _source(file: Path | None, spin: SpinOptions) -> str:
     if file is not None:
-        return shown(file)
+        return label(file)
     return "(moments)" if spin.moments else "(inertia)"
 
 
@@ -329,7 +329,7 @@ class FreeKind:
                 periods.rates * rate,
                 rate_unit,
                 "of e1 e2 e3 about L",
-                **self._told("rates", rate),
+                **self._sigmas("rates", rate),
             ),
             *(
                 Field(
@@ -352,7 +352,7 @@ class FreeKind:
             Field("modulus", "elliptic modulus", motion.modulus, **of_angles("modulus")),
         ]
 
-    def _told(self, name: str, factor: float = 1.0) -> Told:
+    def _sigmas(self, name: str, factor: float = 1.0) -> Sigmas:
         found = self._motion.periods.sigma
         if found is None:
             return {}
@@ -360,7 +360,7 @@ class FreeKind:
 
     def _periods(self) -> list[Field]:
         """Return the periods that this mode has, by the words of the glossary."""
-        motion, periods, told = self._motion, self._motion.periods, self._told
+        motion, periods, told = self._motion, self._motion.periods, self._sigmas
         mode = str(motion.mode)
         if not np.isnan(periods.turn):
             along = np.abs(motion.omega @ motion.body.principal.axes)
@@ -418,7 +418,7 @@ class FreeKind:
         motion, wobble = self._motion, self._motion.periods.wobble
         hint = "of small oscillations of omega in the body"
         if not np.isnan(wobble):
-            return period_fields("wobble_period", "wobble", wobble, hint, self._told("wobble"))
+            return period_fields("wobble_period", "wobble", wobble, hint, self._sigmas("wobble"))
         is_unstable = str(motion.mode) == "steady"
         why = "the spin is unstable" if is_unstable else "omega rests wherever it is put in the body"
         return [Field("wobble_period", "wobble", None, hint=why, cells=["none"])]
@@ -582,7 +582,7 @@ class TopKind:
         return trajectory.kinetic_energy().total, float(trajectory.body.mass) * height
 
 
-def period_fields(key: str, label: str, seconds: float, hint: str, told: Told) -> list[Field]:
+def period_fields(key: str, label: str, seconds: float, hint: str, told: Sigmas) -> list[Field]:
     """Return a period in seconds, and a long one in days too."""
     fields = [Field(key, label, seconds, "s", hint, **told)]
     if np.isfinite(seconds) and seconds >= 3600.0:
@@ -803,7 +803,7 @@ def _clean(vector: Floats) -> list[float]:
     return [float(x) if abs(x) > 1e-15 * size else 0.0 for x in vector]
 
 
-def of_start(motion: FreeMotion | HeavyTop | GyrostatMotion, axes: Floats, rate: float) -> Told:
+def of_start(motion: FreeMotion | HeavyTop | GyrostatMotion, axes: Floats, rate: float) -> Sigmas:
     """Sigma of the angular velocity at the start, along these axes; `rate` units are one rad/s."""
     omega = None if isinstance(motion, _core.GyrostatMotion) else motion.uncertain_start[0]
     if omega is None:
@@ -814,7 +814,7 @@ def of_start(motion: FreeMotion | HeavyTop | GyrostatMotion, axes: Floats, rate:
     return {"sigma": rate * _along(axes, omega.covariance), "linear": np.ones(3, dtype=bool)}
 
 
-def of_shape(motion: FreeMotion) -> Callable[[str], Told]:
+def of_shape(motion: FreeMotion) -> Callable[[str], Sigmas]:
     """Compute sigmas of energy ratio, modulus and angles from L; give what looks them up, nothing if none.
 
     The angles of axis k, ``"nutation k"``, are in degrees.
@@ -832,7 +832,7 @@ def of_shape(motion: FreeMotion) -> Callable[[str], Told]:
     return lambda name: {"sigma": found.sigma[places[name]], "linear": found.linear[places[name]]}
 
 
-def of_end(motion: FreeMotion | HeavyTop | GyrostatMotion, end: float, axes: Floats, rate: float) -> Told:
+def of_end(motion: FreeMotion | HeavyTop | GyrostatMotion, end: float, axes: Floats, rate: float) -> Sigmas:
     """Return the uncertain numbers at the end."""
     found = _end(motion, end)
     if found is None:
@@ -895,7 +895,7 @@ def drawable(loaded: LoadedBody, options: BodyOptions) -> tuple[Part | None, str
     """Return the mesh as it is drawn, if there is one, and a note where it is coarser."""
     if loaded.shape is None:
         return None, ""
-    vertices, faces, side = joined(loaded.shape.vertices, loaded.shape.faces, _MOST)
+    vertices, faces, side = cluster_vertices(loaded.shape.vertices, loaded.shape.faces, _MOST)
     note = ""
     if side > 0.0:
         note = (

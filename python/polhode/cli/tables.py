@@ -26,16 +26,16 @@ if TYPE_CHECKING:
 
 __all__ = [
     "FileUnits",
-    "Told",
+    "Sigmas",
     "about_point",
     "angle_field",
     "body_fields",
     "ellipsoid_fields",
     "moments_slopes",
     "note_linear",
-    "squared",
+    "sigmas_of",
+    "sigmas_of_square",
     "tensor_fields",
-    "told",
     "top_fields",
     "trust_fields",
 ]
@@ -106,7 +106,7 @@ def tensor_fields(
         tensors.append(("point", "about the point", body.inertia_about(about), np.array(about)))
     fields: list[Field] = []
     for name, label, tensor, point in tensors:
-        of_tensor = told(body, "inertia") if name == "center_of_mass" else about_point(body, point)
+        of_tensor = sigmas_of(body, "inertia") if name == "center_of_mass" else about_point(body, point)
         fields += units.fields(
             f"inertia_about_{name}",
             label,
@@ -129,8 +129,8 @@ def body_fields(loaded: LoadedBody, units: FileUnits) -> list[Field]:
     principal = body.principal
     per_mass = principal.moments / body.mass
     square, radius = f"{loaded.length}^2", np.sqrt(per_mass)
-    of_moments, of_radii = told(body, "principal_moments"), told(body, "radii_of_gyration")
-    of_squares = squared(radius, of_radii)
+    of_moments, of_radii = sigmas_of(body, "principal_moments"), sigmas_of(body, "radii_of_gyration")
+    of_squares = sigmas_of_square(radius, of_radii)
     return [
         *units.fields(
             "principal_moments",
@@ -209,21 +209,21 @@ _LARGE: Final = 0.17
 """Relative sigma of a number above which its square has another one than twice that, by a percent."""
 
 
-class Told(TypedDict, total=False):
+class Sigmas(TypedDict, total=False):
     """What a field is told besides its value; nothing where the body has no covariance."""
 
     sigma: ArrayLike | None
     linear: ArrayLike | None
 
 
-def told(body: RigidBody, name: str) -> Told:
+def sigmas_of(body: RigidBody, name: str) -> Sigmas:
     """Return a number of :class:`polhode.results.Sigma` with its flag."""
     if body.sigma is None:
         return {}
     return {"sigma": getattr(body.sigma, name), "linear": getattr(body.sigma.linear, name)}
 
 
-def squared(value: Floats, of_value: Told) -> Told:
+def sigmas_of_square(value: Floats, of_value: Sigmas) -> Sigmas:
     """Return the sigma of the square of a number."""
     if not of_value:
         return {}
@@ -234,7 +234,7 @@ def squared(value: Floats, of_value: Told) -> Told:
     }
 
 
-def about_point(body: RigidBody, point: Floats) -> Told:
+def about_point(body: RigidBody, point: Floats) -> Sigmas:
     """Sigma of the tensor about a point that is known exactly."""
     sigma = body.sigma_about(point)
     return {} if sigma is None else {"sigma": sigma.inertia, "linear": sigma.linear.inertia}

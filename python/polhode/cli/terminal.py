@@ -84,7 +84,7 @@ class ReaderLeft(Exception):  # noqa: N818 (it tells of no error)
     """The reader of standard output has closed it early, as ``head`` does: nothing is wrong."""
 
 
-class _Named:
+class _NamedStream:
     """A stream whose errors have its name; all else is the stream itself."""
 
     def __init__(self, stream: Any) -> None:
@@ -115,7 +115,7 @@ def standard_output() -> Iterator[None]:
         return
     with suppress(AttributeError, ValueError):
         stream.reconfigure(errors="backslashreplace")
-    named = _Named(stream)
+    named = _NamedStream(stream)
     sys.stdout = cast("TextIO", named)
     try:
         yield

@@ -53,7 +53,7 @@ class Case:
     compute: Callable[[], Numbers]
 
 
-def _told(values: object) -> Numbers:
+def _to_floats(values: object) -> Numbers:
     return tuple(float(value) for value in np.ravel(np.asarray(values)))
 
 
@@ -61,7 +61,7 @@ def _brick(method: Literal["exact", "taylor", "dop853"], rtol: float) -> Callabl
     def compute() -> Numbers:
         body = RigidBody(brick.MASS, np.diag(brick.MOMENTS))
         start = np.deg2rad(brick.START_RATES)
-        return _told(
+        return _to_floats(
             np.rad2deg(body.simulate([0.0, brick.DURATION], start, method=method, rtol=rtol).omega[-1])
         )
 
@@ -86,7 +86,9 @@ def _diatomic(masses: tuple[float, float], length: float) -> Callable[[], Number
 def _printout() -> Numbers:
     center = (-0.45582142, 0.92780847, 0.0)
     products = (0.50358715, 0.17140362, 0.66303218, -0.05932693, 0.0, 0.0)
-    return _told(interop.from_printout(1.51653435, center, products, products="positive").principal_moments)
+    return _to_floats(
+        interop.from_printout(1.51653435, center, products, products="positive").principal_moments
+    )
 
 
 def _corner() -> Numbers:
@@ -96,23 +98,23 @@ def _corner() -> Numbers:
     )
     body = RigidBody.from_mesh(corners, faces, density=120.0)
     tensor = body.inertia_about("origin")
-    return _told([body.mass, tensor[0, 0], tensor[0, 1]])
+    return _to_floats([body.mass, tensor[0, 0], tensor[0, 1]])
 
 
 def _cone() -> Numbers:
-    return _told(solids.cone(1.0, 4.0, mass=20.0).principal_moments)
+    return _to_floats(solids.cone(1.0, 4.0, mass=20.0).principal_moments)
 
 
 def _symmetric() -> Numbers:
     body = RigidBody.from_principal(1.0, (2.0, 2.0, 3.0))
-    return _told(body.simulate([0.0, 10.0], (1.0, 0.0, 2.0), method="taylor", rtol=1e-13).omega[-1])
+    return _to_floats(body.simulate([0.0, 10.0], (1.0, 0.0, 2.0), method="taylor", rtol=1e-13).omega[-1])
 
 
 def _separatrix(method: Literal["exact", "dop853"]) -> Callable[[], Numbers]:
     def compute() -> Numbers:
         body = RigidBody.from_principal(1.0, (1.0, 2.0, 3.0))
         start = (math.sqrt(3.0), 0.0, 1.0)
-        return _told(body.simulate([0.0, 4.0], start, method=method, rtol=1e-13).omega[-1])
+        return _to_floats(body.simulate([0.0, 4.0], start, method=method, rtol=1e-13).omega[-1])
 
     return compute
 

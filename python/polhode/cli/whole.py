@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import TYPE_CHECKING, Final
 
-from polhode.cli.files import shown
+from polhode.cli.files import label
 from polhode.cli.layout import Field, Report
 from polhode.cli.loading import LoadedBody, load_body
 from polhode.cli.options import BodyOptions
@@ -17,8 +17,8 @@ from polhode.cli.tables import (
     body_fields,
     ellipsoid_fields,
     note_linear,
+    sigmas_of,
     tensor_fields,
-    told,
     trust_fields,
 )
 from polhode.errors import PolhodeError
@@ -40,7 +40,7 @@ _PLAIN: Final = BodyOptions()
 def any_body(file: Path | None, options: BodyOptions, **how: bool) -> LoadedBody:
     """Read the body in a file, or without one that of a CAD program's numbers; `how` is of `load_body`."""
     if file is None or any(_is_given(options, name) for name in _OF_PRINTOUTS):
-        return _printed(file, options)
+        return _read_printout(file, options)
     if is_whole(file):
         return _whole_body(file, options)
     return load_body(file, options, **how)
@@ -58,13 +58,13 @@ def _whole_body(file: Path, options: BodyOptions) -> LoadedBody:
     return LoadedBody(body, [], mass_unit, length, notes=notes, kind=kind)
 
 
-def _printed(file: Path | None, options: BodyOptions) -> LoadedBody:
+def _read_printout(file: Path | None, options: BodyOptions) -> LoadedBody:
     """Make the body of --mass, --center-of-mass and --inertia."""
     from polhode.interop.printouts import from_printout
 
     if file is not None:
         name = next(name for name in _OF_PRINTOUTS if _is_given(options, name)).replace("_", "-")
-        raise PolhodeError(f"--{name}: {shown(file)} defines the body already; leave it out, or the file")
+        raise PolhodeError(f"--{name}: {label(file)} defines the body already; leave it out, or the file")
     for name in ("length_unit", *(name for name in _OF_SHAPES if name != "mass")):
         if _is_given(options, name):
             raise PolhodeError(
@@ -113,7 +113,7 @@ def whole_report(
     report = Report()
     report.section(
         "",
-        Field("file", "file", "(inertia)" if file is None else shown(file)),
+        Field("file", "file", "(inertia)" if file is None else label(file)),
         Field("format", "format", loaded.kind),
         Field("length_unit", "length unit", "m" if loaded.length == "m" else "unit unknown"),
     )
@@ -128,7 +128,7 @@ def body_sections(
     body = loaded.body
     report.section(
         "mass",
-        *units.fields("mass", "mass", body.mass, loaded.mass_unit, mass=1, **told(body, "mass")),
+        *units.fields("mass", "mass", body.mass, loaded.mass_unit, mass=1, **sigmas_of(body, "mass")),
         *units.fields(
             "center_of_mass",
             "centre of mass",
@@ -136,7 +136,7 @@ def body_sections(
             loaded.length,
             length=1,
             scale=loaded.extent,
-            **told(body, "center_of_mass"),
+            **sigmas_of(body, "center_of_mass"),
         ),
     )
     report.section("inertia, its axes", *tensor_fields(loaded, units, about))

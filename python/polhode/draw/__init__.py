@@ -1,1 +1,1 @@
-"""What is drawn: states, shapes and colours that pictures, moving pictures and windows share."""
+"""States, shapes and colours that pictures, moving pictures and windows share."""

@@ -1,4 +1,4 @@
-"""What notebooks show of a body and of a motion. No drawing library is needed."""
+"""Display of a body and of a motion in notebooks. No drawing library is needed."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from polhode.motion.trajectory import Trajectory
 
 __all__ = [
-    "Shown",
+    "HtmlPage",
     "body_html",
     "ellipsoid_svg",
     "motion_html",
@@ -174,7 +174,7 @@ def _beyond(tip: Floats) -> Floats:
 
 
 def _free_place(at: Floats, taken: list[Floats]) -> Floats:
-    """Return this place for a name, or one to its left or right where another name stands on it."""
+    """Return this place for a name; if another name is there, a place to its left or right."""
     inward = -1.0 if at[0] > 0.0 else 1.0
     tried = [at + np.array([step * inward * _LETTER, 0.0]) for step in (0.0, 1.0, -1.0, 2.0)]
     return next((one for one in tried if all(np.abs(one - other).max() >= _LETTER for other in taken)), at)
@@ -204,7 +204,7 @@ _POINTS: Final = 400
 _DASHES: Final = ("6 4", "none", "2 3")
 
 
-class Shown:
+class HtmlPage:
     """A page that a notebook displays; ``path`` is the file, where one was written for the browser.
 
     Attributes
@@ -227,7 +227,7 @@ class Shown:
 
 
 @with_hints
-def show(self: Trajectory, *, height: int, **options: Any) -> Shown:
+def show(self: Trajectory, *, height: int, **options: Any) -> HtmlPage:
     """Do what :meth:`polhode.Trajectory.show` says."""
     from polhode.animation import page_of
 
@@ -237,7 +237,7 @@ def show(self: Trajectory, *, height: int, **options: Any) -> Shown:
     for note in notes:
         warnings.warn(note, stacklevel=2)
     if "ipykernel" in sys.modules:
-        return Shown(page, height)
+        return HtmlPage(page, height)
     # For this alone, and not when the package is imported.
     import tempfile
     import webbrowser
@@ -248,7 +248,7 @@ def show(self: Trajectory, *, height: int, **options: Any) -> Shown:
     path = Path(tempfile.mkdtemp(prefix="polhode-")) / "motion.html"
     write_bytes(path, page.encode())
     webbrowser.open(path.as_uri())
-    return Shown(page, height, path)
+    return HtmlPage(page, height, path)
 
 
 def motion_html(self: Trajectory) -> str:
@@ -277,7 +277,7 @@ def motion_html(self: Trajectory) -> str:
 
 
 def _frame(page: str, height: int) -> str:
-    """Put a page into another, whole: it asks for nothing else."""
+    """Embed a whole page in another one; it loads no other file."""
     return (
         f'<iframe title="moving picture of the motion" srcdoc="{html.escape(page, quote=True)}" width="100%" '
         f'height="{height}" loading="lazy" allowfullscreen style="border:0;max-width:900px"></iframe>'

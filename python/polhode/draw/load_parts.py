@@ -1,4 +1,4 @@
-"""The parts that a load was added up from."""
+"""The parts of a load that is a sum."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class Part:
 
 
 def parts_of(load: _core.Load) -> list[Part]:
-    """Take a load apart; nothing comes of one that has compiled parts, which pickle refuses too.
+    """Return the parts of a load; none for a load with compiled parts, which pickle refuses too.
 
     Parameters
     ----------

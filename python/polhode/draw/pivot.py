@@ -1,4 +1,4 @@
-"""What is drawn of a body with a fixed point: the pivot, and the way of its axis."""
+"""Picture of a body with a fixed point: the pivot, and the path of its axis."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _ROUNDING: Final = 64.0 * float(np.finfo(np.float64).eps)
 
 @dataclass(frozen=True)
 class Pivot:
-    """A fixed point, and what is seen of the motion about it.
+    """A fixed point, and the curves of the motion about it.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class Pivot:
 
 
 def top_of(trajectory: Trajectory) -> HeavyTop | None:
-    """Return top in closed form from the first state of a trajectory on; None where it is no heavy top."""
+    """Return the heavy top in closed form that starts at the first state of a trajectory; else None."""
     if not trajectory.pivoted or repr(trajectory.load) != _GRAVITY:
         return None
     gravity = trajectory.force()[0] / trajectory.body.mass
@@ -58,7 +58,7 @@ def top_of(trajectory: Trajectory) -> HeavyTop | None:
 
 
 def path_of(motion: HeavyTop) -> str:
-    """Return kind of path of a top's axis: ``HeavyTop.path``, but ``steady`` where it nods by rounding alone.
+    """Return the kind of path of a top's axis: ``HeavyTop.path``, but ``steady`` if it nods by rounding.
 
     180 degrees are not a float in radians: a top that hangs straight down with them is off by 1e-16, and what
     it draws has cusps of that size.
@@ -69,7 +69,7 @@ def path_of(motion: HeavyTop) -> str:
 
 
 def pivot_of(trajectory: Trajectory, motion: FreeMotion | HeavyTop | GyrostatMotion | None) -> Pivot | None:
-    """Find what is drawn of the fixed point of a body; None for a body without one.
+    """Return the fixed point of a body and its curves; None for a body without one.
 
     Parameters
     ----------

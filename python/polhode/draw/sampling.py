@@ -1,4 +1,4 @@
-"""The times at which a motion is drawn: so close that the picture shows what happens.
+"""The times at which a motion is drawn: close enough that the picture shows the whole motion.
 
 From one picture to the next a body seems to turn the shorter way: by more than half a turn it seems to turn
 backward. And a curve through too few points cuts through the surface on which it lies. So pictures follow the
@@ -50,11 +50,11 @@ __all__ = [
 ]
 
 TURN: Final = float(np.deg2rad(20.0))
-"""From one picture to the next a body turns by this at most, where the times are ours to choose."""
+"""Largest turn of a body between two pictures, if the times can be chosen."""
 COARSE: Final = float(np.deg2rad(30.0))
-"""Past this between two pictures the user is told; past half a turn nothing is drawn."""
+"""Beyond this turn between two pictures a note is made; beyond half a turn nothing is drawn."""
 CHORD: Final = 0.002
-"""How deep a chord of a drawn curve may cut, of the size of what it lies on: half a pixel."""
+"""Largest distance of a chord from its curve, relative to the size of the surface: half a pixel."""
 MOST: Final = 12_000
 """Points of a curve that a browser still draws smoothly."""
 _DRAWN: Final = 50_000
@@ -63,7 +63,7 @@ _PER_NUTATION: Final = 24
 _PER_PERIOD: Final = 1440
 """States in which the fastest of a gyrostat is looked for."""
 _GROWTHS: Final = 40.0
-"""In so many times of growth by e a departure goes from rounding to its full size."""
+"""Number of e-folding times in which a departure grows from rounding to its full size."""
 
 
 class Span(NamedTuple):
@@ -115,7 +115,7 @@ def fastest(motion: FreeMotion | HeavyTop | GyrostatMotion) -> float:
 
 
 def once_round(motion: GyrostatMotion) -> Floats:
-    """Return times in which ω of one gyrostat comes to every place in the body to which it ever comes."""
+    """Return times over one period of ω in the body, for one gyrostat."""
     period = float(motion.period)
     if str(motion.mode) == "steady":
         return np.zeros(1)
@@ -135,7 +135,7 @@ def _quickest(motion: GyrostatMotion) -> float:
 def follow(
     curve: Callable[[Floats], Floats], t: Floats, *, step: float, most: int = MOST, chord: float = CHORD
 ) -> Span:
-    """Put times between those given, so that the chords of curves stay near them.
+    """Insert times, so that the chords of curves stay near the curves.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def follow(
     -------
     Span
     """
-    t, is_whole = _divided(t, step, most)
+    t, is_whole = _divide(t, step, most)
     points = curve(t)
     checked = np.zeros(len(t) - 1, dtype=bool)  # intervals whose chords are near enough
     while not checked.all():
@@ -175,7 +175,7 @@ def follow(
     return Span(t, is_whole)
 
 
-def _divided(t: Floats, step: float, most: int) -> Span:
+def _divide(t: Floats, step: float, most: int) -> Span:
     """Divide the intervals between times evenly, none longer than `step`, and keep the first `most` times."""
     if len(t) < 2:
         return Span(t, is_whole=True)
@@ -200,7 +200,7 @@ def motion_times(
     turn: float = TURN,
     chord: float = CHORD,
 ) -> Span:
-    """Put times between those given, so that the turns of one body and the paths of its ω are followed."""
+    """Insert times, so that a picture follows the turns of one body and the path of its ω."""
     size = fastest(motion)
     if size == 0.0:
         return Span(t, is_whole=True)
@@ -229,7 +229,7 @@ def _ellipsoid(motion: FreeMotion | HeavyTop | GyrostatMotion) -> tuple[Floats, 
 
 
 def axis_times(top: HeavyTop, t: Floats, *, most: int = MOST) -> Span:
-    """Put times between those given for the path of one top's axis on the unit sphere."""
+    """Insert times, so that a picture follows the axis of one top on the unit sphere."""
     across = np.sqrt(max(0.0, fastest(top) ** 2 - float(top.axial_spin) ** 2))
     arm = float(np.linalg.norm(top.body.center_of_mass))
     step = min(TURN / across if across > 0.0 else np.inf, _nutation_step(top))
@@ -239,7 +239,7 @@ def axis_times(top: HeavyTop, t: Floats, *, most: int = MOST) -> Span:
 def drawn_times(
     motion: FreeMotion | HeavyTop | GyrostatMotion, t: ArrayLike, choose: Callable[..., Span] = motion_times
 ) -> Floats:
-    """Put times between those that a picture was asked for, or say why no curve can follow.
+    """Insert times between those of a picture; if no curve can follow the motion, say why.
 
     Parameters
     ----------
@@ -275,14 +275,14 @@ SECONDS: Final = {
     "ns": 1e-9, "µs": 1e-6, "us": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0, "d": 86400.0,
     "day": 86400.0, "days": 86400.0, "yr": 31557600.0,
 }  # fmt: skip
-"""In the units of time whose length a page knows."""
+"""Seconds in each unit of time that a page knows."""
 _REAL: Final = (2.0, 300.0)
 """Seconds of a motion that is shown in real time."""
 _FINEST: Final = np.array([1.0, 2.0, 5.0, 10.0])
 
 
 def pace(length: float, wished: float, least: float, time_unit: str) -> float:
-    """Return seconds on the screen of a motion: its own, or those of slow or fast motion by a round number.
+    """Return the seconds of a motion on the screen: in real time, or slower or faster by a round factor.
 
     Parameters
     ----------
@@ -313,7 +313,7 @@ def pace(length: float, wished: float, least: float, time_unit: str) -> float:
 
 
 _SECONDS: Final = 10.0
-"""That a motion takes on the screen at least."""
+"""Shortest time of a motion on the screen, in seconds."""
 RATE: Final = 30.0
 """Pictures a second, of a film and of a browser on a slow machine."""
 GIF_RATE: Final = 50.0
@@ -321,10 +321,10 @@ GIF_RATE: Final = 50.0
 _FILM: Final = 1800
 """Pictures of a film: a minute of it, and a few minutes of drawing."""
 _PAGE_TURN: Final = float(np.deg2rad(40.0))
-"""From one frame of a page to the next, between which it interpolates, on the turns and on ω."""
+"""Largest turn between two frames of a page, which interpolates between them."""
 _PAGE_CHORD: Final = 0.02
 _PAGE_FRAMES: Final = 3600
-"""Of a page: 48 bytes each."""
+"""Largest number of frames of a page, of 48 bytes each."""
 _BETWEEN: Final = 20
 """Points of the path of ω for each picture of a film, at most."""
 
@@ -403,7 +403,7 @@ def of_samples(
         if can_help:
             is_short = is_film and frames is None
             way_out = "give a longer duration" if is_short else f"give frames={needed:.7g} or more"
-        notes += _judged(widest, f"animate: from one frame to the next, at t = {where},", way_out)
+        notes += _check_turn(widest, f"animate: from one frame to the next, at t = {where},", way_out)
     if is_film:
         if fps is not None and duration is not None:
             raise ValueError("fps: of samples each is one picture; give fps or duration, not both")
@@ -463,7 +463,7 @@ def of_motion(
 def _pictures(
     length: float, rate: float, duration: float | None, fps: float | None
 ) -> tuple[Floats, float, list[str]]:
-    """Choose evenly spaced times for the pictures of a film; also give its length in seconds, and notes."""
+    """Choose evenly spaced times for the pictures of a film; also return its length in seconds, and notes."""
     needed = float(np.ceil(abs(length) * rate / TURN)) + 1.0
     if duration is None:
         count = int(min(max(needed, (fps or RATE) * _SECONDS), _FILM))
@@ -480,11 +480,11 @@ def _pictures(
     return (
         np.linspace(0.0, length, count),
         duration,
-        _judged(abs(length) * rate / (count - 1), where, way_out),
+        _check_turn(abs(length) * rate / (count - 1), where, way_out),
     )
 
 
-def _judged(angle: float, where: str, way_out: str) -> list[str]:
+def _check_turn(angle: float, where: str, way_out: str) -> list[str]:
     """Return a note where the turn from one picture to the next is large; an error where it is too large."""
     if angle >= np.pi:
         raise ValueError(
@@ -511,6 +511,6 @@ def _on_screen(
     if duration is None:
         return (needed if time_unit is None else pace(abs(length), needed, turned / TURN, time_unit)), []
     where = f"duration: at {RATE:g} pictures a second from one to the next"
-    return duration, _judged(
+    return duration, _check_turn(
         turned / duration, where, f"give duration={at_least(float(np.ceil(needed)), 6)} or more"
     )

@@ -1,4 +1,4 @@
-"""What an animation shows: the frames of a motion, the body in them, and the energy."""
+"""Content of an animation: the frames of a motion, the body in them, and the energy."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ class Scene:
         is_page: bool = False,
         fps: float | None = None,
     ) -> Scene:
-        """Choose the frames of a motion and work out what is drawn in them.
+        """Choose the frames of a motion and compute the content of each.
 
         Where nothing acts on the body, or gravity alone on a symmetric top, its motion is known between the
         samples too, and the frames are as many as it needs; else, or where `frames` says how many, they are
@@ -249,7 +249,7 @@ def _check_duration(duration: float | None) -> None:
 
 @dataclass(frozen=True)
 class Energy:
-    """What is known of the energy at the frames.
+    """The energy at the frames, as far as it is known.
 
     Attributes
     ----------

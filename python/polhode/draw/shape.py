@@ -1,4 +1,4 @@
-"""The shape of a body as it is drawn: what it was made of, a given mesh, or the box of its inertia."""
+"""The shape of a body in a picture: its own surface, a given mesh, or the box of its inertia."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ import numpy as np
 from polhode import _core
 from polhode.draw.triangles import (
     both_sides,
-    cut,
-    joined,
+    cluster_vertices,
     particles_surface,
     sheet_surface,
     solid_surface,
+    subdivide,
     wire_surface,
 )
 
@@ -50,15 +50,15 @@ __all__ = [
 BOX_TINTS: NDArray[np.int64] = np.array(
     [(158, 197, 224), (110, 160, 200), (240, 190, 150), (222, 150, 96), (158, 214, 196), (98, 178, 150)]
 )
-"""Of the faces toward +x, −x, +y, −y, +z, −z."""
+"""Colours of the faces toward +x, −x, +y, −y, +z, −z."""
 _PLAIN = (199, 212, 230)
 _PART_TINTS = ((158, 197, 224), (240, 190, 150), (158, 214, 196), (214, 186, 214), (226, 214, 150))
 _SHADE = 0.84
-"""Of a colour, for the dark quarters of what is round."""
+"""Factor of a colour for the dark quarters of round shapes."""
 _PIECES = 24
-"""Of the size of a mesh: triangles are cut to that, for their order by depth."""
+"""Largest edges are the size of a mesh divided by this: triangles are sorted by depth."""
 _PARTS = 12
-"""Of the size of a body of parts."""
+"""The same for a body of parts."""
 _MOST = 10_000
 """Pieces that a browser still turns smoothly."""
 _FAR = 100.0
@@ -91,13 +91,13 @@ class Shape:
 
 
 def check_one(shape: tuple[int, ...], name: str) -> None:
-    """Refuse a stack where one body, or the motion of one, is drawn."""
+    """Refuse a stack: a picture shows one body, or one motion."""
     if shape:
         raise ValueError(f"{name}: expected one body, got a stack of shape {shape}; index it")
 
 
 def check_size(numbers: Floats, what: str, unit: str) -> None:
-    """Refuse numbers of which no picture can be computed in floats."""
+    """Refuse numbers for which the picture would overflow or underflow."""
     size = float(np.abs(numbers).max(initial=0.0))
     if size > _SIZES[1] or 0.0 < size < _SIZES[0]:
         raise ValueError(
@@ -107,7 +107,7 @@ def check_size(numbers: Floats, what: str, unit: str) -> None:
 
 
 def notes_on(shape: Shape) -> tuple[str, ...]:
-    """Return of a shape that is drawn coarser than it is, or so far off that it is a dot."""
+    """Return notes on a shape that is drawn with less detail, or that is so far away that it is a dot."""
     size, far = float(np.ptp(shape.vertices, axis=0).max()), longest(shape.vertices)
     notes: list[str] = []
     if shape.left_out:
@@ -129,7 +129,7 @@ def longest(vectors: Floats) -> float:
 
 
 def body_shape(body: RigidBody, about: Floats, *, is_cut: bool = True) -> tuple[Shape, tuple[str, ...]]:
-    """Return what a body is drawn as, and what is not drawn of it.
+    """Return the shape that is drawn for a body, and notes on what is not drawn.
 
     It is the shapes that it was made of, where they are known, else the uniform box with its mass and
     inertia. A box has faces in six colours, another part has one; a round part has quarters in two shades.
@@ -153,7 +153,7 @@ def body_shape(body: RigidBody, about: Floats, *, is_cut: bool = True) -> tuple[
     for k, piece in enumerate(pieces):
         tint = _PART_TINTS[k % len(_PART_TINTS)]
         shapes.append(
-            _made(piece.vertices, piece.faces, _colors(piece, tint, len(pieces)), about, longest_edge)
+            _make_shape(piece.vertices, piece.faces, _colors(piece, tint, len(pieces)), about, longest_edge)
         )
     return _together(shapes), notes
 
@@ -177,7 +177,7 @@ def equivalent_box(body: RigidBody) -> tuple[Floats, NDArray[np.int64]]:
 
 
 def shape_of(given: GivenShape, about: Floats, *, is_cut: bool = True, at_most: int | None = None) -> Shape:
-    """Take what the user gives as the surface of a body: a mesh, or a list of its parts.
+    """Read the surface of a body from the user's argument: a mesh, or a list of parts.
 
     Parameters
     ----------
@@ -220,7 +220,7 @@ def _together(parts: list[Shape]) -> Shape:
 def given_shape(
     vertices: ArrayLike, faces: ArrayLike, about: Floats, *, is_cut: bool = True, at_most: int | None = None
 ) -> Shape:
-    """Take the user's mesh, in the body frame."""
+    """Check and return the user's mesh, in the body frame."""
     points = _core.real_numbers(vertices, "shape")
     _core.real_numbers(faces, "shape")  # neither masked nor with a unit
     corners = np.asarray(faces)
@@ -239,9 +239,9 @@ def given_shape(
             f"shape: {len(sides)} triangles, none with an area; leave it out for what the body was made "
             "of, or the box that has its inertia"
         )
-    points, drawn, side = joined(points, faces, at_most or len(faces))
+    points, drawn, side = cluster_vertices(points, faces, at_most or len(faces))
     longest_edge = _size(points) / _PIECES if is_cut else None
-    made = _made(points, drawn, np.tile(_PLAIN, (len(drawn), 1)), about, longest_edge)
+    made = _make_shape(points, drawn, np.tile(_PLAIN, (len(drawn), 1)), about, longest_edge)
     return replace(made, left_out=len(faces) - len(drawn), moved=float(np.sqrt(3.0)) * side)
 
 
@@ -249,23 +249,23 @@ def _size(points: Floats) -> float:
     return max(float(np.ptp(points, axis=0).max(initial=0.0)), float(np.finfo(float).tiny))
 
 
-def _made(
+def _make_shape(
     points: Floats,
     faces: NDArray[np.int64],
     colors: NDArray[np.int64],
     about: Floats,
     longest_edge: float | None,
 ) -> Shape:
-    """Return a surface with its triangles cut until no edge is longer than that, if it is given."""
+    """Return a surface; if a longest edge is given, its triangles are subdivided to this length."""
     if longest_edge is None:
         return Shape(points - about, faces, colors)
-    pieces, owner = cut(points[faces], longest_edge, at_most=max(_MOST, len(faces)))
+    pieces, owner = subdivide(points[faces], longest_edge, at_most=max(_MOST, len(faces)))
     corner, index = np.unique(pieces.reshape(-1, 3), axis=0, return_inverse=True)
     return Shape(corner - about, index.reshape(-1, 3), colors[owner])
 
 
 _BY_PARTS: Final = ((3, 40), (12, 24), (48, 12))
-"""Up to so many parts a full circle has so many segments; of more parts eight."""
+"""Largest number of parts, and the segments of a full circle for it; eight for more parts."""
 _MARKED: Final = frozenset(
     {"cylinder", "cone", "frustum", "tube", "sphere", "hollow_sphere", "hemisphere", "capsule", "torus"}
     | {"ellipsoid", "disk", "annulus", "ellipse", "ring"}
@@ -274,15 +274,15 @@ _MARKED: Final = frozenset(
 _HOLLOW: Final = frozenset(
     {"mesh", "surface", "wire", "particles", "tube", "torus", "annulus", "polygon", "arc"}
 )
-"""Those that can hide a part of themselves."""
+"""Shapes that can hide a part of themselves."""
 _GIVEN: Final = frozenset({"mesh", "surface", "wire", "particles", "inertia"})
-"""Those whose surface has an area."""
+"""Shapes whose surface has an area."""
 _THICK: Final = 0.01
-"""Of the length of a line: how thick it is drawn."""
+"""Thickness of a line relative to its length."""
 _LINE: Final = 1e-12
 """Twice the area of the largest triangle, beside the square of the size, of what is a line."""
 _ROUNDING: Final = 1e-12
-"""Of the places of parts that are the same."""
+"""Tolerance of the places of equal parts."""
 
 
 @dataclass(frozen=True)
@@ -311,7 +311,7 @@ class Piece:
 def pieces_of(
     body: RigidBody, box: Callable[[RigidBody], Surface]
 ) -> tuple[list[Piece] | None, tuple[str, ...]]:
-    """Return the parts that one body was made of, and what is not drawn of them.
+    """Return the parts of one body, and notes on the parts that are not drawn.
 
     Parameters
     ----------
@@ -344,7 +344,7 @@ def pieces_of(
 
 
 def _without_pairs(parts: list[Part]) -> list[Part]:
-    """Leave out parts that were taken out again just as they were put in, and the other way round."""
+    """Leave out pairs of equal parts of which one was added and the other subtracted."""
     kept: list[Part] = []
     for part in parts:
         other = next((k for k, old in enumerate(kept) if _is_undone(old, part)), None)
@@ -390,7 +390,7 @@ def _piece(
     name = kind.rpartition("::")[2]
     vertices, faces = _surface(name, numbers, corners.reshape(-1, 3).astype(np.int64), segments, box)
     if name not in _GIVEN and not _has_area(vertices, faces):
-        vertices, faces = _thickened(name, numbers, segments)
+        vertices, faces = _thicken(name, numbers, segments)
     turn, shift = np.array(place[:9]).reshape(3, 3), np.array(place[9:])
     middle = vertices[faces].mean(axis=1)
     is_dark = np.zeros(len(faces), dtype=bool)
@@ -413,8 +413,8 @@ def _has_area(vertices: Floats, faces: NDArray[np.int64]) -> bool:
     return bool(np.abs(np.cross(second - first, third - first)).max() > _LINE)
 
 
-def _thickened(name: str, numbers: Floats, segments: int) -> Surface:
-    """Return a shape that is a line a hundredth as thick as it is long; a point has no faces."""
+def _thicken(name: str, numbers: Floats, segments: int) -> Surface:
+    """Return a shape for a line, with a thickness of a hundredth of its length; a point has no faces."""
     point = np.zeros((1, 3)), np.zeros((0, 3), dtype=np.int64)
     if name.startswith("arc"):
         return point

@@ -18,16 +18,16 @@ __all__ = [
 AXIS_COLORS: Final = ("#0072B2", "#D55E00", "#009E73")
 """Blue, vermilion and bluish green: first, second and third axis."""
 AXIS_DASHES: Final = ("--", "-", "-.")
-"""Of lines in those colours."""
+"""Dashes of lines in those colours."""
 OMEGA_COLOR: Final = "#B0479A"
 """Reddish purple: the angular velocity."""
 MOMENTUM_COLOR: Final = "#111111"
 """Nearly black: the angular momentum."""
 INSIDE_COLOR: Final = "#7A4A00"
-"""Of the momentum that the body carries along."""
+"""Colour of the momentum inside the body."""
 DISC_COLOR: Final = "#F6EAD2"
-"""Of a wheel's face, on which its spokes are in the colour of what the body carries along."""
+"""Colour of a wheel's face; its spokes have the colour of the momentum inside the body."""
 RIM_COLOR: Final = "#D9BF8F"
-"""Of its rim."""
+"""Colour of a wheel's rim."""
 OUTLINE_COLOR: Final = (0.17, 0.18, 0.22)
 """Red, green and blue of a body's edges."""

@@ -62,7 +62,7 @@ class Mark:
 
 @dataclass(frozen=True)
 class Surface:
-    """What is constant in the body during a motion, and so what is drawn with its path.
+    """The surface that is fixed in the body during a motion, and that is drawn with the path.
 
     Attributes
     ----------
@@ -148,7 +148,7 @@ def separatrix(inertia: Floats, inside: Floats, n: Floats) -> Floats | None:
 
 
 def surface_of(trajectory: Trajectory, motion: FreeMotion | HeavyTop | GyrostatMotion | None) -> Surface:
-    """Find on what the path of one body's motion lies.
+    """Find the surface on which the path of one body's motion lies.
 
     Parameters
     ----------

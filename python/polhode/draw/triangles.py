@@ -1,4 +1,4 @@
-"""Surfaces as triangles to be drawn: of solids, sheets, wires, particles; large ones cut, too many joined."""
+"""Triangles of solids, sheets, wires and particles for pictures: large ones divided, too many merged."""
 
 from __future__ import annotations
 
@@ -8,23 +8,21 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
     Integers = NDArray[np.int64]
-    from collections.abc import Callable
-
-    Surface = tuple[Floats, NDArray[np.int64]]
-    Faces = NDArray[np.int64]
-    Surface = tuple[Floats, Faces]
+    Surface = tuple[Floats, Integers]
 
 __all__ = [
     "both_sides",
-    "cut",
-    "joined",
+    "cluster_vertices",
     "particles_surface",
     "sheet_surface",
     "solid_surface",
+    "subdivide",
     "unit_normals",
     "wire_surface",
 ]
@@ -33,8 +31,8 @@ _COARSEST: Final = 4
 """Cells along the largest extent of a mesh whose corners are joined, at the least."""
 
 
-def cut(triangles: Floats, longest: float, *, at_most: int | None = None) -> tuple[Floats, Integers]:
-    """Halve triangles until no edge is longer than `longest`; tell which triangle each piece is from.
+def subdivide(triangles: Floats, longest: float, *, at_most: int | None = None) -> tuple[Floats, Integers]:
+    """Halve triangles until no edge is longer than `longest`; return the index of the source triangle too.
 
     What draws sorts polygons by the depth of their middles, which puts large ones in the wrong order.
 
@@ -67,8 +65,8 @@ def cut(triangles: Floats, longest: float, *, at_most: int | None = None) -> tup
         owner = np.concatenate([owner[~long], owner[long], owner[long]])
 
 
-def joined(vertices: Floats, faces: Integers, at_most: int) -> tuple[Floats, Integers, float]:
-    """Join corners that lie in one cell of a grid, the finest that leaves few enough triangles.
+def cluster_vertices(vertices: Floats, faces: Integers, at_most: int) -> tuple[Floats, Integers, float]:
+    """Merge corners in one cell of a grid, the finest grid that leaves few enough triangles.
 
     Parameters
     ----------
@@ -101,7 +99,7 @@ def joined(vertices: Floats, faces: Integers, at_most: int) -> tuple[Floats, Int
 
 
 def _in_cells(vertices: Floats, faces: Integers, low: Floats, side: float) -> tuple[Floats, Integers]:
-    """Put the corners in one cell at their middle, and leave out the triangles that shrink to nothing."""
+    """Replace the corners in one cell by their mean, and drop the triangles without area."""
     cells = np.floor((vertices - low) / side).astype(np.int64)
     _, cell = np.unique(cells, axis=0, return_inverse=True)
     cell = cell.reshape(-1)
@@ -116,7 +114,7 @@ def _in_cells(vertices: Floats, faces: Integers, low: Floats, side: float) -> tu
 
 
 def unit_normals(triangles: Floats) -> Floats:
-    """Return unit normals of triangles (m, 3, 3), on the side from which they run counterclockwise."""
+    """Return unit normals of triangles (m, 3, 3), by the right-hand rule."""
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     unit: Floats = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
     return unit
@@ -142,16 +140,16 @@ def solid_surface(name: str, numbers: Floats, segments: int = _SEGMENTS) -> Surf
         return corners * numbers, np.array(triangles)
     if name == "prism":
         sides, radius, height = numbers
-        return _turned(_cylinder(radius, height), int(sides))
+        return _revolve(_cylinder(radius, height), int(sides))
     if name == "ellipsoid":
-        vertices, faces = _turned(_half_circle(1.0, segments), segments)
+        vertices, faces = _revolve(_half_circle(1.0, segments), segments)
         return vertices * numbers, faces
     if name not in _PROFILES:
         return None
-    return _turned(_PROFILES[name](segments, *numbers), segments)
+    return _revolve(_PROFILES[name](segments, *numbers), segments)
 
 
-def _turned(profile: Floats, segments: int) -> Surface:
+def _revolve(profile: Floats, segments: int) -> Surface:
     """Turn points (r, z), from below to above on the outside, about z."""
     angles = 2.0 * np.pi * np.arange(segments) / segments
     r, z = profile.T
@@ -256,8 +254,8 @@ _BALL: Final = 0.06
 """Radius of the heaviest particle, of the size of all."""
 
 
-def both_sides(vertices: Floats, faces: Faces) -> Surface:
-    """Return a sheet that is seen from both sides."""
+def both_sides(vertices: Floats, faces: Integers) -> Surface:
+    """Return a sheet with triangles on both sides."""
     return vertices, np.concatenate([faces, faces[:, ::-1]])
 
 
@@ -305,7 +303,7 @@ def wire_surface(name: str, numbers: Floats, segments: int = _SEGMENTS) -> Surfa
     radius = _THIN * float(np.ptp(points, axis=0).max())
     bars = [_bar(a, b, radius) for a, b in pairwise(points)]
     pieces = [piece for piece in bars if piece is not None]
-    return _joined(pieces) if pieces else (points[:1], np.zeros((0, 3), dtype=np.int64))
+    return _concatenate(pieces) if pieces else (points[:1], np.zeros((0, 3), dtype=np.int64))
 
 
 def particles_surface(numbers: Floats) -> Surface:
@@ -341,7 +339,7 @@ def _small_sphere(times: int) -> Surface:
 
 
 def _bar(start: Floats, end: Floats, radius: float) -> Surface | None:
-    """Return a bar of six sides from point to point; nothing of no length."""
+    """Return a bar of six sides from point to point; nothing if the points are equal."""
     along = end - start
     length = float(np.linalg.norm(along))
     if length == 0.0:
@@ -355,7 +353,7 @@ def _bar(start: Floats, end: Floats, radius: float) -> Surface | None:
     return vertices @ np.stack([x, np.cross(z, x), z]) + (start + end) / 2.0, faces
 
 
-def _joined(pieces: list[Surface]) -> Surface:
+def _concatenate(pieces: list[Surface]) -> Surface:
     first = np.cumsum([0, *(len(vertices) for vertices, _ in pieces)])
     return (
         np.concatenate([vertices for vertices, _ in pieces]),
@@ -367,8 +365,8 @@ def _flat(points: Floats) -> Floats:
     return np.column_stack([points, np.zeros(len(points))])
 
 
-def _ears(corners: Floats) -> Faces:
-    """Cut a simple polygon into triangles, one convex corner that holds no other after the other."""
+def _ears(corners: Floats) -> Integers:
+    """Divide a simple polygon into triangles by cutting ears: convex corners that hold no other corner."""
     x, y = (corners - corners.mean(axis=0)).T
     rest = list(range(len(corners)))
     if np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) < 0.0:

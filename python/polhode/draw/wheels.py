@@ -1,4 +1,4 @@
-"""Wheels that turn in a body, as discs on its outside: where they stand, and how far they have turned."""
+"""Wheels in a body, drawn as discs on its outside: their places and their angles."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["RINGS", "SPOKE", "SPOKES", "Disc", "Spin", "discs_of", "slowed"]
+__all__ = ["RINGS", "SPOKE", "SPOKES", "Disc", "Spin", "discs_of", "slowdown"]
 
 _RADIUS: Final = 0.2
-"""Of a disc, in lengths of the body from the point of reference; not to scale: no wheel tells its size."""
+"""Radius of a disc, relative to the length of the body; not to scale, because the size is unknown."""
 _HALF: Final = 0.035
-"""Half its thickness, in the same."""
+"""Half the thickness of a disc, in the same unit."""
 SPOKES: Final = 6
-"""Of a disc, beside the one that is broad and marks how far it has turned."""
+"""Number of narrow spokes, beside the broad one that shows the angle."""
 SPOKE: Final = 0.86
-"""Its length, of the radius."""
+"""Length of a spoke, relative to the radius."""
 RINGS: Final = (0.3, 0.55, 0.8)
-"""In place of spokes, of a disc whose angle is not known."""
+"""Radii of the rings on a disc whose angle is unknown."""
 _BESIDE: Final = 0.95
 """The cosine between axes above which discs stand one behind the other."""
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
@@ -84,19 +84,19 @@ class Disc(Spin):
         return self.middle + height * self.axis + radius * around
 
     def factor(self, between: float) -> float:
-        """Return how many times slower it is drawn where so much time goes by from picture to picture."""
-        return 1.0 if self.rate is None else slowed(float(np.abs(self.rate).max()) * between)
+        """Return the factor by which its rotation is drawn slower, for this time between two pictures."""
+        return 1.0 if self.rate is None else slowdown(float(np.abs(self.rate).max()) * between)
 
     def words(self, frame: int, factor: float, time_unit: str) -> str:
-        """Return its speed in a picture, and how it is drawn."""
+        """Return the text with the speed of the wheel and the factor of the drawing."""
         if self.rate is None:
             return f"{self.name}: speed not known"
         drawn = f", drawn {factor:,g}× slower" if factor > 1.0 else ""
         return f"{self.name}: {self.rate[frame]:.4g} rad/{time_unit}{drawn}"
 
 
-def slowed(turn: float) -> float:
-    """Return the factor 1, 2, 5, 10, … by which a turning is drawn slower than it is.
+def slowdown(turn: float) -> float:
+    """Return the factor 1, 2, 5, 10, … by which a rotation is drawn slower than it is.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def discs_of(footage: Footage, shape: Shape, motion: GyrostatMotion | None) -> t
     trajectory = footage.trajectory
     spins = _of_load(trajectory) if motion is None else _of_gyrostat(motion, trajectory)
     chosen = footage.chosen
-    return _placed(
+    return _place_discs(
         [
             Spin(
                 one.name,
@@ -182,7 +182,7 @@ def _of_load(trajectory: Trajectory) -> list[Spin]:
 
 
 def _driven(trajectory: Trajectory, wheel: Part) -> Spin:
-    """Return a wheel of a load, of which the body carries along J Ω a; between the times Ω follows cubics."""
+    """Return a wheel of a load; its momentum in the body is J Ω a. Between the times Ω follows cubics."""
     axis, inertia = wheel.number(0, axes=1), float(wheel.number(1))
     axis = axis / np.linalg.norm(axis)
     (state,), (own,), t = wheel.states, wheel.load.states, trajectory.t
@@ -195,12 +195,12 @@ def _driven(trajectory: Trajectory, wheel: Part) -> Spin:
 
 
 def _rotor(momentum: Floats, name: str) -> list[Spin]:
-    """Return what is known by its momentum alone: an axis, and no speed."""
+    """Return a wheel of which only the momentum is known: an axis without a speed."""
     size = float(np.linalg.norm(momentum))
     return [Spin(name, momentum / size, None, None)] if size > 0.0 else []
 
 
-def _placed(spins: list[Spin], shape: Shape, center: Floats) -> tuple[Disc, ...]:
+def _place_discs(spins: list[Spin], shape: Shape, center: Floats) -> tuple[Disc, ...]:
     """Put discs on the outside of a body, each on the line along its axis through the centre of mass."""
     reach = longest(shape.vertices)
     discs: list[Disc] = []

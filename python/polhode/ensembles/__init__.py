@@ -1,1 +1,1 @@
-"""Ensembles: how members are drawn, run, gathered and reduced, on one machine or a cluster."""
+"""Ensembles: draw, run, collect and reduce members, on one machine or a cluster."""

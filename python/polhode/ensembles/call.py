@@ -1,4 +1,4 @@
-"""The call that makes an ensemble: what is given is looked at before anything is run."""
+"""Make an ensemble. All arguments are checked before anything is run."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from polhode import _core
-from polhode.distributions import Distribution, Made, per_member
+from polhode.distributions import Distribution, FunctionOfDraws, per_member
 from polhode.ensembles.cluster import check_client
-from polhode.ensembles.plan import VECTORS, Plan, draws, is_each_alone, resolved
+from polhode.ensembles.plan import VECTORS, Plan, draws, is_each_alone, resolve_draws
 from polhode.ensembles.reduce import BLOCK
 from polhode.ensembles.result import Ensemble
-from polhode.ensembles.trial import outputs_of, settled, trial_of
+from polhode.ensembles.trial import choose_method, outputs_of, trial_of
 from polhode.reductions import Reduction
 
 if TYPE_CHECKING:
@@ -123,7 +123,7 @@ def ensemble(
     _core.RigidBody.from_principal(1.0, (1.0, 1.0, 1.0)).simulate(times, (0, 0, 0), rtol=rtol, atol=atol)
     times.setflags(write=False)
     plan = Plan(
-        recipe=resolved(arguments, seed),
+        recipe=resolve_draws(arguments, seed),
         t=times,
         options={"about": about, "method": method, "rtol": rtol, "atol": atol} | steps,
         n=size,
@@ -146,7 +146,7 @@ def ensemble(
     plan = replace(
         plan,
         outputs=outputs_of(plan, trial, outputs),
-        options=plan.options | {"method": settled(plan, begun)},
+        options=plan.options | {"method": choose_method(plan, begun)},
     )
     kept = dict(reduce) if reduce is not None and not isinstance(reduce, Reduction) else reduce
     return Ensemble(plan, kept, client, progress)
@@ -163,8 +163,8 @@ def _count(number: Any, name: str) -> int:
 
 
 def _argument(place: str, value: Any) -> Any:
-    """Return a distribution, or what is the same for all members in a form that stays as it is."""
-    if isinstance(value, Distribution | Made) or value is None:
+    """Return a distribution; an argument that is the same for all members as a read-only copy."""
+    if isinstance(value, Distribution | FunctionOfDraws) or value is None:
         return value
     if place == "body" and isinstance(value, _core.RigidBody):
         return _one(value, place)
@@ -177,7 +177,7 @@ def _argument(place: str, value: Any) -> Any:
     if place in ("body", "load"):
         kind = "RigidBody" if place == "body" else "Load"
         raise TypeError(
-            f"{place}: expected a {kind}, a distribution, distributions.made(...) or a function of a "
+            f"{place}: expected a {kind}, a distribution, distributions.apply(...) or a function of a "
             f"generator, got {type(value).__name__}"
         )
     array = _core.real_numbers(value, place).copy()
@@ -194,12 +194,12 @@ def _one(value: Any, place: str) -> Any:
     if value.shape:
         raise ValueError(
             f"{place}: expected one for all members, got a stack of shape {value.shape}; "
-            "distributions.made makes one for each of what is drawn"
+            "distributions.apply makes one for each of what is drawn"
         )
     if isinstance(value, _core.RigidBody) and value.covariance is not None:
         raise ValueError(
             "body: carries a covariance, and an ensemble draws distributions alone; draw the body's numbers "
-            "by distributions.made(RigidBody, ...), or give the body without sigmas"
+            "by distributions.apply(RigidBody, ...), or give the body without sigmas"
         )
     return value
 
@@ -225,5 +225,5 @@ def _check_reduce(reduce: Any, plan: Plan) -> None:
     if is_each_alone(plan):
         raise ValueError(
             "load: a function gives one load for each member, and members that are run one by one are not "
-            "reduced; make loads of what is drawn by distributions.made"
+            "reduced; make loads of what is drawn by distributions.apply"
         )

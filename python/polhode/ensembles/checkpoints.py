@@ -1,4 +1,4 @@
-"""Reductions that go on after a kill: the nodes of the tree in a file, with the chunks that are in them."""
+"""Reductions that can be resumed: a file holds the nodes of the tree, and the numbers of their chunks."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from polhode.ensembles.reduce import BLOCK, State
 from polhode.ensembles.stores import check_same, header
 from polhode.errors import FileFormatError
 from polhode.io.writing import writing
-from polhode.reductions import Kept, Moments, Order
+from polhode.reductions import BlockState, Moments, Order
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -31,7 +31,7 @@ __all__ = ["Checkpoint"]
 _BETWEEN: Final = 5.0
 """Seconds of work that a kill may cost, and a chunk."""
 _KIND: Final = "polhode reductions"
-_TUPLES: Final[dict[str, Any]] = {one.__name__: one for one in (State, Kept, Moments, Order)} | {
+_TUPLES: Final[dict[str, Any]] = {one.__name__: one for one in (State, BlockState, Moments, Order)} | {
     "tuple": None
 }
 _BROKEN: Final = (
@@ -65,7 +65,7 @@ class Checkpoint:
         if path.is_dir():
             raise IsADirectoryError(f"checkpoint: {path} is a directory; give the name of a file in it")
         if path.exists():
-            self._read()
+            self._load()
 
     def pending(self) -> list[int]:
         """Return the chunks that are not in it."""
@@ -91,7 +91,7 @@ class Checkpoint:
         self.is_new, self.written = False, time.monotonic()
 
     def close(self) -> None:
-        """Write what is new, but for a tree that was ended while a chunk came into it."""
+        """Write what is new, except for a tree that was interrupted while a chunk was added."""
         if self.is_new and self._is_whole():
             self.write()
 
@@ -99,15 +99,15 @@ class Checkpoint:
         """Whether the tree has the blocks of those chunks that are done, and no others."""
         bounds = [self.plan.bounds(index) for index in self.done]
         chunks = [(first // BLOCK, -(-(first + count) // BLOCK)) for first, count in bounds]
-        return _joined(self.tree.spans()) == _joined(chunks)
+        return _merge_spans(self.tree.spans()) == _merge_spans(chunks)
 
-    def _read(self) -> None:
+    def _load(self) -> None:
         try:
             with zipfile.ZipFile(self.path) as archive:
                 found = json.loads(archive.read("state.json"))
                 check_same(self.path, found, self.head)
                 for level, index, state in found["nodes"]:
-                    self.tree.nodes[level, index] = _restored(state, archive)
+                    self.tree.nodes[level, index] = _restore(state, archive)
                 self.done = set(found["done"])
                 if not self._is_whole():
                     raise ValueError("its chunks are not those of its nodes")
@@ -122,8 +122,8 @@ class Checkpoint:
             ) from None
 
 
-def _joined(spans: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
-    """Join those that follow each other."""
+def _merge_spans(spans: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
+    """Merge spans that follow each other."""
     found: list[tuple[int, int]] = []
     for begin, end in sorted(spans):
         if found and found[-1][1] == begin:
@@ -149,7 +149,7 @@ def _plain(value: Any, arrays: list[Any]) -> Any:
     raise TypeError(f"{type(value).__name__} is no part of a state")
 
 
-def _restored(value: Any, archive: zipfile.ZipFile) -> Any:
+def _restore(value: Any, archive: zipfile.ZipFile) -> Any:
     if not isinstance(value, dict):
         return value
     ((kind, parts),) = value.items()
@@ -157,6 +157,6 @@ def _restored(value: Any, archive: zipfile.ZipFile) -> Any:
         with archive.open(f"{int(parts)}.npy") as member:
             return np.lib.format.read_array(member, allow_pickle=False)
     if kind == "dict":
-        return {key: _restored(one, archive) for key, one in parts}
-    made, found = _TUPLES[kind], [_restored(one, archive) for one in parts]
+        return {key: _restore(one, archive) for key, one in parts}
+    made, found = _TUPLES[kind], [_restore(one, archive) for one in parts]
     return tuple(found) if made is None else made(*found)

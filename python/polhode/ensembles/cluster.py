@@ -24,7 +24,7 @@ R = TypeVar("R")
 
 
 def check_client(client: Any) -> None:
-    """Refuse what is no client of dask, or one that gives promises in place of results."""
+    """Refuse an object that is no client of dask, or an asynchronous client."""
     distributed = require("distributed", extra="cluster", purpose="client=")
     if not isinstance(client, distributed.Client):
         raise TypeError(f"client: expected a dask.distributed.Client, got {type(client).__name__}")
@@ -35,7 +35,7 @@ def check_client(client: Any) -> None:
 def chunks_of_client(
     client: Any, task: Task[R], pending: Sequence[int], tell: Callable[[float], object] | None
 ) -> Iterator[tuple[int, R]]:
-    """Do chunks on the workers of a cluster, and give them in the order in which they are done.
+    """Run chunks on the workers of a cluster, and yield them in the order in which they end.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def chunks_of_client(
     pending : sequence of int
         The chunks.
     tell : callable or None
-        Told the fraction of all members that is done.
+        Called with the fraction of all members that is done.
 
     Yields
     ------
@@ -61,21 +61,21 @@ def chunks_of_client(
     plan = task.plan
     # As a task of its own, whose argument the scheduler keeps: a worker that comes later, or in place of one
     # that died, gets it as the others did.
-    held = client.submit(_received, _sent(task), build(), pure=False)
+    held = client.submit(_deserialize, _serialize(task), build(), pure=False)
     waiting = iter(pending)
     done = plan.n - sum(plan.bounds(index)[1] for index in pending)
     places: dict[Any, int] = {}
 
-    def begun() -> Any:
+    def submit_next() -> Any:
         """Submit the next chunk, if there is one."""
         for index in waiting:
-            future = client.submit(_done, held, index, pure=False)
+            future = client.submit(_run_task, held, index, pure=False)
             places[future] = index
             return future
         return None
 
     threads = sum(client.nthreads().values())
-    first = [future for _ in range(2 * threads + 2) if (future := begun()) is not None]
+    first = [future for _ in range(2 * threads + 2) if (future := submit_next()) is not None]
     under_way = distributed.as_completed(first)
     try:
         for future in under_way:
@@ -83,7 +83,7 @@ def chunks_of_client(
             result: R = future.result()
             # The worker may forget it, and the next one may begin.
             future.release()
-            following = begun()
+            following = submit_next()
             if following is not None:
                 under_way.add(following)
             yield index, result
@@ -101,7 +101,7 @@ def _check_workers(client: Any) -> None:
     for worker, there in client.run(_build_of_worker).items():
         if tuple(there) != here:
             raise RuntimeError(
-                f"client: worker {worker} has {_told(there)} and this process {_told(here)}; "
+                f"client: worker {worker} has {_name_build(there)} and this process {_name_build(here)}; "
                 "the same package must be installed on all of them"
             )
 
@@ -110,11 +110,11 @@ def _build_of_worker() -> tuple[str, str]:
     return build()
 
 
-def _told(found: tuple[str, str]) -> str:
+def _name_build(found: tuple[str, str]) -> str:
     return f"polhode {found[0]} (core {found[1][:8]})"
 
 
-def _sent(task: Any) -> bytes:
+def _serialize(task: Any) -> bytes:
     """Write the task, with functions of the user's own by value."""
     cloudpickle = require("cloudpickle", extra="cluster", purpose="client=")
     try:
@@ -127,16 +127,16 @@ def _sent(task: Any) -> bytes:
     return data
 
 
-def _received(data: bytes, wanted: tuple[str, str]) -> Any:
+def _deserialize(data: bytes, wanted: tuple[str, str]) -> Any:
     if build() != tuple(wanted):
         raise RuntimeError(
-            f"this worker has {_told(build())} and the client {_told(wanted)}; "
+            f"this worker has {_name_build(build())} and the client {_name_build(wanted)}; "
             "the same package must be installed on all of them"
         )
     return pickle.loads(data)
 
 
-def _done(task: Any, index: int) -> Any:
+def _run_task(task: Any, index: int) -> Any:
     return task(index)
 
 
@@ -144,7 +144,7 @@ R_co = TypeVar("R_co", covariant=True)
 
 
 class Task(Protocol[R_co]):
-    """What is done with a chunk: a value that goes to other processes."""
+    """The work on a chunk, as a value that can be sent to other processes."""
 
     @property
     def plan(self) -> Plan:
@@ -157,7 +157,7 @@ class Task(Protocol[R_co]):
 def chunks_here(
     task: Task[R_co], pending: Sequence[int], tell: Callable[[float], object] | None
 ) -> Iterator[tuple[int, R_co]]:
-    """Do chunks here, in order.
+    """Run chunks in this process, in order.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ def chunks_here(
     pending : sequence of int
         The chunks.
     tell : callable or None
-        Told the fraction of all members of the ensemble that is done.
+        Called with the fraction of all members of the ensemble that is done.
 
     Yields
     ------

@@ -1,4 +1,4 @@
-"""Digests: of what an ensemble is, so that no other one goes on in its place, and of the compiled core."""
+"""Digests of an ensemble, so that only the same ensemble is resumed, and of the compiled core."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def build() -> tuple[str, str]:
 
 
 def fingerprint(plan: Plan, *more: Any) -> str:
-    """Return a digest of all that decides the numbers of an ensemble, but its seed, its size and its chunks.
+    """Return a digest of all inputs of an ensemble, except its seed, its size and its chunks.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def fingerprint(plan: Plan, *more: Any) -> str:
 
 
 def _words(value: Any, above: tuple[int, ...]) -> Iterator[bytes]:
-    """Go through a value down to its bytes; what it is within, by its address, so that circles end."""
+    """Yield the bytes of a nested value; an object met again as its position, so that cycles end."""
     yield type(value).__qualname__.encode()
     match value:
         case None | bool() | int() | str():

@@ -11,7 +11,7 @@ import numpy as np
 from polhode import _core
 from polhode._core import MassAccumulator, real_numbers
 from polhode._optional import require
-from polhode._progress import watched
+from polhode._progress import progress_bar
 from polhode.ensembles.fingerprint import build
 from polhode.errors import PolhodeError
 
@@ -30,12 +30,12 @@ __all__ = [
     "dataset",
     "in_memory",
     "is_stored",
-    "labelled",
     "motion_at",
     "one_chunk",
     "require_xarray",
     "simulated",
     "summed",
+    "xarray_array",
 ]
 
 
@@ -49,14 +49,14 @@ def _library(array: Any) -> str:
     return type(array).__module__.partition(".")[0]
 
 
-def labelled(array: Any) -> Any:
-    """Return an array with names for its axes, of xarray; else None."""
+def xarray_array(array: Any) -> Any:
+    """Return the argument if it is an array of xarray, with names for its axes; else None."""
     return array if _library(array) == "xarray" and hasattr(array, "variable") else None
 
 
 def dask_array(array: Any) -> Any:
-    """Return the array of dask that an argument is or that xarray holds; else None."""
-    if labelled(array) is not None:
+    """Return the array of dask, if an argument is one or an array of xarray that holds one; else None."""
+    if xarray_array(array) is not None:
         array = array.data if getattr(array, "chunks", None) is not None else None
     if array is None or _library(array) != "dask":
         return None
@@ -67,7 +67,7 @@ def dask_array(array: Any) -> Any:
 
 def is_stored(array: Any) -> bool:
     """Whether slices of an array are read from a file when they are asked for."""
-    if labelled(array) is not None:
+    if xarray_array(array) is not None:
         return not getattr(array.variable, "_in_memory", True)
     return isinstance(array, np.memmap) or (
         _library(array) in ("h5py", "zarr") and hasattr(array, "shape") and hasattr(array, "dtype")
@@ -75,14 +75,14 @@ def is_stored(array: Any) -> bool:
 
 
 def in_memory(array: Any) -> Any:
-    """Return a piece of an array as what the core reads where it is; masked elements and units stay."""
-    if labelled(array) is not None:
+    """Return a piece of an array in memory, as the core reads it; masked elements and units stay."""
+    if xarray_array(array) is not None:
         return in_memory(array.variable.data)
     return np.asarray(array) if isinstance(array, np.memmap) else array
 
 
 def check_sizes(array: Any, name: str) -> None:
-    """Refuse an array of so many numbers as nobody knows."""
+    """Refuse an array of unknown size."""
     if np.isnan(np.array(np.shape(array), dtype=float)).any():
         raise ValueError(
             f"{name}: the sizes of its chunks are not known; {name}.compute_chunk_sizes() finds them"
@@ -90,7 +90,7 @@ def check_sizes(array: Any, name: str) -> None:
 
 
 def check_real(array: Any, name: str) -> None:
-    """Refuse an array of dask of no real numbers, or of so many as nobody knows, before it is computed."""
+    """Refuse an array of dask without real numbers, or of unknown size, before it is computed."""
     if array.dtype.kind not in "biuf":
         raise TypeError(f"{name}: expected real numbers, got dtype {array.dtype}")
     check_sizes(array, name)
@@ -115,7 +115,9 @@ def one_chunk(array: Any, name: str, size: int) -> None:
     shape = np.shape(array)
     if shape[-1:] != (size,):
         dims = (
-            f", axes {array.dims}; the components are to be the last" if labelled(array) is not None else ""
+            f", axes {array.dims}; the components are to be the last"
+            if xarray_array(array) is not None
+            else ""
         )
         raise ValueError(f"{name}: expected shape (..., {size}), got {shape}{dims}")
     lazy = dask_array(array)
@@ -124,14 +126,14 @@ def one_chunk(array: Any, name: str, size: int) -> None:
     check_real(lazy, name)
     count = len(lazy.chunks[-1])
     if count > 1:
-        way = f"chunk({{{array.dims[-1]!r}: -1}})" if labelled(array) is not None else "rechunk({-1: -1})"
+        way = f"chunk({{{array.dims[-1]!r}: -1}})" if xarray_array(array) is not None else "rechunk({-1: -1})"
         raise ValueError(
             f"{name}: its {size} components lie in {count} chunks; put them in one: {name}.{way}"
         )
 
 
 def check_coordinates(array: Any, tail: int, results: Collection[str]) -> None:
-    """Refuse an array of which a coordinate would go along under a name of the result."""
+    """Refuse an array with a coordinate that has the name of a variable of the result."""
     last = set(array.dims[array.ndim - tail :])
     own = {str(name) for name, one in array.coords.items() if not last & set(one.dims)}
     for name in sorted((own - {str(dim) for dim in array.dims}) & set(results)):
@@ -164,7 +166,7 @@ class Labels:
     ) -> None:
         named: list[str] = []
         for array, tail in zip(arrays, tails, strict=True):
-            if labelled(array) is not None:
+            if xarray_array(array) is not None:
                 own = [str(dim) for dim in array.dims[: array.ndim - tail]]
                 named += [dim for dim in own if dim not in named]
                 check_coordinates(array, tail, {*_OWN, *results})
@@ -175,7 +177,7 @@ class Labels:
             [
                 np.ndim(array) - tail
                 for array, tail in zip(arrays, tails, strict=True)
-                if labelled(array) is None
+                if xarray_array(array) is None
             ]
             + [len(shape) for shape in shapes]
         )
@@ -192,7 +194,9 @@ class Labels:
         for array, tail in zip(arrays, tails, strict=True):
             stack = np.shape(array)[: np.ndim(array) - tail]
             own = (
-                array.dims[: len(stack)] if labelled(array) is not None else named[len(named) - len(stack) :]
+                array.dims[: len(stack)]
+                if xarray_array(array) is not None
+                else named[len(named) - len(stack) :]
             )
             self.ones -= {str(dim) for dim, size in zip(own, stack, strict=True) if size != 1}
         for shape in shapes:
@@ -202,10 +206,10 @@ class Labels:
         self.sizes: dict[str, tuple[int, str]] = {}
         self.indexes: dict[str, tuple[Any, str]] = {}
 
-    def named(self, array: Any, name: str) -> Any:
+    def name_axes(self, array: Any, name: str) -> Any:
         """Return an array with names; that of its last axis is the argument's own."""
         xarray = require_xarray()
-        if labelled(array) is not None:
+        if xarray_array(array) is not None:
             found = array.rename({array.dims[-1]: f"{name} in"}).drop_vars([f"{name} in"], errors="ignore")
         else:
             if dask_array(array) is None:
@@ -234,10 +238,10 @@ class Labels:
         self.cuts |= {str(dim): cuts for dim, cuts in found.chunksizes.items()}
         return found
 
-    def chunked(self, numbers: Any, shape: tuple[int, ...], name: str) -> Any:
+    def to_dask(self, numbers: Any, shape: tuple[int, ...], name: str) -> Any:
         """Return the numbers of a stack, an array of dask where it is more than one."""
         da = require("dask.array", extra="cluster", purpose="a motion of dask arrays")
-        found = self.named(numbers, name)
+        found = self.name_axes(numbers, name)
         if not shape:
             return found
         chunks = tuple(self.cuts.get(str(dim), -1) for dim in found.dims)
@@ -247,7 +251,7 @@ class Labels:
         """Count the rows along the first axis of the stack."""
         da = require("dask.array", extra="cluster", purpose="a motion of dask arrays")
         if not self.stack:
-            return self.named(np.zeros(1), "row")
+            return self.name_axes(np.zeros(1), "row")
         first, xarray = self.stack[0], require_xarray()
         numbers = da.arange(self.sizes.get(first, (1, ""))[0], chunks=self.cuts.get(first, -1))
         return xarray.DataArray(numbers[:, None], dims=[first, "row in"])
@@ -306,7 +310,7 @@ def motion_at(motion: Any, t: Any) -> Any:
     xarray = require_xarray()
     depth = len(motion.shape)
     stack = ["body"] if depth == 1 else [f"body_{axis}" for axis in range(depth)]
-    if labelled(t) is None:
+    if xarray_array(t) is None:
         dims = ["time"] if t.ndim == 1 else [f"time_{axis}" for axis in range(t.ndim)]
         t = xarray.DataArray(t, dims=dims)
     results = {*stack, *_TAILS, "component", "quaternion_component"}
@@ -332,7 +336,7 @@ def motion_at(motion: Any, t: Any) -> Any:
 
 
 def _states_of_chunk(t: Any, *, motion: Any) -> Any:
-    """Ask for the states of a chunk; the axes of the stack come after those of the times here."""
+    """Compute the states of a chunk; the axes of the times come before those of the stack."""
     run, depth = motion.at(t), len(motion.shape)
     front = tuple(range(depth))
     back = tuple(range(np.ndim(t), np.ndim(t) + depth))
@@ -385,7 +389,7 @@ def _in_pieces(masses: Any, positions: Any, start: int) -> MassAccumulator:
     """Sum what files hold, by pieces that end where the core's blocks end."""
     total, count = MassAccumulator(), np.shape(masses)[0]
     first = 0
-    with watched(f"{count} particles") as tell:
+    with progress_bar(f"{count} particles") as tell:
         while first < count:
             end = min(first + _PIECE - (start + first) % _PIECE, count)
             total.merge(_part(masses[first:end], positions[first:end], start, first))
@@ -412,31 +416,31 @@ def _by_dask(masses: Any, positions: Any, start: int) -> MassAccumulator:
         arrays.append(da.from_array(given, chunks=chunks) if found is None else found.rechunk(chunks))
     # An array of one sum for each chunk, so that dask makes a chunk and sums it in one task.
     sums = da.blockwise(
-        _placed, "ij", arrays[0], "i", arrays[1], "ij", layers.ArraySliceDep((cuts,)), "i",
+        _sum_chunk, "ij", arrays[0], "i", arrays[1], "ij", layers.ArraySliceDep((cuts,)), "i",
         first=start, wanted=build(), align_arrays=False, adjust_chunks={"i": 1, "j": 1}, dtype=object,
         meta=np.empty((0, 0), dtype=object),
     )  # fmt: skip
     nodes = sums.to_delayed().ravel().tolist()
-    merge = dask.delayed(_merged, pure=False)
+    merge = dask.delayed(_merge, pure=False)
     while len(nodes) > 1:
         nodes = [merge(nodes[first : first + _AT_ONCE]) for first in range(0, len(nodes), _AT_ONCE)]
-    with _told(f"{sum(cuts)} particles", len(cuts)):
+    with _show_progress(f"{sum(cuts)} particles", len(cuts)):
         total: MassAccumulator = nodes[0].compute().item()
     return total
 
 
-def _placed(masses: Any, positions: Any, place: Any, *, first: int, wanted: tuple[str, str]) -> Any:
+def _sum_chunk(masses: Any, positions: Any, place: Any, *, first: int, wanted: tuple[str, str]) -> Any:
     """Sum a chunk, on whatever machine it is."""
     if build() != tuple(wanted):
         raise RuntimeError(
             f"this worker has polhode {build()[0]} (core {build()[1][:8]}) and the client polhode "
             f"{wanted[0]} (core {wanted[1][:8]}); the same package must be installed on all of them"
         )
-    return _boxed(_part(masses, positions, first, place[0].start))
+    return _box(_part(masses, positions, first, place[0].start))
 
 
 def _part(masses: Any, positions: Any, start: int, row: int) -> MassAccumulator:
-    """Sum some rows, from `row` on; errors tell which of all they are."""
+    """Sum some rows, from `row` on; errors name the rows by their numbers in the whole array."""
     part, first = MassAccumulator(), start + row
     try:
         part.add(in_memory(masses), in_memory(positions), start=first)
@@ -446,26 +450,26 @@ def _part(masses: Any, positions: Any, start: int, row: int) -> MassAccumulator:
     return part
 
 
-def _boxed(part: MassAccumulator) -> Any:
+def _box(part: MassAccumulator) -> Any:
     box = np.empty((1, 1), dtype=object)
     box[0, 0] = part
     return box
 
 
-def _merged(boxes: list[Any]) -> Any:
-    """Merge sums into a new one: those of a task that is done again must be as they were."""
+def _merge(boxes: list[Any]) -> Any:
+    """Merge sums into a new one; the old ones stay unchanged, because a task may be repeated."""
     total = MassAccumulator()
     for box in boxes:
         total.merge(box.item())
-    return _boxed(total)
+    return _box(total)
 
 
 @contextmanager
-def _told(what: str, chunks: int) -> Iterator[None]:
+def _show_progress(what: str, chunks: int) -> Iterator[None]:
     """Show a bar while dask's own schedulers compute here; a cluster has its own."""
     callbacks = require("dask.callbacks", extra="cluster", purpose="particles of dask arrays")
     with ExitStack() as stack:
-        tell = stack.enter_context(watched(what))
+        tell = stack.enter_context(progress_bar(what))
         if tell is not None:
             done = 0
 
@@ -480,7 +484,7 @@ def _told(what: str, chunks: int) -> Iterator[None]:
 
 _VECTORS: Final = {"omega": 3, "attitude": 4, "position": 3, "velocity": 3}
 _NUMBERS: Final = 34
-"""Of a body, as pickle has them."""
+"""How many numbers pickle has of a body."""
 _CHOSEN: Final = ("exact", "taylor")
 """The methods of which "auto" takes the first that can serve; the next can always."""
 _TIGHTEST: Final = 2.3e-15
@@ -534,16 +538,16 @@ def simulated(body: RigidBody, t: Any, omega: Any, attitude: Any, **options: Any
     if options["on_failure"] == "raise":
         rest["on_failure"] = "keep"
     states = _first(body, times, options | rest).states
-    options = _settled(body, times, options)
+    options = _choose_method(body, times, options)
     shapes = [body.shape, _shape_of(options["load"])]
     results = ["omega", "quaternion", "position", "velocity", "status", *states]
     labels = Labels(list(given.values()), [1] * len(given), shapes, results)
-    arrays = {name: labels.named(value, name) for name, value in given.items()}
+    arrays = {name: labels.name_axes(value, name) for name, value in given.items()}
     # A stack of bodies goes as its numbers, of which each chunk gets its own.
-    arrays["body"] = labels.chunked(body.__reduce__()[1][0], body.shape, "body")
+    arrays["body"] = labels.to_dask(body.__reduce__()[1][0], body.shape, "body")
     if _shape_of(options["load"]):
         rows = np.arange(np.prod(options["load"].shape)).reshape(options["load"].shape)
-        arrays["row of load"] = labels.chunked(rows[..., None], rows.shape, "load")
+        arrays["row of load"] = labels.to_dask(rows[..., None], rows.shape, "load")
     arrays["row"] = labels.rows()
     tails = {"omega": 3, "quaternion": 4, "position": 3, "velocity": 3}
     tails |= {f"states.{name}": value.shape[-1] for name, value in states.items()}
@@ -567,11 +571,11 @@ def _shape_of(load: Any) -> tuple[int, ...]:
 
 
 def _first(body: RigidBody, times: Any, options: Mapping[str, Any]) -> Any:
-    """Begin with all bodies and loads, at rest: what is wrong with the call is told at once."""
+    """Start a run of all bodies and loads at rest, so that errors of the call are raised at once."""
     return body.simulate(times[:1], (0.0, 0.0, 0.0), **options)
 
 
-def _settled(body: RigidBody, times: Any, options: dict[str, Any]) -> dict[str, Any]:
+def _choose_method(body: RigidBody, times: Any, options: dict[str, Any]) -> dict[str, Any]:
     """Name the method, where "auto" would choose by the bodies and loads of a chunk."""
     if options["method"] != "auto" or not (body.shape or _shape_of(options["load"])):
         return options

@@ -1,4 +1,4 @@
-"""What an ensemble computes: its arguments as recipes, its chunks, and the layout of its results."""
+"""The plan of an ensemble: its arguments as recipes, its chunks, and the layout of its results."""
 
 from __future__ import annotations
 
@@ -10,7 +10,15 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 import numpy as np
 
 from polhode import _core
-from polhode.distributions import Distribution, Made, PerMember, Refusal, Source, given_name, source
+from polhode.distributions import (
+    Distribution,
+    FunctionOfDraws,
+    PerMember,
+    Refusal,
+    Source,
+    given_name,
+    source,
+)
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
@@ -36,7 +44,7 @@ __all__ = [
     "coordinates",
     "draws",
     "layout",
-    "resolved",
+    "resolve_draws",
     "value",
 ]
 
@@ -52,12 +60,12 @@ class Plan:
     """Body, load and the state at the start; of states of the load its names as ``states.NAME``."""
     t: Floats
     options: dict[str, Any]
-    """Of `simulate`."""
+    """Options of `simulate`."""
     n: int
     seed: int
     chunk: int
     outputs: dict[str, int]
-    """Which arrays of the trajectory are kept, and their components."""
+    """Arrays of the trajectory in the results, with the number of their components."""
     raises: bool
     """Whether a member that fails ends the ensemble."""
 
@@ -72,7 +80,7 @@ class Plan:
         return first, min(self.chunk, self.n - first)
 
     def draws(self) -> dict[str, Draw]:
-        """Return the distributions by their places; one that stands at two places is at the first."""
+        """Return the distributions by the name of their argument; a shared one under the first name."""
         return {draw.place: draw for node in self.recipe.values() for draw in draws(node)}
 
     def inputs(self, first: int, count: int) -> Inputs:
@@ -86,7 +94,7 @@ class Plan:
 
 @dataclass(frozen=True, eq=False)
 class Inputs:
-    """What some members have drawn."""
+    """The random numbers of some members."""
 
     plan: Plan
     first: int
@@ -105,7 +113,7 @@ class Inputs:
         }
 
     def starts(self, place: str) -> Iterator[tuple[int, Floats]]:
-        """Go through what members drew for a state at the start, such as it is."""
+        """Iterate over the drawn states at the start."""
         for row, one in enumerate(self.drawn.get(place, ())):
             one = one.as_quat() if hasattr(one, "as_quat") else one
             if not isinstance(one, Refusal) and np.shape(one) == (
@@ -113,7 +121,7 @@ class Inputs:
             ):
                 yield row, np.asarray(one, dtype=float)
 
-    def made(self, rows: Rows) -> dict[str, Any]:
+    def make_arguments(self, rows: Rows) -> dict[str, Any]:
         """Return the arguments of `simulate` for members, the body among them.
 
         Parameters
@@ -144,8 +152,10 @@ class Inputs:
         return found
 
     def run(self, rows: Rows, t: Floats, progress: Any = None) -> Trajectory:
-        """Run members; one that fails on the way keeps the others."""
-        arguments = self.made(rows) | self.plan.options | {"on_failure": "keep", "progress": progress}
+        """Run members; a failure of one does not stop the others."""
+        arguments = (
+            self.make_arguments(rows) | self.plan.options | {"on_failure": "keep", "progress": progress}
+        )
         if isinstance(arguments["load"], list):
             (arguments["load"],) = arguments["load"]
         body: _core.RigidBody = arguments.pop("body")
@@ -153,7 +163,7 @@ class Inputs:
 
 
 def is_each_alone(plan: Plan) -> bool:
-    """Return whether members have loads that cannot stand in one stack."""
+    """Return whether the loads of the members cannot be put into one stack."""
     return any(
         isinstance(draw.distribution, PerMember) and draw.place == "load" for draw in plan.draws().values()
     )
@@ -252,10 +262,10 @@ class Make:
 
 
 Node: TypeAlias = Draw | Make | Any
-"""What is neither drawn nor made is the same for all members."""
+"""A value without distributions is the same for all members."""
 
 
-def resolved(arguments: Mapping[str, Any], seed: int) -> dict[str, Node]:
+def resolve_draws(arguments: Mapping[str, Any], seed: int) -> dict[str, Node]:
     """Assign every distribution among the arguments its source of random numbers.
 
     Parameters
@@ -269,12 +279,12 @@ def resolved(arguments: Mapping[str, Any], seed: int) -> dict[str, Node]:
     dict
     """
     seen: dict[int, Node] = {}
-    return {place: _resolved(argument, place, seed, seen) for place, argument in arguments.items()}
+    return {place: _resolve(argument, place, seed, seen) for place, argument in arguments.items()}
 
 
-def _resolved(argument: Any, place: str, seed: int, seen: dict[int, Node]) -> Node:
-    """Resolve one; what was met before keeps the sources of its first place."""
-    if not isinstance(argument, Distribution | Made):
+def _resolve(argument: Any, place: str, seed: int, seen: dict[int, Node]) -> Node:
+    """Resolve one argument; a distribution that occurs twice keeps the source of its first place."""
+    if not isinstance(argument, Distribution | FunctionOfDraws):
         return argument
     if id(argument) in seen:
         return seen[id(argument)]
@@ -286,7 +296,7 @@ def _resolved(argument: Any, place: str, seed: int, seen: dict[int, Node]) -> No
         for name in argument.kwargs:
             if not name.isidentifier():
                 raise ValueError(f"{place}: {name!r} is no name of an argument")
-        parts = {key: _resolved(part, f"{place}.{key}", seed, seen) for key, part in argument.parts().items()}
+        parts = {key: _resolve(part, f"{place}.{key}", seed, seen) for key, part in argument.parts().items()}
         args = tuple(parts[str(index)] for index in range(len(argument.args)))
         node = Make(argument.function, args, tuple((name, parts[name]) for name in sorted(argument.kwargs)))
     seen[id(argument)] = node
@@ -393,7 +403,7 @@ def short_name(name: str) -> str:
 
 
 def bytes_of_member(plan: Plan) -> int:
-    """Return the size of all that is kept of a member."""
+    """Return the number of bytes of the results of a member."""
     return sum(
         np.dtype(variable.dtype).itemsize * int(np.prod(variable.tail)) for variable in layout(plan).values()
     )

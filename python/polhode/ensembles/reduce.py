@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final, Generic, NamedTuple, TypeAlias, Ty
 
 import numpy as np
 
-from polhode.ensembles.running import FAILED, picked, run_members
+from polhode.ensembles.running import FAILED, run_members, select_rows
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -73,7 +73,7 @@ class Tree(Generic[S]):
 
 
 class State(NamedTuple):
-    """Of some members: a state of each reduction, None without a member, and how many failed."""
+    """The state of some members: that of each reduction (None without a member), and how many failed."""
 
     parts: tuple[Any, ...]
     left_out: int
@@ -83,14 +83,14 @@ Nodes: TypeAlias = dict[Place, State]
 
 
 def tree_of(plan: Plan, reductions: tuple[Reduction, ...]) -> Tree[State]:
-    """Return the tree of all blocks, without any of them."""
+    """Return an empty tree for all blocks."""
 
     def merge(one: State, other: State) -> State:
         for a, b in zip(one.parts, other.parts, strict=True):
             if a is not None and b is not None and a.shape != b.shape:
                 raise ValueError(f"of: gave shape {a.shape} for some members and {b.shape} for others")
         parts = tuple(
-            b if a is None else a if b is None else reduction.merged(a, b, plan.n)
+            b if a is None else a if b is None else reduction.merge(a, b, plan.n)
             for reduction, a, b in zip(reductions, one.parts, other.parts, strict=True)
         )
         return State(parts, one.left_out + other.left_out)
@@ -136,6 +136,6 @@ def _block(
     if not kept.any():
         return State((None,) * len(reductions), left_out)
     # Those that failed are not shown to anybody.
-    shown = picked(run.trajectories[0], np.flatnonzero(kept))
-    parts = tuple(reduction.begun(reduction.values(shown), plan.n) for reduction in reductions)
+    shown = select_rows(run.trajectories[0], np.flatnonzero(kept))
+    parts = tuple(reduction.start(reduction.values(shown), plan.n) for reduction in reductions)
     return State(parts, left_out)

@@ -13,13 +13,13 @@ import numpy as np
 from polhode import _core
 from polhode._format import Argument, short
 from polhode._optional import require
-from polhode._progress import watched
+from polhode._progress import progress_bar
 from polhode.ensembles.checkpoints import Checkpoint
 from polhode.ensembles.cluster import chunks_here, chunks_of_client
 from polhode.ensembles.plan import bytes_of_member, coordinates, draws, layout
 from polhode.ensembles.reduce import BLOCK, nodes_of_chunk, tree_of
 from polhode.ensembles.running import arrays_of_chunk
-from polhode.ensembles.stores import NpzStore, ZarrStore, opened
+from polhode.ensembles.stores import NpzStore, ZarrStore, open_store
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
@@ -41,13 +41,13 @@ _STATE: Final = 120
 """Bytes of a state while it is integrated and handed over, beside the copies that are kept; measured."""
 _MEMBER: Final = 500
 _MOST_CHUNKS: Final = 2**24
-"""Their numbers are kept in memory where some of them may be done."""
+"""Largest number of chunks whose numbers are kept in memory."""
 _MADE: Final = 2000
 """Bytes of a body or a load that a member has for itself."""
 
 
 class Memory(NamedTuple):
-    """How much memory an ensemble takes, in bytes, about.
+    """Approximate memory of an ensemble, in bytes.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ class Memory(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class _Work:
-    """What is done with a chunk."""
+    """The work on a chunk."""
 
     plan: Plan
     function: Callable[..., Any]
@@ -156,7 +156,7 @@ class Ensemble:
         k = int(k)
         if not 0 <= k < plan.n:
             raise IndexError(f"k: there are members 0 to {plan.n - 1}, got {k}")
-        made = plan.inputs(k, 1).made(np.arange(1))
+        made = plan.inputs(k, 1).make_arguments(np.arange(1))
         for name, value in made.items():
             if isinstance(value, _core.RigidBody | _core.Load):
                 made[name] = value[0] if value.shape else value
@@ -196,7 +196,7 @@ class Ensemble:
         plan = self.plan
         if self.reduce is not None:
             self._check_chunk(may_be_done=checkpoint is not None)
-            return self._reduced(None if checkpoint is None else Path(checkpoint))
+            return self._reduce(None if checkpoint is None else Path(checkpoint))
         if checkpoint is not None:
             raise ValueError(
                 "checkpoint: keeps reductions, and without reduce= states are kept; write these with "
@@ -207,7 +207,7 @@ class Ensemble:
         self._check_chunk(may_be_done=False)
         variables = layout(plan)
         arrays = {name: np.empty((plan.n, *one.tail), one.dtype) for name, one in variables.items()}
-        for index, chunk in self._run(partial(arrays_of_chunk, plan), range(plan.chunks)):
+        for index, chunk in self._run_chunks(partial(arrays_of_chunk, plan), range(plan.chunks)):
             first, count = plan.bounds(index)
             for name, array in arrays.items():
                 array[first : first + count] = chunk[name]
@@ -268,7 +268,7 @@ class Ensemble:
             inputs.
         """
         self._check_states("resume")
-        self._fill(opened(Path(path), self.plan))
+        self._fill(open_store(Path(path), self.plan))
 
     def _check_states(self, what: str) -> None:
         if self.reduce is not None:
@@ -296,17 +296,19 @@ class Ensemble:
             )
 
     def _fill(self, store: Store) -> None:
-        for index, arrays in self._run(partial(arrays_of_chunk, self.plan), store.pending()):
+        for index, arrays in self._run_chunks(partial(arrays_of_chunk, self.plan), store.pending()):
             store.write(index, arrays)
 
-    def _reduced(self, path: Path | None) -> Any:
+    def _reduce(self, path: Path | None) -> Any:
         named: dict[str, Any] = self.reduce if isinstance(self.reduce, dict) else {"": self.reduce}
         reductions = tuple(named.values())
         tree = tree_of(self.plan, reductions)
         work = partial(nodes_of_chunk, self.plan, reductions)
         kept = None if path is None else Checkpoint(path, self.plan, named, tree)
         try:
-            for index, nodes in self._run(work, range(self.plan.chunks) if kept is None else kept.pending()):
+            for index, nodes in self._run_chunks(
+                work, range(self.plan.chunks) if kept is None else kept.pending()
+            ):
                 for place, state in nodes.items():
                     tree.add(place, state)
                 if kept is not None:
@@ -316,14 +318,14 @@ class Ensemble:
                 kept.close()
         parts, left_out = tree.root
         found = {
-            name: reduction.finished(part, left_out)
+            name: reduction.finish(part, left_out)
             for (name, reduction), part in zip(named.items(), parts, strict=True)
         }
         return found if isinstance(self.reduce, dict) else found[""]
 
-    def _run(self, function: Callable[..., R], pending: Sequence[int]) -> Iterator[tuple[int, R]]:
+    def _run_chunks(self, function: Callable[..., R], pending: Sequence[int]) -> Iterator[tuple[int, R]]:
         task: Task[R] = _Work(self.plan, function)
-        with watched(f"{self.plan.n} members", self.progress) as tell:
+        with progress_bar(f"{self.plan.n} members", self.progress) as tell:
             if self.client is None:
                 yield from chunks_here(task, pending, tell)
             else:
@@ -331,7 +333,7 @@ class Ensemble:
 
 
 def _check_room(needed: int, n: int) -> None:
-    """Refuse what the machine does not have, before any of it is computed."""
+    """Refuse an ensemble that needs more memory than the machine has, before it is computed."""
     room = _room()
     if room is not None and needed > room:
         raise MemoryError(
@@ -341,7 +343,7 @@ def _check_room(needed: int, n: int) -> None:
 
 
 def _room() -> int | None:
-    """Return the memory of this machine; not every system tells."""
+    """Return the memory of this machine; None if the system does not report it."""
     try:
         return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, ValueError, OSError):

@@ -1,4 +1,4 @@
-"""Members run: a chunk at a time, those that cannot begin left out and told."""
+"""Run members, a chunk at a time. Members that cannot start are left out and reported."""
 
 from __future__ import annotations
 
@@ -34,15 +34,15 @@ FAILED: Final = ("failed", REFUSED)
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """What became of some members."""
+    """Results of a run of some members."""
 
     inputs: Inputs
     rows: Rows
-    """Those that were run, of these members."""
+    """The members that were run."""
     trajectories: list[Trajectory]
-    """Of all of them, or one for each."""
+    """One trajectory of all of them, or one for each."""
     faults: dict[int, str]
-    """Why the others were not, by their numbers in the ensemble."""
+    """Errors of the other members, by their numbers in the ensemble."""
 
     @property
     def status(self) -> NDArray[np.str_]:
@@ -85,7 +85,7 @@ def run_members(plan: Plan, first: int, count: int, progress: Callable[[float], 
     plan : Plan
     first, count : int
     progress : callable, optional
-        Told the fraction done.
+        Called with the fraction that is done.
 
     Returns
     -------
@@ -97,7 +97,7 @@ def run_members(plan: Plan, first: int, count: int, progress: Callable[[float], 
         Where the plan says so, for the first member that fails.
     """
     inputs = plan.inputs(first, count)
-    able, faults = admitted(inputs)
+    able, faults = find_runnable(inputs)
     rows, found = [], []
     size = 1 if is_each_alone(plan) else max(len(able), 1)
     for start in range(0, len(able), size):
@@ -121,8 +121,8 @@ def run_members(plan: Plan, first: int, count: int, progress: Callable[[float], 
     return run
 
 
-def picked(trajectory: Trajectory, rows: Rows) -> Trajectory:
-    """Return the motions of some rows of a stack, whose arrays nobody can change.
+def select_rows(trajectory: Trajectory, rows: Rows) -> Trajectory:
+    """Return the motions of some rows of a stack, with read-only arrays.
 
     Parameters
     ----------
@@ -153,15 +153,15 @@ def picked(trajectory: Trajectory, rows: Rows) -> Trajectory:
     return type(trajectory)._of_run(known | own)
 
 
-def admitted(inputs: Inputs) -> tuple[Rows, dict[int, PolhodeError]]:
-    """Return which members have a body, a load and a state to begin with, and why others have not."""
+def find_runnable(inputs: Inputs) -> tuple[Rows, dict[int, PolhodeError]]:
+    """Return the members with a valid body, load and state at the start, and the errors of the others."""
     size = 1 if is_each_alone(inputs.plan) else max(inputs.count, 1)
     every = np.arange(inputs.count)
     able: list[Rows] = [every[:0]]
     faults: dict[int, PolhodeError] = {}
 
     def is_made(some: Rows) -> None:
-        inputs.made(some)
+        inputs.make_arguments(some)
 
     for start in range(0, inputs.count, size):
         rows, _, refused = _each(every[start : start + size], is_made)
@@ -173,7 +173,7 @@ def admitted(inputs: Inputs) -> tuple[Rows, dict[int, PolhodeError]]:
 def _each(
     rows: Rows, attempt: Callable[[Rows], T], *, is_run: bool = False
 ) -> tuple[Rows, T | None, dict[int, PolhodeError]]:
-    """Attempt all at once; where that is refused in halves, down to the members that are at fault.
+    """Run all members at once; if that is refused, run halves, down to the members that cause the error.
 
     Only refusals of values count: wrong types and shapes are mistakes of the whole call, and so is what a run
     refuses without naming a row.
@@ -223,7 +223,7 @@ def _failure(run: Run, row: int) -> PolhodeError:
 def arrays_of_chunk(
     plan: Plan, index: int, progress: Callable[[float], object] | None = None
 ) -> dict[str, NDArray[np.generic]]:
-    """Run a chunk and give its arrays: states, what was drawn, and the status at the end."""
+    """Run a chunk and return its arrays: states, drawn numbers, and the status at the end."""
     run = run_members(plan, *plan.bounds(index), progress)
     states = {short_name(name): run.array(name) for name in plan.outputs}
     drawn = {short_name(place): array for place, array in run.inputs.arrays().items()}

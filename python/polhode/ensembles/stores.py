@@ -1,4 +1,4 @@
-"""Chunks in files: each is there as a whole or not at all, so that what was ended goes on where it was."""
+"""Chunks in files. Each is written as a whole or not at all: an interrupted ensemble can be resumed."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     Arrays = dict[str, np.ndarray[Any, Any]]
 
-__all__ = ["NpzStore", "Store", "ZarrStore", "check_same", "header", "opened"]
+__all__ = ["NpzStore", "Store", "ZarrStore", "check_same", "header", "open_store"]
 
 _HEADER: Final = "ensemble.json"
 _KIND: Final = "polhode ensemble"
@@ -42,7 +42,7 @@ class Store(Protocol):
 
 
 def header(plan: Plan) -> dict[str, Any]:
-    """Return what tells one ensemble from another."""
+    """Return the fields that identify an ensemble."""
     return {
         "kind": _KIND,
         "version": build()[0],
@@ -163,20 +163,20 @@ class ZarrStore:
         return (self.path / name / piece).is_file()
 
     def write(self, index: int, arrays: Arrays) -> None:
-        """Write a chunk: its status last, which says that the rest is there."""
+        """Write a chunk. Its status comes last and marks it as complete."""
         first, count = self.plan.bounds(index)
         for name in layout(self.plan):
             self.group[name][first : first + count] = arrays[name]
 
 
 def _remove(files: Iterable[Path], name: str) -> None:
-    """Remove what a process that was killed had half written: the files whose name is this pattern."""
+    """Remove incomplete files of a process that was killed: those that match this pattern."""
     for file in files:
         if re.fullmatch(name, file.name):
             file.unlink()
 
 
-def opened(path: Path, plan: Plan) -> Store:
+def open_store(path: Path, plan: Plan) -> Store:
     """Open the store of this ensemble that is at a path.
 
     Parameters
@@ -203,7 +203,7 @@ def opened(path: Path, plan: Plan) -> Store:
 
 
 def _header_in(path: Path) -> dict[str, Any]:
-    """Read what ensemble the files of a directory are of."""
+    """Read the header of the ensemble in a directory."""
     try:
         found = json.loads((path / _HEADER).read_text("utf-8"))
     except ValueError as error:
@@ -226,7 +226,7 @@ def _check_new(path: Path) -> None:
 
 
 def check_same(path: Path, found: dict[str, Any], wanted: dict[str, Any]) -> None:
-    """Refuse what is no ensemble, or another one than is wanted."""
+    """Refuse a file without an ensemble, or with another ensemble."""
     if found.get("kind") != wanted["kind"]:
         what = "ensemble that to_zarr or to_npz" if wanted["kind"] == _KIND else "reductions that compute"
         raise FileFormatError(f"{path}: holds no {what} has begun; give another path")

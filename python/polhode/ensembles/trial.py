@@ -1,4 +1,4 @@
-"""The first members of an ensemble, begun and not run: what is wrong with all of them is told at once."""
+"""A trial start of the first members of an ensemble, so that an error of all members is raised at once."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from polhode.ensembles.plan import draws, is_each_alone
-from polhode.ensembles.running import admitted, output
+from polhode.ensembles.running import find_runnable, output
 from polhode.errors import IntegrationError, PolhodeError
 
 if TYPE_CHECKING:
@@ -22,17 +22,17 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Rows = NDArray[np.intp]
 
-__all__ = ["outputs_of", "settled", "trial_of"]
+__all__ = ["choose_method", "outputs_of", "trial_of"]
 
 _PROBED: Final = 16
-"""If so many members cannot begin, the call is wrong rather than their luck."""
+"""If this many members cannot start, the call is wrong, and not only their random numbers."""
 _STATES: Final = ("omega", "quaternion", "position", "velocity")
 _CHOSEN: Final = ("exact", "taylor")
 """The methods of which "auto" takes the first that can serve; the next can always."""
 
 
 def trial_of(plan: Plan) -> tuple[Rows, Trajectory]:
-    """Begin the first members.
+    """Start the first members.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def trial_of(plan: Plan) -> tuple[Rows, Trajectory]:
         Where none can.
     """
     inputs = plan.inputs(0, min(plan.n, _PROBED))
-    able, faults = admitted(inputs)
+    able, faults = find_runnable(inputs)
     begun, first = [], None
     for row in able.tolist():
         try:
@@ -72,11 +72,11 @@ def trial_of(plan: Plan) -> tuple[Rows, Trajectory]:
 
 
 def _beginning(t: Floats) -> Floats:
-    """Return the start and a time soon after: what a run is refused for shows there too."""
+    """Return the start and a time soon after: enough for all checks of a run."""
     return t if len(t) == 1 else np.array([t[0], t[0] + 1e-6 * (t[1] - t[0])])
 
 
-def settled(plan: Plan, begun: Rows) -> str:
+def choose_method(plan: Plan, begun: Rows) -> str:
     """Return the method of all members, where "auto" would choose by the loads of a chunk.
 
     Parameters

@@ -19,7 +19,7 @@ __all__ = ["body_from_atoms", "body_from_mesh"]
 
 
 def body_from_mesh(mesh: Any, **options: Any) -> _core.RigidBody:
-    """Take vertices and faces: what ``RigidBody.from_mesh_object`` does.
+    """Make a body of vertices and faces: what ``RigidBody.from_mesh_object`` does.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def body_from_mesh(mesh: Any, **options: Any) -> _core.RigidBody:
 def body_from_atoms(
     atoms: Any, conformer: int | None = None, masses: Masses = "most_common"
 ) -> _core.RigidBody:
-    """Take symbols and positions: what ``RigidBody.from_atoms`` does.
+    """Make a body of symbols and positions: what ``RigidBody.from_atoms`` does.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def body_from_atoms(
 
 
 def _check_rdkit(molecule: Any, conformer: Any) -> None:
-    """Refuse a drawing, and warn of hydrogens that are counted and stand nowhere."""
+    """Refuse a molecule in two dimensions; warn of hydrogens that have no positions."""
     if hasattr(conformer, "Is3D") and not conformer.Is3D() and not np.any(conformer.GetPositions()[:, 2]):
         raise PolhodeError(
             "atoms: the conformer is a drawing in the plane, not a geometry; make one with "

@@ -1,4 +1,4 @@
-"""Mass properties as a CAD program prints them: a mass, a centre, a tensor, and what its products mean."""
+"""Mass properties as a CAD program prints them: mass, centre, tensor, and the sign of the products."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The mass properties of a body as other programs take or print them: sign, order, axes and point of each.
+"""Mass properties of a body for other programs, each with its own signs, order, axes and point.
 
 Ours are the elements of the tensor, I_xy = −∫ x y dm, about C, in the axes of the body. What each program
 means by its numbers, and where it says so, stands in ``docs/other_programs.md``. Every number is printed with
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 __all__ = ["LEAST_MOMENT", "PROGRAMS", "inside_edge", "mjcf_tensor", "to_text"]
 
 LEAST_MOMENT: Final = {"MJCF": 1e-15, "URDF": 1e-14}
-"""In kg m^2: up to the first (mjMINVAL, for masses in kg too) MuJoCo refuses moments of what moves; up to the
-second it refuses eigenvalues of tensors that are not in principal axes, as in every URDF."""
+"""Limits in kg m^2. Up to the first (mjMINVAL, for masses in kg too) MuJoCo refuses moments of moving bodies;
+up to the second it refuses eigenvalues of tensors that are not in principal axes, as in every URDF."""
 # Of the trace. MuJoCo diagonalises, turns and joins tensors to 4 ε, in 24,000 random laminae.
 _CLEAR: Final = 5.0 * 2.0**-52
 _INSIDE: Final = 8.0 * 2.0**-52
@@ -37,7 +37,7 @@ _SMALL: Final = 1e-6
 
 
 def inside_edge(inertia: Floats) -> Floats:
-    """Return a tensor that engines still find possible after they have rounded it.
+    """Return a tensor that is still possible after an engine has rounded it.
 
     On the edge I1 + I2 = I3, as of a lamina or a rod, all three moments grow alike, by no more than 6e-15 of
     their sum, so that the axes stay. A tensor clear of the edge is returned as it is, the same object.
@@ -68,7 +68,7 @@ def mjcf_tensor(inertia: Floats) -> dict[str, list[float]]:
 
 
 class _Numbers(NamedTuple):
-    """Of one body: elements xx yy zz xy xz yz about C and about O, the axes as rows, the tensor about C."""
+    """Numbers of one body: elements xx yy zz xy xz yz about C and about O, axes as rows, tensor about C."""
 
     mass: float
     center: list[float]
@@ -189,7 +189,7 @@ def _sdf(n: _Numbers) -> str:
 
 
 def _check_least(body: RigidBody) -> None:
-    """Refuse what MuJoCo refuses; a larger moment than the body has is not written in its place."""
+    """Refuse moments that MuJoCo refuses; no larger moment is written instead."""
     least = LEAST_MOMENT["MJCF"]
     moment, mass = float(body.principal_moments[0]), float(body.mass)
     if not moment > least:

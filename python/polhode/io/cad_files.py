@@ -11,7 +11,7 @@ import numpy as np
 from polhode import _core
 from polhode.errors import FileFormatError, MeshError, PolhodeError
 from polhode.io.cad_geometry import moments_of_faces, occt
-from polhode.io.components import Overlap, told
+from polhode.io.components import Overlap, describe_overlaps
 from polhode.io.reading import Budget, read_bytes
 
 if TYPE_CHECKING:
@@ -484,7 +484,7 @@ def overlaps_told(cad: CadFile, pairs: Sequence[Pair], fault: str = "") -> tuple
         if pair.volume is not None and pair.volume > _CONTACT * cad.parts[pair.small].moments.volume
     ]
     total = sum(part.moments.volume for part in cad.parts) * 1e-9
-    lines = [line.replace("component", "solid", 1) for line in told(found, total, " m^3")]
+    lines = [line.replace("component", "solid", 1) for line in describe_overlaps(found, total, " m^3")]
     unknown = [f"{cad.parts[i].name} and {cad.parts[k].name}" for i, k, volume in pairs if volume is None]
     if unknown:
         more = f" and of {len(unknown) - 3} more pairs" if len(unknown) > 3 else ""

@@ -79,11 +79,11 @@ def surface_of(face: Any) -> FaceSurface:
         return FaceSurface(_plane(*_frame(place)), none, none)
     if kind == kinds.GeomAbs_Cylinder:
         cylinder = adaptor.Cylinder()
-        turned = _turned(*_frame(cylinder.Position()), cylinder.Radius(), 0.0)
+        turned = _surface_of_revolution(*_frame(cylinder.Position()), cylinder.Radius(), 0.0)
         return FaceSurface(turned, around, none)
     if kind == kinds.GeomAbs_Cone:
         cone = adaptor.Cone()
-        turned = _turned(*_frame(cone.Position()), cone.RefRadius(), cone.SemiAngle())
+        turned = _surface_of_revolution(*_frame(cone.Position()), cone.RefRadius(), cone.SemiAngle())
         return FaceSurface(turned, around, none)
     along = _turns(adaptor.FirstVParameter(), adaptor.LastVParameter())
     if kind == kinds.GeomAbs_Sphere:
@@ -95,7 +95,7 @@ def surface_of(face: Any) -> FaceSurface:
         return FaceSurface(at, around, along)
     if kind == kinds.GeomAbs_BSplineSurface:
         return _spline(adaptor)
-    return FaceSurface(_asked(adaptor), _intervals(adaptor, "U"), _intervals(adaptor, "V"))
+    return FaceSurface(_query_surface(adaptor), _intervals(adaptor, "U"), _intervals(adaptor, "V"))
 
 
 def _frame(place: Any) -> tuple[Floats, Floats, Floats, Floats]:
@@ -120,7 +120,9 @@ def _plane(origin: Floats, x: Floats, y: Floats, _: Floats) -> Surface:
     return at
 
 
-def _turned(origin: Floats, x: Floats, y: Floats, z: Floats, radius: float, angle: float) -> Surface:
+def _surface_of_revolution(
+    origin: Floats, x: Floats, y: Floats, z: Floats, radius: float, angle: float
+) -> Surface:
     """Cylinder and cone: a straight line turned about z, at `angle` to it."""
     sine, cosine = np.sin(angle), np.cos(angle)
 
@@ -148,7 +150,7 @@ def _torus(origin: Floats, x: Floats, y: Floats, z: Floats, major: float, minor:
     return at
 
 
-def _asked(adaptor: Any) -> Surface:
+def _query_surface(adaptor: Any) -> Surface:
     gp = occt("gp")
 
     def at(u: Floats, v: Floats) -> tuple[Floats, Floats]:
@@ -212,7 +214,7 @@ def _spline(adaptor: Any) -> FaceSurface:
         tangent_v = (by_v[:, :3] - by_v[:, 3:] * point) / weight
         return point, np.cross(tangent_u, tangent_v)
 
-    cuts_u, cuts_v = _repeated(knots_u, period_u), _repeated(knots_v, period_v)
+    cuts_u, cuts_v = _repeat(knots_u, period_u), _repeat(knots_v, period_v)
     return FaceSurface(at, cuts_u, cuts_v)
 
 
@@ -223,7 +225,7 @@ def _knots(spline: Any, axis: str) -> Floats:
     return np.repeat([knot(i) for i in range(1, count + 1)], [times(i) for i in range(1, count + 1)])
 
 
-def _repeated(knots: Floats, period: float) -> Floats:
+def _repeat(knots: Floats, period: float) -> Floats:
     cuts = np.unique(knots)
     return cuts if period == 0.0 else np.unique(np.concatenate([cuts - period, cuts, cuts + period]))
 

@@ -129,7 +129,7 @@ def _main(path: Path, parent: int) -> None:
     from polhode.io.cad_files import read_with_shapes
 
     try:
-        cad, shapes = read_with_shapes(path, _limited)
+        cad, shapes = read_with_shapes(path, _set_time_limit)
     except PolhodeError as error:
         _send(out, (type(error).__name__, str(error)))
         return
@@ -152,7 +152,7 @@ def _end_with_parent(parent: int) -> None:
         os._exit(1)
 
 
-def _limited(path: Path | None) -> None:
+def _set_time_limit(path: Path | None) -> None:
     """Let the system end this process after the seconds of computing that a file has; None: no limit."""
     if hasattr(signal, "setitimer"):
         signal.signal(signal.SIGPROF, signal.SIG_DFL)

@@ -144,14 +144,14 @@ class _Document:
         shown = _one(scene, "instance_visual_scene") if scene is not None else None
         if shown is None:
             raise _FaultError("shows no scene; export it with one")
-        visual = self._named(shown)
+        visual = self._resolve(shown)
         for node in _all(visual, "node"):
             self._place(node, np.eye(4), 0)
         if not self._placed.groups:
             raise _FaultError("its scene shows no triangles")
         return self._placed
 
-    def _named(self, element: Element, attribute: str = "url") -> Element:
+    def _resolve(self, element: Element, attribute: str = "url") -> Element:
         address = element.attributes.get(attribute, "")
         found = self._ids.get(address.removeprefix("#"))
         if not address.startswith("#"):
@@ -171,13 +171,13 @@ class _Document:
         for child in own.placed:
             tag = _tag(child)
             if tag == "instance_geometry":
-                geometry = self._named(child)
+                geometry = self._resolve(child)
                 if id(geometry) not in self._known:
                     self._known[id(geometry)] = self._geometry(geometry)
                 name = own.name or geometry.attributes.get("name", "")
                 self._placed.place(*self._known[id(geometry)], matrix, name)
             elif tag == "instance_node":
-                self._place(self._named(child), matrix, depth + 1)
+                self._place(self._resolve(child), matrix, depth + 1)
             else:
                 self._place(child, matrix, depth + 1)
 
@@ -212,7 +212,7 @@ class _Document:
             raise _FaultError(f"{group.where}: has no input VERTEX; check the file")
         offsets = [_whole(i, i.attributes.get("offset", "0")) for i in inputs]
         stride, offset = max(offsets) + 1, _whole(at[0], at[0].attributes.get("offset", "0"))
-        source = self._named(at[0], "source")
+        source = self._resolve(at[0], "source")
         if id(source) not in self._points_of:
             self._points_of[id(source)] = self._points(source)
         points = self._points_of[id(source)]
@@ -249,7 +249,7 @@ class _Document:
         inputs = [i for i in _all(vertices, "input") if i.attributes.get("semantic") == "POSITION"]
         if len(inputs) != 1:
             raise _FaultError(f"{vertices.where}: has no input POSITION; check the file")
-        source = self._named(inputs[0], "source")
+        source = self._resolve(inputs[0], "source")
         array, common = _one(source, "float_array"), _one(source, "technique_common")
         accessor = _one(common, "accessor") if common is not None else None
         if array is None or accessor is None:

@@ -28,13 +28,13 @@ __all__ = [
     "MOST_PARTS",
     "Overlap",
     "Part",
+    "describe_overlaps",
     "groups_of",
     "labels",
     "meeting",
     "overlapping",
     "overlaps",
     "parts_of",
-    "told",
     "winding",
 ]
 
@@ -296,7 +296,7 @@ def _is_inside(point: Floats, triangles: Floats, low: Floats, high: Floats) -> b
     return bool(abs(np.sign(total[up]).sum()) > 0.5)
 
 
-def told(found: Sequence[Overlap], total: float, unit: str = "") -> list[str]:
+def describe_overlaps(found: Sequence[Overlap], total: float, unit: str = "") -> list[str]:
     """Say which parts overlap and by how much of the total volume, the largest first."""
     lines = []
     for one, other, volume, is_inside in sorted(
@@ -338,7 +338,7 @@ def overlapping(vertices: Floats, faces: Integers, unit: str = " m^3") -> list[s
     found = [
         each for each in overlaps(parts, pairs) if not each.volume < _LITTLE * total
     ]  # or it is not known
-    return told(found, total, unit)
+    return describe_overlaps(found, total, unit)
 
 
 def groups_of(path: Path) -> list[str]:

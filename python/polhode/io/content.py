@@ -23,7 +23,7 @@ __all__ = [
     "Content",
     "content_format",
     "is_molecule",
-    "opened",
+    "open_file",
     "rename",
     "unread",
 ]
@@ -173,7 +173,7 @@ def content_format(head: bytes, size: int) -> tuple[str | None, bool]:
 
 
 @contextmanager
-def opened(file: Path) -> Iterator[Content]:
+def open_file(file: Path) -> Iterator[Content]:
     """Open a file and tell the format of its content where that can be told.
 
     Raises

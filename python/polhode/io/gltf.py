@@ -302,9 +302,9 @@ def _transform(node: dict[str, Any]) -> Floats:
         if not np.allclose(whole[3], [0.0, 0.0, 0.0, 1.0], rtol=0.0, atol=1e-9):
             raise ValueError("the matrix of a node does not end with the row 0 0 0 1")
     if "translation" in node:
-        whole = whole @ _moved(np.array(node["translation"], dtype=np.float64).reshape(3))
+        whole = whole @ _translation(np.array(node["translation"], dtype=np.float64).reshape(3))
     if "rotation" in node:
-        whole = whole @ _turned(np.array(node["rotation"], dtype=np.float64).reshape(4))
+        whole = whole @ _rotation(np.array(node["rotation"], dtype=np.float64).reshape(4))
     if "scale" in node:
         whole = whole @ np.diag([*np.array(node["scale"], dtype=np.float64).reshape(3), 1.0])
     if not np.isfinite(whole).all():
@@ -312,13 +312,13 @@ def _transform(node: dict[str, Any]) -> Floats:
     return whole
 
 
-def _moved(by: Floats) -> Floats:
+def _translation(by: Floats) -> Floats:
     whole = np.eye(4)
     whole[:3, 3] = by
     return whole
 
 
-def _turned(quaternion: Floats) -> Floats:
+def _rotation(quaternion: Floats) -> Floats:
     whole = np.eye(4)
     length = np.linalg.norm(quaternion)
     if not length > 0.0:

@@ -19,13 +19,13 @@ from polhode import _core
 from polhode._format import Argument
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.io.cad_geometry import check_occt
-from polhode.io.content import EXPECTED_CONTENT, MOLECULE_SUFFIXES, Content, is_molecule, opened, unread
+from polhode.io.content import EXPECTED_CONTENT, MOLECULE_SUFFIXES, Content, is_molecule, open_file, unread
 from polhode.io.mesh import Mesh, check_faces, weld, weld_within
 from polhode.io.mesh_solid import MeshSolid, naming_file, solid_of
 from polhode.io.plates import read_numbered_plates
 from polhode.io.reading import Budget, check_ordinary, naming, status_of, whole_of
 from polhode.io.saved import read_body, read_report
-from polhode.io.unpacked import inner_suffix, unpacked
+from polhode.io.unpacked import inner_suffix, unpack
 from polhode.units import METRES, metres_per
 
 if TYPE_CHECKING:
@@ -233,7 +233,7 @@ def load(path: str | os.PathLike[str], *, index_base: int = 1) -> Loaded:
         check_ordinary(file)
         raise unread(file, suffix, _MESH_SUFFIXES)
     budget = _budget(file)
-    with unpacked(file, budget) as inside:
+    with unpack(file, budget) as inside:
         loaded = _load(inside, suffix, index_base, budget)
         if inside is file:
             return loaded
@@ -250,7 +250,7 @@ def _budget(file: Path) -> Budget:
 
 def _load(file: Path, suffix: str, index_base: int, budget: Budget) -> Loaded:
     """Open and read a file that is not packed."""
-    with opened(file) as content:
+    with open_file(file) as content:
         stream = content.stream
         if suffix in MOLECULE_SUFFIXES:
             return _load_molecule(content, file, suffix, budget)

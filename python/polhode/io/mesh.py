@@ -53,7 +53,7 @@ def check_faces(mesh: Mesh, file: str) -> None:
 
 def weld(vertices: Floats, faces: Integers, name: str) -> Mesh:
     """Make corners at bit-equal coordinates one vertex, in the order of their first appearance."""
-    return _merged(Mesh(vertices, faces, name), vertices)
+    return _merge_equal(Mesh(vertices, faces, name), vertices)
 
 
 def weld_within(mesh: Mesh, length: float) -> Mesh:
@@ -87,7 +87,7 @@ def weld_within(mesh: Mesh, length: float) -> Mesh:
         order = np.argsort(mesh.vertices[:, axis], kind="stable")
         steps = np.diff(mesh.vertices[order, axis]) > length
         cells[order, axis] = np.concatenate([[0], np.cumsum(steps)])
-    welded = _merged(mesh, cells)
+    welded = _merge_equal(mesh, cells)
     moved = np.abs(welded.vertices[welded.faces] - mesh.vertices[mesh.faces]).max(initial=0.0)
     if moved > 2.0 * length:
         raise PolhodeError(
@@ -96,7 +96,7 @@ def weld_within(mesh: Mesh, length: float) -> Mesh:
     return welded
 
 
-def _merged(mesh: Mesh, keys: Floats | Integers) -> Mesh:
+def _merge_equal(mesh: Mesh, keys: Floats | Integers) -> Mesh:
     """Vertices with equal keys made the first of them."""
     first, of = equal_rows(keys)
     if len(first) == len(mesh.vertices):

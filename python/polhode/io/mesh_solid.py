@@ -13,7 +13,7 @@ from polhode import _core
 from polhode._format import Argument
 from polhode.errors import FileFormatError, MeshError, PolhodeError
 from polhode.io.mesh import weld_within
-from polhode.io.repair import RepairStep, repaired, resolution_of, spanned_volume
+from polhode.io.repair import RepairStep, repair_mesh, resolution_of, spanned_volume
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -108,12 +108,12 @@ def solid_of(
                 )
         with naming_file(file):
             first = _repaired_solid(loaded.mesh, density, mass, scale, weld)
-            return _united(loaded, first, weld, density, mass, scale) if union else first
+            return _unite_components(loaded, first, weld, density, mass, scale) if union else first
     joined = 0
     if union:
         mesh = weld_within(loaded.mesh, weld) if weld != 0.0 else loaded.mesh
         joined = len(loaded.mesh.vertices) - len(mesh.vertices)
-        loaded, weld = _joined(loaded, mesh, orient), 0.0
+        loaded, weld = _join_components(loaded, mesh, orient), 0.0
     if loaded.is_stream and weld == 0.0 and closure is None:
         try:
             with naming_file(file):
@@ -156,10 +156,10 @@ def solid_of(
     return MeshSolid(body._welded(welded), mesh.format, count, len(mesh.faces), volume, area, welded)
 
 
-def _joined(loaded: Loaded, mesh: Mesh, orient: bool) -> Loaded:
+def _join_components(loaded: Loaded, mesh: Mesh, orient: bool) -> Loaded:
     """Return the file with the components of its mesh joined to one solid."""
     from polhode.io.components import parts_of
-    from polhode.io.union import united
+    from polhode.io.union import unite
 
     parts = parts_of(mesh.vertices, mesh.faces, most=len(mesh.faces))
     with naming_file(loaded.path):
@@ -171,7 +171,7 @@ def _joined(loaded: Loaded, mesh: Mesh, orient: bool) -> Loaded:
                 Argument("orient", True),
                 " to turn it",
             )
-        joined = united([(part.vertices, part.faces) for part in parts], mesh.format)
+        joined = unite([(part.vertices, part.faces) for part in parts], mesh.format)
     return replace(loaded, is_stream=False, _mesh=joined)
 
 
@@ -216,7 +216,7 @@ def _repaired_solid(
     """Make the solid of a mesh that is repaired first; what nests in what is for the core to see."""
     corners, area = len(mesh.vertices), _core.surface_area(mesh.vertices * scale, mesh.faces)
     before, faces = spanned_volume(mesh), len(mesh.faces)
-    mended, done, welded, filled = repaired(mesh, weld)
+    mended, done, welded, filled = repair_mesh(mesh, weld)
     vertices = mended.vertices * scale
     body = _core.RigidBody.from_mesh(vertices, mended.faces, density=density, mass=mass, orient=True)
     volume = float(_core.RigidBody.from_mesh(vertices, mended.faces, density=1.0, orient=True).mass)
@@ -232,11 +232,11 @@ def _repaired_solid(
     if steps:
         has_filled = any(step.name == "fill" for step in steps)
         closed = abs(filled) * np.sign(filled * last) * scale**3 if has_filled else None
-        body = _marked(body, welded, closed)
+        body = _mark_repair(body, welded, closed)
     return MeshSolid(body, mesh.format, corners - welded, faces, volume, area, welded, steps=tuple(steps))
 
 
-def _marked(body: _core.RigidBody, welded: int, closed: float | None) -> _core.RigidBody:
+def _mark_repair(body: _core.RigidBody, welded: int, closed: float | None) -> _core.RigidBody:
     """Return the body of a mesh that was repaired; `closed` is the change of volume by what was filled."""
     numbers = np.array(body.__reduce__()[1][0], dtype=np.float64)
     numbers[_CHECKS] = int(numbers[_CHECKS]) | _REPAIRED
@@ -246,19 +246,19 @@ def _marked(body: _core.RigidBody, welded: int, closed: float | None) -> _core.R
     return _core.RigidBody._from_numbers(numbers, body._doubts())
 
 
-def _united(
+def _unite_components(
     loaded: Loaded, first: MeshSolid, weld: float, density: Number | None, mass: Number | None, scale: float
 ) -> MeshSolid:
     """Join the components of a mesh that was repaired first."""
-    mended, _, _, _ = repaired(loaded.mesh, weld)
-    joined = _joined(loaded, mended, orient=True)
+    mended, _, _, _ = repair_mesh(loaded.mesh, weld)
+    joined = _join_components(loaded, mended, orient=True)
     solid = solid_of(joined, density=density, mass=mass, scale=scale)
     change = 100.0 * (solid.volume - first.volume) / solid.volume
     step = RepairStep("union", "components joined, so that what they share counts once", change)
     provenance = first.body.provenance
     closed = float(provenance.volume_change) if provenance.closure else None
     return solid._replace(
-        body=_marked(solid.body, first.welded, closed), steps=(*first.steps, step), welded=first.welded
+        body=_mark_repair(solid.body, first.welded, closed), steps=(*first.steps, step), welded=first.welded
     )
 
 

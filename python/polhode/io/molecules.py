@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, BinaryIO, Final, NamedTuple
 import numpy as np
 
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.io.content import opened
+from polhode.io.content import open_file
 from polhode.io.reading import text_of, with_way_out
 from polhode.molecules.nuclides import SYMBOLS, shifted_mass_number
 
@@ -109,7 +109,7 @@ def read_xyz(path: str | os.PathLike[str]) -> Molecule:
         If the file cannot be read.
     """
     file = Path(path)
-    with opened(file) as content:
+    with open_file(file) as content:
         return molecule_of(content.stream, file)
 
 
@@ -633,7 +633,7 @@ def _of_v3000(lines: list[str]) -> tuple[list[str], list[list[Decimal]]]:
     labels: list[str] = []
     rows: list[list[Decimal]] = []
     promised = -1
-    for number, line in _joined(lines):
+    for number, line in _join_lines(lines):
         words = line.split()
         if words[:1] == ["COUNTS"] and len(words) > 1 and (count := _whole_number(words[1])) is not None:
             promised = count
@@ -662,7 +662,7 @@ def _of_v3000(lines: list[str]) -> tuple[list[str], list[list[Decimal]]]:
     return labels, rows
 
 
-def _joined(lines: list[str]) -> Iterable[tuple[int, str]]:
+def _join_lines(lines: list[str]) -> Iterable[tuple[int, str]]:
     """Read the lines of V3000 without ``M  V30``; one that ends with a hyphen goes on in the next."""
     number, text = 0, ""
     for place, line in enumerate(lines, start=1):

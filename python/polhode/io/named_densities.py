@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 from polhode import _core
 from polhode._format import Argument
 from polhode.errors import PolhodeError
-from polhode.io.components import groups_of, overlaps, parts_of, told
+from polhode.io.components import describe_overlaps, groups_of, overlaps, parts_of
 from polhode.io.mesh import weld_within
 from polhode.io.mesh_solid import naming_file, solid_of
-from polhode.io.unpacked import inner_suffix, unpacked
+from polhode.io.unpacked import inner_suffix, unpack
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -44,7 +44,7 @@ def named_parts(loaded: Loaded, scale: float, weld: float) -> list[Part]:
     groups = [name for name, count in loaded.groups for _ in range(count)]
     parts = parts_of(vertices, mesh.faces, groups)
     if len(parts) > 1 and inner_suffix(loaded.path) == ".obj":
-        with unpacked(loaded.path) as inside:
+        with unpack(loaded.path) as inside:
             groups = groups_of(inside)
         if len(groups) == len(mesh.faces):  # none fell together when corners did
             return parts_of(vertices, mesh.faces, groups)
@@ -109,7 +109,7 @@ def body_by_names(
         raise PolhodeError(
             Argument("density"), f": nothing is said of component {absent!r} of {where}; add it"
         )
-    lines = told(overlaps(parts), sum(part.volume for part in parts))
+    lines = describe_overlaps(overlaps(parts), sum(part.volume for part in parts))
     for line in [*lines, *([OVERLAPPING] if lines else [])]:
         warnings.warn(f"{where}: {line}", stacklevel=3)
     with naming_file(loaded.path):

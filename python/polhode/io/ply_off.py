@@ -80,7 +80,7 @@ def check_ply(stream: BinaryIO, triangles: int) -> None:
             for is_list in element.are_lists:
                 place += 1 + (int(row[place]) if is_list and place < len(row) else 0)
             if place != len(row):
-                raise ValueError(f"the row {_shown(row)} is not as the header says")
+                raise ValueError(f"the row {_quote_row(row)} is not as the header says")
             if element.name == b"face" and element.are_lists[0]:
                 expected += int(row[0]) - 2
         at += element.rows
@@ -100,7 +100,7 @@ def check_off(stream: BinaryIO, triangles: int) -> None:
         raise _cut_short(faces)
     for row in rows[vertices : vertices + faces]:
         if len(row) < int(row[0]) + 1:
-            raise ValueError(f"the face {_shown(row)} has fewer corners than it says")
+            raise ValueError(f"the face {_quote_row(row)} has fewer corners than it says")
     _check_end(rows, vertices + faces)  # trimesh has refused words that are no numbers
     if triangles != sum(int(row[0]) - 2 for row in rows[vertices:]):
         raise _cut_short(faces)
@@ -126,7 +126,7 @@ def _ply_header(lines: Iterable[bytes]) -> tuple[list[_Element], bool]:
 
 def _check_end(rows: list[list[bytes]], end: int) -> None:
     if len(rows) > end:
-        raise ValueError(f"the row {_shown(rows[end])} is one more than the header promises")
+        raise ValueError(f"the row {_quote_row(rows[end])} is one more than the header promises")
 
 
 def _check_numbers(rows: list[list[bytes]]) -> None:
@@ -135,7 +135,7 @@ def _check_numbers(rows: list[list[bytes]]) -> None:
         np.array(words).astype(np.float64)  # which tells the word that is none
 
 
-def _shown(row: list[bytes]) -> str:
+def _quote_row(row: list[bytes]) -> str:
     return repr(b" ".join(row)[:60].decode(errors="replace"))
 
 
@@ -183,7 +183,7 @@ def read_by_trimesh(stream: BinaryIO, file: Path, readable: tuple[str, ...], bud
     try:
         _count_words(stream, budget)
         # Its own processing would merge, drop and reorder; only the stored triangles are wanted.
-        scene = _loaded(trimesh, stream, kind)
+        scene = _load_scene(trimesh, stream, kind)
     except (MemoryError, OSError, FileFormatError):
         raise
     except Exception as error:  # a damaged file can raise anything in there, from KeyError to struct.error
@@ -228,7 +228,7 @@ def _count_words(stream: BinaryIO, budget: Budget) -> None:
     stream.seek(0)
 
 
-def _loaded(trimesh: Any, stream: BinaryIO, kind: str) -> Any:
+def _load_scene(trimesh: Any, stream: BinaryIO, kind: str) -> Any:
     """Return trimesh's scene of a file that can be what it says."""
     if kind == "ply":
         check_ply_size(stream)

@@ -100,7 +100,7 @@ class Budget:
         least, per_byte, _ = LIMITS[kind]
         return least + int(per_byte * self._size)
 
-    def left(self, kind: str) -> int:
+    def remaining(self, kind: str) -> int:
         """Return how many of a kind may still be made."""
         return self.most(kind) - self._spent[kind]
 
@@ -260,12 +260,12 @@ def read_text(path: str | os.PathLike[str], kind: str, most: int = MOST_TEXT) ->
     most : int
         In bytes.
     """
-    return _decoded(read_bytes(path, most), path, kind)
+    return _decode(read_bytes(path, most), path, kind)
 
 
 def text_of(stream: BinaryIO, path: str | os.PathLike[str], kind: str, most: int = MOST_TEXT) -> str:
     """Read a whole text in UTF-8 from a file that is open; see :func:`read_text`."""
-    return _decoded(_whole(stream, path, most), path, kind)
+    return _decode(_whole(stream, path, most), path, kind)
 
 
 def whole_of(stream: BinaryIO, path: str | os.PathLike[str], most: int = MOST_TEXT) -> bytes:
@@ -289,7 +289,7 @@ def _whole(stream: BinaryIO, path: str | os.PathLike[str], most: int) -> bytes:
     )
 
 
-def _decoded(data: bytes, path: str | os.PathLike[str], kind: str) -> str:
+def _decode(data: bytes, path: str | os.PathLike[str], kind: str) -> str:
     try:
         return data.decode()
     except UnicodeDecodeError as error:

@@ -33,7 +33,7 @@ __all__ = [
     "read_npz",
     "read_record",
     "record_suffix",
-    "required",
+    "require_field",
     "write_json",
     "write_npz",
 ]
@@ -52,7 +52,7 @@ def read_json(file: Path) -> dict[str, Any]:
     """
     text = read_text(file, "JSON")
     try:
-        fields = json.loads(text, parse_constant=_refused, object_pairs_hook=_once)
+        fields = json.loads(text, parse_constant=_refuse_constant, object_pairs_hook=_once)
     except RecursionError:
         raise FileFormatError(
             f"{file}: not JSON: its parts are nested beyond reason; save it again"
@@ -198,7 +198,7 @@ def _array(data: bytes) -> NDArray[Any]:
     return flat.reshape(shape, order="F" if is_fortran else "C")
 
 
-def _refused(word: str) -> Any:
+def _refuse_constant(word: str) -> Any:
     raise ValueError(f"{word} is no number of JSON; write null for what is not a number")
 
 
@@ -272,7 +272,7 @@ def check_names(fields: dict[str, Any], known: Collection[str], where: str) -> N
         )
 
 
-def required(fields: dict[str, Any], name: str, file: Path) -> Any:
+def require_field(fields: dict[str, Any], name: str, file: Path) -> Any:
     """Return a field that every file of the format has."""
     if name not in fields:
         raise FileFormatError(f"{file}: {name} is missing; save it again")

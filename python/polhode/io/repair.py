@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Integers = NDArray[np.int64]
 
-__all__ = ["RepairStep", "repaired", "resolution_of", "spanned_volume"]
+__all__ = ["RepairStep", "repair_mesh", "resolution_of", "spanned_volume"]
 
 
 class RepairStep(NamedTuple):
@@ -46,7 +46,7 @@ def resolution_of(mesh: Mesh) -> float:
     return float(f"{size * 2.0**-23:.0e}") if np.isfinite(size) else 0.0
 
 
-def repaired(mesh: Mesh, weld: float = 0.0) -> tuple[Mesh, list[tuple[str, str, float]], int, float]:
+def repair_mesh(mesh: Mesh, weld: float = 0.0) -> tuple[Mesh, list[tuple[str, str, float]], int, float]:
     """Weld, drop, orient and fill, in this order.
 
     Parameters
@@ -93,7 +93,7 @@ def repaired(mesh: Mesh, weld: float = 0.0) -> tuple[Mesh, list[tuple[str, str, 
     welded = corners - len(mesh.vertices)
     if welded:
         note("weld", f"{_count(welded, 'corner')} within {length:g} of another joined")
-    kept = _needed(mesh.faces)
+    kept = _find_needed(mesh.faces)
     dropped = len(mesh.faces) - int(kept.sum())
     if dropped:
         mesh = mesh._replace(faces=mesh.faces[kept])
@@ -105,7 +105,7 @@ def repaired(mesh: Mesh, weld: float = 0.0) -> tuple[Mesh, list[tuple[str, str, 
         mesh = mesh._replace(faces=faces)
         note("orient", f"{_count(int(turned.sum()), 'face')} turned to run as those beside them")
     before = spanned_volume(mesh)
-    mesh, loops, edges = _filled(mesh)
+    mesh, loops, edges = _fill_loops(mesh)
     filled = spanned_volume(mesh) - before
     if loops:
         note("fill", f"{_count(loops, 'loop')} of {_count(edges, 'edge')} closed by fans of triangles")
@@ -124,7 +124,7 @@ def _count(number: int, word: str) -> str:
     return f"{number} {word}" if number == 1 else f"{number} {word}s"
 
 
-def _needed(faces: Integers) -> NDArray[np.bool_]:
+def _find_needed(faces: Integers) -> NDArray[np.bool_]:
     """Which faces to keep: of those with the same corners one if its edges need it, of lines none."""
     ordered = np.sort(faces, axis=1)
     is_line = (ordered[:, 0] == ordered[:, 1]) | (ordered[:, 1] == ordered[:, 2])
@@ -190,7 +190,7 @@ def _to_turn(faces: Integers) -> NDArray[np.bool_]:
     return turned
 
 
-def _filled(mesh: Mesh) -> tuple[Mesh, int, int]:
+def _fill_loops(mesh: Mesh) -> tuple[Mesh, int, int]:
     """Close each loop of open edges by triangles to the mean of their starts, as ``closure="caps"`` does."""
     edges = _edges(mesh.faces)
     undirected, inverse = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)

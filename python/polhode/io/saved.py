@@ -20,7 +20,7 @@ from polhode.io.records import (
     read_json,
     read_record,
     record_suffix,
-    required,
+    require_field,
     write_json,
     write_npz,
 )
@@ -184,7 +184,9 @@ def _doubts_of(fields: dict[str, Any], file: Path) -> dict[str, Any] | None:
     """Read it."""
     if not any(name in fields for name in _DOUBTS):
         return None
-    counts, words, tangents, bends = (numbers(required(fields, name, file), name, file) for name in _DOUBTS)
+    counts, words, tangents, bends = (
+        numbers(require_field(fields, name, file), name, file) for name in _DOUBTS
+    )
     is_whole = (counts == np.floor(counts)).all() and (counts >= 0).all() and (words == np.floor(words)).all()
     if not is_whole or (words.size and not 0 <= words.min() <= words.max() < 2**16):
         raise FileFormatError(
@@ -201,7 +203,7 @@ def _doubts_of(fields: dict[str, Any], file: Path) -> dict[str, Any] | None:
 
 def body_of(fields: dict[str, Any], file: Path) -> RigidBody:
     """Make the body from the fields of a file."""
-    given = {name: numbers(required(fields, name, file), name, file) for name in BODY_ARRAYS}
+    given = {name: numbers(require_field(fields, name, file), name, file) for name in BODY_ARRAYS}
     try:
         if "numbers" not in fields:
             if any(name in fields for name in _DOUBTS):
@@ -396,13 +398,13 @@ def read_motion(path: str | PathLike[str]) -> tuple[dict[str, Any], dict[str, An
     else:
         check_names(fields["body"], (*BODY_FIELDS, *WORDS), f"{file}: body")
     body = body_of(fields["body"], file)
-    t = numbers(required(fields, "t", file), "t", file)
-    states = {"t": t, "about": numbers(required(fields, "about", file), "about", file)}
+    t = numbers(require_field(fields, "t", file), "t", file)
+    states = {"t": t, "about": numbers(require_field(fields, "about", file), "about", file)}
     expected: dict[str, tuple[int, ...]] = {"about": (*body.shape, 3)}
     stack: tuple[int, ...] = body.shape
     for name, width in _STATES.items():
         if width:
-            states[name] = numbers(required(fields, name, file), name, file, with_holes=True)
+            states[name] = numbers(require_field(fields, name, file), name, file, with_holes=True)
             if name == "omega":
                 stack = _stack(states[name].shape, body.shape, t.ndim)
             expected[name] = (*stack, *t.shape, width)
@@ -414,7 +416,7 @@ def read_motion(path: str | PathLike[str]) -> tuple[dict[str, Any], dict[str, An
     leading = (*stack, *t.shape)
     ended: dict[str, Any] = {
         "states": _states_of_load(fields, file, leading),
-        "carried": _carried(fields, file, leading),
+        "carried": _read_wheels(fields, file, leading),
         "status": _status(fields, file, stack),
         "pivoted": _flag(fields, "pivoted", file),
     }
@@ -467,7 +469,7 @@ def _states_of_load(fields: dict[str, Any], file: Path, leading: tuple[int, ...]
     return states
 
 
-def _carried(
+def _read_wheels(
     fields: dict[str, Any], file: Path, leading: tuple[int, ...]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
     held = [name for name in _CARRIED if name in fields]
@@ -475,7 +477,7 @@ def _carried(
         return None
     found = []
     for name, shape in zip(_CARRIED, ((*leading, 3), leading), strict=True):
-        values = numbers(required(fields, name, file), name, file, with_holes=True)
+        values = numbers(require_field(fields, name, file), name, file, with_holes=True)
         if values.shape != shape:
             raise FileFormatError(f"{file}: {name} has shape {values.shape}, expected {shape}")
         found.append(values)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Integers = NDArray[np.int64]
 
-__all__ = ["subtracted"]
+__all__ = ["subtract"]
 
 _MOST_PAIRS: Final = 20_000_000
 """Edges times triangles that are compared one with the other."""
@@ -32,7 +32,7 @@ _NEAR: Final = 1e-9
 """As a part of the size: nearer than this two surfaces touch."""
 
 
-def subtracted(solid: Mesh, negative: Mesh) -> tuple[Mesh, list[str]]:
+def subtract(solid: Mesh, negative: Mesh) -> tuple[Mesh, list[str]]:
     """Subtract volumes from solids.
 
     Parameters
@@ -90,10 +90,10 @@ def subtracted(solid: Mesh, negative: Mesh) -> tuple[Mesh, list[str]]:
         if vertices
         else Mesh(np.empty((0, 3)), np.empty((0, 3), dtype=np.int64), solid.format)
     )
-    return mesh, _told(len(serving), len(tools) - len(serving), is_moved=is_moved)
+    return mesh, _describe(len(serving), len(tools) - len(serving), is_moved=is_moved)
 
 
-def _told(serving: int, idle: int, *, is_moved: bool) -> list[str]:
+def _describe(serving: int, idle: int, *, is_moved: bool) -> list[str]:
     notes = []
     if serving:
         by = " by manifold3d; how far that moves corners is in no bound" if is_moved else ""

@@ -21,7 +21,7 @@ import numpy as np
 
 from polhode.errors import FileFormatError, MeshError
 from polhode.io.scene import Scene
-from polhode.io.subtraction import subtracted
+from polhode.io.subtraction import subtract
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -321,7 +321,7 @@ class _Build:
                 self._place_volumes(path, name, np.eye(4), solid, negative, depth, thing.name)
                 cut, notes = solid.mesh("3MF"), list[str]()
                 if solid.groups and negative.groups:
-                    cut, notes = subtracted(cut, negative.mesh("3MF"))
+                    cut, notes = subtract(cut, negative.mesh("3MF"))
                 self._notes |= dict.fromkeys(notes)
                 self._cut[name] = cut.vertices, cut.faces
             scene.place(*self._cut[name], place, thing.name)

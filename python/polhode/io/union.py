@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     Integers = NDArray[np.int64]
     Surface = tuple[Floats, Integers]
 
-__all__ = ["difference", "has_union", "is_closed", "shared_volume", "united"]
+__all__ = ["difference", "has_union", "is_closed", "shared_volume", "unite"]
 
 
 def has_union() -> bool:
@@ -34,14 +34,14 @@ def has_union() -> bool:
 
 def shared_volume(one: Surface, other: Surface) -> float:
     """Return the volume that two closed surfaces, wound outward, have in common."""
-    _, (first, second) = _centred([one, other])
+    _, (first, second) = _center([one, other])
     try:
         return abs(_volume(_surface(_manifold(first) ^ _manifold(second))))
     except MeshError:
         return float("nan")
 
 
-def united(parts: Sequence[Surface], name: str) -> Mesh:
+def unite(parts: Sequence[Surface], name: str) -> Mesh:
     """Join closed surfaces, wound outward, into one that counts what they share once.
 
     Parameters
@@ -57,7 +57,7 @@ def united(parts: Sequence[Surface], name: str) -> Mesh:
     ModuleNotFoundError
         Without manifold3d, with the line that installs it.
     """
-    middle, moved = _centred(parts)
+    middle, moved = _center(parts)
     library = _library()
     whole = library.Manifold.batch_boolean([_manifold(each) for each in moved], library.OpType.Add)
     vertices, faces = _surface(whole)
@@ -72,7 +72,7 @@ def difference(one: Surface, others: Sequence[Surface]) -> Surface:
     MeshError
         Where manifold3d does not take one of them for a solid.
     """
-    middle, moved = _centred([one, *others])
+    middle, moved = _center([one, *others])
     whole = _manifold(moved[0])
     for each in moved[1:]:
         whole -= _manifold(each)
@@ -84,7 +84,7 @@ def _library() -> Any:
     return require("manifold3d", extra="union", purpose="the union of solids")
 
 
-def _centred(parts: Sequence[Surface]) -> tuple[Floats, list[Surface]]:
+def _center(parts: Sequence[Surface]) -> tuple[Floats, list[Surface]]:
     """Move surfaces near the origin, where their coordinates have most digits, and drop unused vertices."""
     used = [used_vertices(faces, len(vertices)) for vertices, faces in parts]
     corners = np.concatenate([vertices[rows] for (vertices, _), rows in zip(parts, used, strict=True)])

@@ -16,7 +16,7 @@ from polhode.io.writing import writing
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["inner_suffix", "unpacked"]
+__all__ = ["inner_suffix", "unpack"]
 
 _BLOCK: Final = 1 << 20
 
@@ -28,7 +28,7 @@ def inner_suffix(path: Path) -> str:
 
 
 @contextmanager
-def unpacked(path: Path, budget: Budget | None = None) -> Iterator[Path]:
+def unpack(path: Path, budget: Budget | None = None) -> Iterator[Path]:
     """Return file itself, or where it is packed with gzip what it holds, in a folder that is then removed.
 
     Parameters

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 __all__ = [
     "Edit",
     "Element",
+    "apply_edits",
     "blanks_of",
-    "edited",
     "parse_xml",
     "remove_attribute",
     "set_attribute",
@@ -113,7 +113,7 @@ def _declared_late(source: bytes) -> bytes:
     return source[:start] + b" " * (end - start) + source[end:]
 
 
-def _loosened(source: bytes, code: int) -> tuple[bytes, str]:
+def _blank_out_faults(source: bytes, code: int) -> tuple[bytes, str]:
     """Blank out what other readers of robots pass over and XML forbids, and say what; "" where there is none.
 
     Every byte keeps its place, so that those of elements are the places of the source itself.
@@ -228,7 +228,7 @@ def parse_xml(
         parser.Parse(source, True)
     except expat.ExpatError as error:
         reason = expat.ErrorString(error.code)
-        if remarks is not None and (loose := _loosened(source, error.code))[1]:
+        if remarks is not None and (loose := _blank_out_faults(source, error.code))[1]:
             spent.spend("elements", -made)
             told = f"{file}: {loose[1]}" if file else loose[1]
             remarks[f"{told}: XML forbids it, so that xacro refuses it; simulators pass over it"] = None
@@ -251,7 +251,7 @@ def parse_xml(
     return root[0]
 
 
-def edited(source: bytes, edits: Iterable[Edit]) -> bytes:
+def apply_edits(source: bytes, edits: Iterable[Edit]) -> bytes:
     """Apply edits that do not overlap, in one pass."""
     pieces: list[bytes] = []
     done = 0

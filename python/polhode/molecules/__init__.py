@@ -49,7 +49,7 @@ ATOMIC_MASS_CONSTANT: Final = 1.66053906892e-27
 """One u in kg; standard uncertainty 0.00000000052e-27."""
 
 _SIGMA_OF_U: Final = 0.00000000052e-27 / ATOMIC_MASS_CONSTANT
-"""Relative."""
+"""Relative standard uncertainty of one u."""
 
 _ANGSTROM: Final = 1e-10
 

@@ -1,4 +1,4 @@
-"""Bonds of a molecule: which atoms they join, in a cell too, and what their lengths do to positions."""
+"""Bonds of a molecule: the atoms that they join, also in a cell, and positions with uncertain lengths."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class CellBond(NamedTuple):
 
 
 class CellCrossings(NamedTuple):
-    """What joins atoms through the sides of a cell; see :func:`cell_crossings`.
+    """Bonds and fragments that cross the sides of a cell; see :func:`cell_crossings`.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ class CellCrossings(NamedTuple):
 
     @property
     def crossed(self) -> tuple[bool, ...]:
-        """Whether the atoms stand apart along each vector of the cell, and together through its side.
+        """Whether the atoms are two groups along each vector of the cell that are one group through its side.
 
         They do if they extend over less than half as much there.
         """
@@ -135,7 +135,7 @@ def bonds(labels: Sequence[str | Isotope], positions: ArrayLike) -> list[tuple[i
 
 
 def cell_crossings(labels: Sequence[str | Isotope], positions: ArrayLike, cell: ArrayLike) -> CellCrossings:
-    """Find what joins atoms through the sides of a cell: bonds, and fragments that stand apart.
+    """Find bonds that cross the sides of a cell, and fragments that a side cuts.
 
     A program that keeps atoms within a cell cuts a molecule at its sides. The mass stays right, but the
     centre of mass and the moments are then those of the pieces.
@@ -252,7 +252,7 @@ def crossings_of(
 
 
 def _in_cell(places: Floats, cell: ArrayLike) -> tuple[Floats, Floats]:
-    """Check the vectors of a cell; give them and the atoms' coordinates along them."""
+    """Check the vectors of a cell; return them and the atoms' coordinates along them."""
     vectors = np.array(_core.real_numbers(cell, "cell"))
     if vectors.ndim != 2 or vectors.shape[-1] != 3 or not 1 <= len(vectors) <= 3:
         message = f"cell: expected one to three vectors, shape (k, 3), got {vectors.shape}"
@@ -276,13 +276,13 @@ def _in_cell(places: Floats, cell: ArrayLike) -> tuple[Floats, Floats]:
 
 
 def _heights(vectors: Floats) -> Floats:
-    """Distances of opposite sides."""
+    """Return the distances between opposite sides of a cell."""
     heights: Floats = 1.0 / np.linalg.norm(np.linalg.pinv(vectors), axis=0)
     return heights
 
 
 def _fragments(count: int, pairs: Sequence[CellBond]) -> tuple[int, bool]:
-    """Count the parts that bonds make of atoms; and whether one of them is bonded to its own image."""
+    """Count the fragments of bonded atoms; also return whether one is bonded to its own image."""
     neighbours: list[list[tuple[int, tuple[int, ...]]]] = [[] for _ in range(count)]
     for i, j, shift in pairs:
         neighbours[i].append((j, shift))
@@ -458,7 +458,7 @@ def _near_pairs(
 def _moved_along(
     names: Sequence[str], positions: Floats, bonds: ArrayLike, sigma: Floats
 ) -> Iterator[Floats]:
-    """Describe for each bond whose length is uncertain what one sigma of it does to the positions.
+    """For each bond of uncertain length: compute the change of all positions by one sigma of the length.
 
     Parameters
     ----------
@@ -476,7 +476,7 @@ def _moved_along(
     numpy.ndarray, shape (n, 3)
         In the order of the bonds; none for a sigma of zero.
     """
-    pairs = _checked(names, bonds)
+    pairs = _check_bonds(names, bonds)
     if sigma.shape not in ((), (len(pairs),)):
         message = f"sigma: expected one or one for each of {len(pairs)} bonds, got shape {sigma.shape}"
         raise ValueError(message)
@@ -500,7 +500,7 @@ def _moved_along(
         yield step
 
 
-def _checked(names: Sequence[str], bonds: ArrayLike) -> list[tuple[int, int]]:
+def _check_bonds(names: Sequence[str], bonds: ArrayLike) -> list[tuple[int, int]]:
     array = np.asarray(_core.real_numbers(bonds, "bonds"))
     if array.size == 0:
         return []
@@ -527,7 +527,7 @@ def _checked(names: Sequence[str], bonds: ArrayLike) -> list[tuple[int, int]]:
 
 
 def _beyond(names: Sequence[str], neighbours: list[list[int]], i: int, j: int) -> list[int]:
-    """Return the atoms that hang on j when its bond to i is cut."""
+    """Return the atoms connected to j after the bond from i to j is cut."""
     came_from = {j: i}
     rest = [j]
     while rest:

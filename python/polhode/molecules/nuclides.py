@@ -1,4 +1,4 @@
-"""Nuclides: what a label stands for, its mass and the sigma of that."""
+"""Nuclides: the meaning of a label, its mass and the sigma of the mass."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SYMBOLS: Final = tuple(
     Cn Nh Fl Mc Lv Ts Og
     """.split()  # noqa: SIM905
 )
-"""Of all elements, by atomic number from 1; files are read with them where no periodictable is installed."""
+"""Symbols of all elements, by atomic number from 1; used to read files without periodictable."""
 
 _LABEL: Final = re.compile(r"(?P<mass_number>[0-9]{1,9})?(?P<symbol>[A-Za-z]{1,2})|(?P<number>[0-9]{1,9})")
 _HYDROGEN: Final = {"D": 2, "T": 3}
@@ -128,7 +128,7 @@ def _isotope(table: Any, label: str, masses: Masses) -> Isotope:
 
 
 def shifted_mass_number(symbol: str, difference: int) -> int:
-    """Find the mass number that differs from an element's own by so much.
+    """Return the mass number of an element that differs from its own by this number.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def shifted_mass_number(symbol: str, difference: int) -> int:
 
 
 def _sigma(of: Any) -> float | None:
-    """Return the sigma of a mass; the table writes 0 or nothing where it knows none."""
+    """Return the sigma of a mass; 0 or an empty text in the table means that it is unknown."""
     sigma = getattr(of, "_mass_unc", None)
     return float(sigma) if sigma else None
 

@@ -76,16 +76,16 @@ class Event:
         >>> motion.events.t.round(9), motion.events.states["wheel"][0].round(9)
         (array([16.66666667]), array([0.83333333]))
         """
-        return cls._told("stop", wheel, 0.0, terminal)
+        return cls._of_kind("stop", wheel, 0.0, terminal)
 
     @classmethod
     def slip(cls, wheel: str = "wheel", *, terminal: bool | int = False) -> Event:
         """Make the event that a wheel at rest in its bearing begins to turn; arguments as :meth:`stop`."""
-        return cls._told("slip", wheel, 0.0, terminal)
+        return cls._of_kind("slip", wheel, 0.0, terminal)
 
     @classmethod
     def limit(cls, wheel: str = "wheel", *, direction: float = 0.0, terminal: bool | int = False) -> Event:
-        """Make the event that the torque demanded of a motor passes the limit of the motor.
+        """Make the event that the torque demanded of a motor passes the motor's limit.
 
         Parameters
         ----------
@@ -96,10 +96,10 @@ class Event:
         terminal : bool or int
             As for the class.
         """
-        return cls._told("limit", wheel, direction, terminal)
+        return cls._of_kind("limit", wheel, direction, terminal)
 
     @classmethod
-    def _told(cls, kind: str, wheel: str, direction: float, terminal: bool | int) -> Event:
+    def _of_kind(cls, kind: str, wheel: str, direction: float, terminal: bool | int) -> Event:
         event = cls(_never_called, direction, terminal)
         object.__setattr__(event, "_of_wheel", (kind, str(wheel)))
         return event

@@ -12,7 +12,7 @@ import numpy as np
 from polhode import _core
 from polhode.errors import PolhodeError
 from polhode.results import MotionSensitivity
-from polhode.uncertainty.motion import _exponential, _logarithm, _product, _taken
+from polhode.uncertainty.motion import _exponential, _logarithm, _product, _take_row
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Recipe = tuple[str, tuple[Any, ...]]
-    Changed = Callable[[Floats], Recipe]
+    RecipeMaker = Callable[[Floats], Recipe]
     from polhode.motion.trajectory import Trajectory
 
 __all__ = [
@@ -38,7 +38,7 @@ AROUND: Final = ("_scheduled", "_with_epoch")
 
 
 def recipes(load: _core.Load | None) -> list[Recipe]:
-    """Return the functions that made the parts of a load with their arguments; of compiled ones nothing."""
+    """Return, for each part of a load, its function and arguments; nothing for compiled parts."""
     if load is None:
         return []
     try:
@@ -49,19 +49,19 @@ def recipes(load: _core.Load | None) -> list[Recipe]:
 
 
 def known_states(load: _core.Load | None, made: list[Recipe]) -> set[str]:
-    """Name the states that can be nothing else: the wheels whose speed is given."""
+    """Return the names of the states with fixed values: wheels whose speed is given."""
     names = iter(load.states if load is not None else ())
-    plain = (_unwrapped(recipe)[1] for recipe in made)
+    plain = (_split_recipe(recipe)[1] for recipe in made)
     own = [(recipe, next(names, "")) for recipe in plain if recipe[0] in ("wheel", "slug")]
     return {name for (kind, given), name in own if kind == "wheel" and given[-1]["speed"] is not None}
 
 
-def numbers(recipe: Recipe) -> Iterator[tuple[str, Floats, Changed]]:
+def numbers(recipe: Recipe) -> Iterator[tuple[str, Floats, RecipeMaker]]:
     """Return the numbers among the arguments of a part by name, and the recipe with others in their place."""
-    around, recipe = _unwrapped(recipe)
+    around, recipe = _split_recipe(recipe)
     if around:
         for name, values, changed in numbers(recipe):
-            yield name, values, _wrapped(around, changed)
+            yield name, values, _nest_recipe(around, changed)
         return
     made_by, arguments = recipe
     function = getattr(_core, made_by, None)
@@ -82,8 +82,8 @@ def numbers(recipe: Recipe) -> Iterator[tuple[str, Floats, Changed]]:
             yield name, np.array(value, dtype=float), _with(made_by, named, name, _plain)
 
 
-def _unwrapped(recipe: Recipe) -> tuple[list[Recipe], Recipe]:
-    """Return what was done to a part, the last first and without the part, and the part."""
+def _split_recipe(recipe: Recipe) -> tuple[list[Recipe], Recipe]:
+    """Split a recipe: return the operations on a part, the last first, and the recipe of the part."""
     around: list[Recipe] = []
     while recipe[0] in AROUND:
         around.append((recipe[0], recipe[1][1:]))
@@ -91,18 +91,18 @@ def _unwrapped(recipe: Recipe) -> tuple[list[Recipe], Recipe]:
     return around, recipe
 
 
-def _wrapped(around: list[Recipe], changed: Changed) -> Changed:
-    def placed(values: Floats) -> Recipe:
+def _nest_recipe(around: list[Recipe], changed: RecipeMaker) -> RecipeMaker:
+    def nest(values: Floats) -> Recipe:
         recipe = changed(values)
         for name, arguments in reversed(around):
             recipe = name, (recipe, *arguments)
         return recipe
 
-    return placed
+    return nest
 
 
 def _fields_of(path: Any) -> Iterator[tuple[str, Floats, Callable[[Floats], Any]]]:
-    """Return numbers of an orbit or of a field along one by name, and how to put others in their place."""
+    """Yield the numbers of an orbit, or of a field along one: name, value and a function that replaces it."""
     for field in fields(path):
         value = getattr(path, field.name)
         if is_dataclass(value):
@@ -120,16 +120,16 @@ def _within(path: Any, name: str, placed: Callable[[Floats], Any]) -> Callable[[
     return lambda values: replace(path, **{name: placed(values)})
 
 
-def _with(made_by: str, named: dict[str, Any], name: str, placed: Callable[[Floats], Any]) -> Changed:
+def _with(made_by: str, named: dict[str, Any], name: str, placed: Callable[[Floats], Any]) -> RecipeMaker:
     return lambda values: (made_by, (named | {name: placed(values)},))
 
 
-def _with_load(made_by: str, named: dict[str, Any], name: str, changed: Changed) -> Changed:
+def _with_load(made_by: str, named: dict[str, Any], name: str, changed: RecipeMaker) -> RecipeMaker:
     return lambda values: (made_by, (named | {name: _core.Load._from_parts([changed(values)])},))
 
 
 STEP: Final = 2e-3
-"""Relative to what counts as large of a number."""
+"""Step relative to the scale of a number."""
 
 
 class _Scheme(NamedTuple):
@@ -150,22 +150,22 @@ FORWARD: Final = _Scheme(
     np.array([-147.0, 360.0, -450.0, 400.0, -225.0, 72.0, -10.0]) / 60.0,
     np.array([-25.0, 48.0, -36.0, 16.0, -3.0, 0.0, 0.0]) / 12.0,
 )
-"""For what must not be negative, such as friction, and is zero."""
+"""One-sided differences for a number that is zero and must not be negative, such as friction."""
 SETTLED: Final = 1e-5
-"""What the two may differ by, relative to the largest derivative by the same number."""
+"""Largest difference of the two orders, relative to the largest derivative by the same number."""
 NOISE: Final = 1e-9
-"""What may be wrong in a motion, relative to what is large in it."""
+"""Error of a motion, relative to its scale."""
 RTOL: Final = 1e-13
 LEAST: Final = 1e-90
 """The first step that is tried for a number that is zero."""
 FARTHEST: Final = 1e6
-"""How much longer the next step is that is tried, at most."""
+"""Largest ratio of the next trial step to the last one."""
 MANY: Final = 1000
-"""With a step that is tried, how many times as many steps of integration a motion may take as without."""
+"""Largest ratio of the numbers of integration steps with and without the trial step."""
 
 
 class _Starts(NamedTuple):
-    """What motions are computed from, one along the first axis of each array."""
+    """Initial values of several motions, one along the first axis of each array."""
 
     mass: Floats
     center: Floats
@@ -180,14 +180,14 @@ def by_differences(self: Trajectory) -> MotionSensitivity:
     stack = self.omega.shape[:-2]
     rows = [_Row(self, stack, row).sensitivity() for row in range(int(np.prod(stack, dtype=int)))]
 
-    def stacked(parts: list[Floats]) -> Floats:
+    def to_stack(parts: list[Floats]) -> Floats:
         return np.array(parts).reshape(*stack, *np.shape(parts[0]))
 
-    load = tuple({name: stacked([row.load[k][name] for row in rows]) for name in part}
+    load = tuple({name: to_stack([row.load[k][name] for row in rows]) for name in part}
                  for k, part in enumerate(rows[0].load))  # fmt: skip
     fields = [name for name in MotionSensitivity._fields if name != "load"]
     return MotionSensitivity(
-        load=load, **{name: stacked([getattr(r, name) for r in rows]) for name in fields}
+        load=load, **{name: to_stack([getattr(r, name) for r in rows]) for name in fields}
     )
 
 
@@ -197,8 +197,8 @@ class _Row:
     def __init__(self, run: Trajectory, stack: tuple[int, ...], row: int) -> None:
         place = np.unravel_index(row, stack)
         self.run, self.place = run, place
-        self.body = _taken(run.body, stack, row)
-        self.load = _taken(run._acting("sensitivity"), stack, row)
+        self.body = _take_row(run.body, stack, row)
+        self.load = _take_row(run._acting("sensitivity"), stack, row)
         self.recipes = recipes(self.load)
         self.omega, self.quaternion = run.omega[place], run.quaternion[place]
         self.states = {name: values[place][0] for name, values in run.states.items()}
@@ -258,7 +258,7 @@ class _Row:
         return np.concatenate([tilt, moved.omega, *moved.states.values()], axis=-1)
 
     def starts(self, held: dict[str, Floats], count: int = 1) -> _Starts:
-        """Return the start so many times, with these states."""
+        """Return this many copies of the start, with these states."""
         body, many = self.body, np.ones((count, 1))
         states = {name: many * values for name, values in held.items()}
         tensor = np.tile(self.tensor, (count, 1, 1))
@@ -266,28 +266,28 @@ class _Row:
         return _Starts(np.full(count, body.mass), center, tensor, turn, many * self.omega[0], states)
 
     def by(self, name: str, k: int, size: float, held: dict[str, Floats]) -> Floats:
-        """By one number that counts as large where it is `size`, with these states held, shape (T, 6 + k)."""
+        """Compute the derivative by one number of scale `size`, with these states fixed, shape (T, 6 + k)."""
 
-        def moved(steps: Floats) -> Floats:
+        def end_states(steps: Floats) -> Floats:
             starts = self.starts(held, len(steps))
             values = starts.states[name] if name in starts.states else getattr(starts, name)
             values.reshape(len(steps), -1)[:, k] += steps  # they are new
             return self.ends(starts, self.load)
 
-        return self.along(moved, size, name)
+        return self.along(end_states, size, name)
 
     def by_tensor(self, along: Floats, size: float) -> Floats:
-        """By the tensor along another."""
+        """Compute the derivative by the tensor, in the direction of another tensor."""
 
-        def moved(steps: Floats) -> Floats:
+        def end_states(steps: Floats) -> Floats:
             starts = self.starts(self.given, len(steps))
             starts.tensor[:] += steps[:, None, None] * along
             return self.ends(starts, self.load)
 
-        return self.along(moved, size, "tensor")
+        return self.along(end_states, size, "tensor")
 
     def by_load(self) -> Iterator[dict[str, Floats]]:
-        """By the numbers of each part of the load."""
+        """Compute the derivatives by the numbers of each part of the load."""
         for place, recipe in enumerate(self.recipes):
             found: dict[str, Floats] = {}
             for name, values, changed in numbers(recipe):
@@ -301,9 +301,9 @@ class _Row:
             yield found
 
     def other_load(
-        self, place: int, changed: Changed, values: Floats, index: tuple[int, ...], step: float
+        self, place: int, changed: RecipeMaker, values: Floats, index: tuple[int, ...], step: float
     ) -> _core.Load:
-        """Return the load where one of the numbers of a part is more by a step."""
+        """Return the load with one number of a part increased by a step."""
         others = values.copy()
         others[index] += step
         parts = [*self.recipes[:place], changed(others), *self.recipes[place + 1 :]]
@@ -315,7 +315,7 @@ class _Row:
         return np.array([self.ends(start, other(step))[0] for step in steps])
 
     def begins(self, speed: float) -> Floats:
-        """By ω at the first time, the states there that are not given; they are linear in it."""
+        """Compute the derivative, by ω, of the initial states that are not given; they are linear in ω."""
         columns = []
         for axis in np.eye(3):
             starts = self.starts(self.given, 2)
@@ -339,15 +339,15 @@ class _Row:
         name: str,
         scheme: Callable[[float], _Scheme] = lambda _: CENTRAL,
     ) -> Floats:
-        """By a number that counts as large where it is `size`.
+        """Compute the derivative by a number of scale `size`.
 
         `moved` gives the motions where it is more by these steps, `scheme` the differences to take.
         """
         step = STEP * size if size > 0.0 else self.step_from_zero(moved)
-        return self.combined(scheme(step), moved, step, name)
+        return self.combine_differences(scheme(step), moved, step, name)
 
     def step_from_zero(self, moved: Callable[[Floats], Floats]) -> float:
-        """Find the step of a number that is zero, whose scale nothing tells: it moves the motion by `STEP`.
+        """Find the step for a number that is zero and has no scale: the step that moves the motion by `STEP`.
 
         It comes from below, since with a step that is much too long the motion takes very many steps.
         Nor does it go on to such a step where the number has no effect.
@@ -371,7 +371,9 @@ class _Row:
         self.most_steps = None
         return step
 
-    def combined(self, scheme: _Scheme, moved: Callable[[Floats], Floats], step: float, name: str) -> Floats:
+    def combine_differences(
+        self, scheme: _Scheme, moved: Callable[[Floats], Floats], step: float, name: str
+    ) -> Floats:
         """Combine the motions of a scheme; both orders agree where the motion is smooth in the number."""
         ends = moved(scheme.steps * step)
         found = np.asarray(np.tensordot(scheme.six, ends, 1) / step)
@@ -388,7 +390,7 @@ class _Row:
 
 
 def _scheme(other: Callable[[float], _core.Load], step: float) -> _Scheme:
-    """Return the differences that a number takes which may have reached the least that is allowed."""
+    """Return the differences for a number that may be at its lower limit."""
     try:
         other(float(min(CENTRAL.steps)) * step)
     except PolhodeError:
@@ -404,7 +406,7 @@ def _together(sizes: Floats) -> Floats:
 
 
 def _large(ends: Floats) -> Floats:
-    """Return what is large in each number of motions: of an attitude, one."""
+    """Return the scale of each number of the motions: one for an attitude."""
     large = _together(np.abs(ends).max(axis=(0, 1)))
     large[:3] = 1.0
     return large

@@ -1,4 +1,4 @@
-"""What a free motion tells: tuples of numbers that `FreeMotion` computes."""
+"""Results of a free motion: tuples of numbers that `FreeMotion` computes."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ class Periods(_Periods):
     """
 
     _motion: _core.FreeMotion | None = None
-    """Of an uncertain motion, that motion."""
+    """The motion, if it is uncertain."""
 
     @cached_property
     def sigma(self) -> PeriodsSigma | None:
@@ -117,7 +117,7 @@ class Periods(_Periods):
 
     @property
     def precession_short_axis(self) -> Any:
-        """P_φ in the short-axis convention: the mean time in which axis 3 goes once round L.
+        """P_φ in the short-axis convention: the mean time of one revolution of axis 3 about L.
 
         In that convention P_ψ is the period of the rotation about axis 3 in short-axis mode, and of the swing
         of axis 3 to and fro in long-axis mode. Its value is that of `rotation` in both conventions, and

@@ -28,7 +28,7 @@ def lengths(vectors: Any) -> NDArray[np.float64]:
 
 
 def changes(values: Floats, size: Floats) -> tuple[Floats, Floats]:
-    """Return the sizes of the changes since the start, and the largest size on the way.
+    """Return the sizes of the changes since the start, and the largest size during the motion.
 
     Parameters
     ----------

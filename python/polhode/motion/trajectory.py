@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
     from xarray import Dataset
 
-    from polhode.draw.html import Shown
+    from polhode.draw.html import HtmlPage
     from polhode.errors import IntegrationError, PolhodeError
     from polhode.results import MotionSensitivity
     from polhode.uncertainty.motion import StateSigma
@@ -262,7 +262,7 @@ class Trajectory(metaclass=Hinting):
         if kept is not None:
             along = spin if kept is True else np.einsum("...i,...i->...", spin, self._per_time(kept))
 
-        def drifted(values: Floats, size: Floats) -> Any:
+        def relative_drift(values: Floats, size: Floats) -> Any:
             stack = size.shape[: size.ndim - self.t.ndim]
             if not self.t.size:
                 return np.zeros(stack)[()]
@@ -272,12 +272,12 @@ class Trajectory(metaclass=Hinting):
         return Invariants(
             energy,
             along,
-            None if potential is None else drifted(kinetic + potential, kinetic + np.abs(potential)),
-            None if along is None else drifted(along, lengths(spin)),
+            None if potential is None else relative_drift(kinetic + potential, kinetic + np.abs(potential)),
+            None if along is None else relative_drift(along, lengths(spin)),
         )
 
     def state(self, index: int = -1) -> State:
-        """Return the state at one of the times, to go on from or to begin anew with.
+        """Return the state at one of the times, for example to start another simulation with it.
 
         Parameters
         ----------
@@ -356,7 +356,7 @@ class Trajectory(metaclass=Hinting):
         if unwrap:
             self._check_series("euler_angles, unwrap")
         angles = _core.euler_angles_from_quaternion(self.quaternion, sequence, singular)
-        angles = _unwrapped(angles) if unwrap else angles
+        angles = _unwrap(angles) if unwrap else angles
         return np.rad2deg(angles) if degrees else angles
 
     def euler_rates(
@@ -483,7 +483,7 @@ class Trajectory(metaclass=Hinting):
         )
 
     def sensitivity(self, method: Literal["series", "differences"] = "series") -> MotionSensitivity:
-        """Describe how the motion depends on its start, on the body and on the numbers of the load.
+        """Compute the derivatives of the motion by its start, the body and the numbers of the load.
 
         Parameters
         ----------
@@ -571,7 +571,7 @@ class Trajectory(metaclass=Hinting):
         )
 
     def resume(self, t: ArrayLike, **options: Any) -> Trajectory:
-        """Go on from the last state under the same load, or under another one.
+        """Continue the simulation from the last state, under the same load or under another one.
 
         The clock of the motion goes on too: orbits without an epoch and controllers with a period count from
         the first time of the motion, in every load and however often it is resumed.
@@ -800,7 +800,7 @@ class Trajectory(metaclass=Hinting):
 
     @cached_property
     def covariance(self) -> Floats | None:
-        """Return covariance of (δ, ω) at every time, shape (..., T, 6, 6); None where nothing is uncertain.
+        """Return the covariance of (δ, ω) at every time, shape (..., T, 6, 6); None if nothing is uncertain.
 
         δ is a small rotation from the attitude, ``R → R exp(δ×)``, components in the body frame, in radians.
         It comes from the covariance of the body, and from `omega` and `attitude` at the start if they were
@@ -822,7 +822,7 @@ class Trajectory(metaclass=Hinting):
 
     @cached_property
     def sigma(self) -> StateSigma | None:
-        """Return standard deviations of attitude and angular velocity, shape (..., T, 3) each, or None."""
+        """Return the sigmas of attitude and angular velocity, shape (..., T, 3) each, or None."""
         from polhode.uncertainty.motion import state_sigma
 
         return state_sigma(self)
@@ -833,7 +833,7 @@ class Trajectory(metaclass=Hinting):
 
         return spin_covariance(self, frame)
 
-    def show(self, *, height: int = 460, **options: Any) -> Shown:
+    def show(self, *, height: int = 460, **options: Any) -> HtmlPage:
         """Show the motion of one body as an interactive page: below a notebook's cell, or in the browser.
 
         Parameters
@@ -845,7 +845,7 @@ class Trajectory(metaclass=Hinting):
 
         Returns
         -------
-        Shown
+        HtmlPage
             Outside a notebook its ``path`` is the page, in the folder for temporary files.
 
         Examples
@@ -869,11 +869,11 @@ class Trajectory(metaclass=Hinting):
         return self.body[(..., *self._time_axes())]
 
     def _time_axes(self) -> tuple[None, ...]:
-        """One new axis for a series of times; for an exact motion as many as its times have."""
+        """Index with new axes for the times: one for a series, several for an exact motion at more."""
         return (np.newaxis,) * self.t.ndim
 
     def _check_series(self, what: str, hint: str = "") -> None:
-        """Refuse times other than a series: an exact motion is known at times of any shape."""
+        """Refuse times that are no series; an exact motion may have times of any shape."""
         if self.t.ndim != 1 or not self.t.size:
             raise ValueError(
                 f"{what}: needs a series of times, and t of this motion has the shape {self.t.shape}; "
@@ -948,7 +948,7 @@ class Trajectory(metaclass=Hinting):
         return motion.rotor, motion.gyrostat._rotor()[1]
 
     def _carried_now(self) -> tuple[Floats, Floats] | None:
-        """Return momentum and energy of what the body carries along under the load, or as a gyrostat."""
+        """Return momentum and energy of the wheels of the load, or of a gyrostat."""
         if "_within" in self.__dict__:
             momentum, free = self._rotor_inside()
             of_free = np.einsum(
@@ -960,15 +960,15 @@ class Trajectory(metaclass=Hinting):
         return self._over_time(self.load).carried(self.t, self.omega, self._own_states())
 
     def _acting(self, what: str, index: int = 0) -> _core.Load | None:
-        """Return the load under which a simulation has this motion; for a gyrostat from one of its times."""
+        """Return the load that gives this motion in a simulation; for a gyrostat from one of its times on."""
         if self.load is None and self._is_loaded() and self.carried is None:
             raise ValueError(f"{what}: a load acted on this motion, which its file does not hold")
         if self.load is not None or self.carried is None:
             return self.load
         if "_within" not in self.__dict__:
             raise ValueError(
-                f"{what}: the body carries something along of which these states tell the momentum alone, "
-                "not the load; a file does not hold it"
+                f"{what}: the wheels or dampers of this motion are unknown: the file holds only their "
+                "angular momentum"
             )
         momentum, free = self._rotor_inside()
         return self._wheels_inside(what, index) if np.any(free) else _core.rotor(momentum)
@@ -1018,7 +1018,7 @@ class Trajectory(metaclass=Hinting):
         return torque
 
 
-def _unwrapped(angles: Floats) -> Floats:
+def _unwrap(angles: Floats) -> Floats:
     """Unwrap angles (..., T, 3) along the times, over gaps that are not numbers."""
     columns = np.moveaxis(angles, -2, -1)
     series = columns.reshape(-1, columns.shape[-1]).copy()
@@ -1029,7 +1029,7 @@ def _unwrapped(angles: Floats) -> Floats:
 
 
 def _at(one: Wheel, slower: Floats) -> Wheel:
-    """Return a wheel as it turns where ω is less by so much: one that is free keeps ``J (Ω + a·ω)``."""
+    """Return a wheel with its rate after ω has decreased by a vector: a free one keeps ``J (Ω + a·ω)``."""
     if one.mode == "held":
         return one
     along = (one.axis / np.linalg.norm(one.axis)) @ slower

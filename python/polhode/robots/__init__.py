@@ -2,7 +2,7 @@
 
 Simulators use the inertia that a file declares, without a test. :func:`check` compares each link with the
 laws that every rigid body obeys, with the size of its geometry, and with that geometry filled uniformly.
-:func:`fixed` writes better values, and leaves every other byte of the file as it is.
+:func:`fix` writes better values, and leaves every other byte of the file as it is.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from polhode._format import Argument
 from polhode._hints import check_kind
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.io.content import EXPECTED_CONTENT, content_format, rename
-from polhode.io.xml_source import Edit, Element, edited, parse_xml
+from polhode.io.xml_source import Edit, Element, apply_edits, parse_xml
 from polhode.robots import mjcf, sdf, urdf
 from polhode.robots.geometry import GeometryReader
-from polhode.robots.model import Inertial, Joint, Link, Place, Robot, Shape, shortened
+from polhode.robots.model import Inertial, Joint, Link, Place, Robot, Shape, shorten
 from polhode.robots.room import MARKER
 from polhode.robots.sdf import check_version
 from polhode.robots.sources import Addresses, Sources, own_root, read_source
@@ -40,7 +40,7 @@ __all__ = [
     "Shape",
     "Verdict",
     "check",
-    "fixed",
+    "fix",
     "parse_robot",
     "read_robot",
 ]
@@ -151,7 +151,7 @@ def parse_robot(
     root = parse_xml(source, name, budget=sources.budget, remarks=sources.notes)
     if root.tag not in _FORMATS:
         raise FileFormatError(
-            f"{name}: its root is <{shortened(root.tag)}>, not <robot> (URDF), <sdf> or <mujoco> (MJCF); "
+            f"{name}: its root is <{shorten(root.tag)}>, not <robot> (URDF), <sdf> or <mujoco> (MJCF); "
             "check the file"
         )
     check_version(root, name)
@@ -159,7 +159,7 @@ def parse_robot(
     unexpanded = next((e for e in _walk(root) if e.startswith("xacro:")), None)
     if unexpanded is not None:
         raise FileFormatError(
-            f"{name}: holds <{shortened(unexpanded)}>; expand it first: xacro {name} > out.urdf"
+            f"{name}: holds <{shorten(unexpanded)}>; expand it first: xacro {name} > out.urdf"
         )
     try:
         links = tuple(reader.links(root, sources))
@@ -188,7 +188,7 @@ def check(
     density: float | None = None,
     mass: float | None = None,
 ) -> list[Verdict]:
-    """Judge the inertia of every link.
+    """Check the inertia of every link.
 
     Parameters
     ----------
@@ -207,7 +207,7 @@ def check(
         as packages. Symbolic links to files elsewhere are not followed. The notes of the link name the files
         that were not read.
     density : float, optional
-        Density in kg/m^3 of links for which the file states no mass; :func:`fixed` writes the mass that
+        Density in kg/m^3 of links for which the file states no mass; :func:`fix` writes the mass that
         follows.
     mass : float, optional
         Total mass in kg of these links, divided among them by volume; in place of `density`.
@@ -242,8 +242,8 @@ def check(
     return judge(robot, GeometryReader(robot.folder, addresses), density, mass)
 
 
-def fixed(robot: Robot, verdicts: Sequence[Verdict], words: Collection[str] = FAILURES) -> bytes:
-    """Write better values into the links that fail the test, or whose tensor is on the edge of the possible.
+def fix(robot: Robot, verdicts: Sequence[Verdict], words: Collection[str] = FAILURES) -> bytes:
+    """Write better values into the links that fail the test, or whose tensor is at the limit of the possible.
 
     What is written is a body's also after rounding: no engine finds I1 + I2 < I3 there. It is never computed
     from shapes in which the mass would be denser than 25,000 kg/m^3. In URDF and MJCF no moment is so small
@@ -269,7 +269,7 @@ def fixed(robot: Robot, verdicts: Sequence[Verdict], words: Collection[str] = FA
     ... <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
     ... <visual><geometry><sphere radius="0.1"/></geometry></visual></link></robot>'''
     >>> robot = robots.parse_robot(text, name="one.urdf", folder=".")
-    >>> print(robots.fixed(robot, robots.check(robot)).decode().splitlines()[1])
+    >>> print(robots.fix(robot, robots.check(robot)).decode().splitlines()[1])
     <inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial>
     """
     check_kind(robot, "robot", "Robot")
@@ -278,7 +278,7 @@ def fixed(robot: Robot, verdicts: Sequence[Verdict], words: Collection[str] = FA
         better = replacement(verdict, words)
         if better is not None and link.rewrite is not None:
             edits += link.rewrite(robot.source, better)
-    return edited(robot.source, edits)
+    return apply_edits(robot.source, edits)
 
 
 def _walk(element: Element) -> list[str]:

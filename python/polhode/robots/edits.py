@@ -1,4 +1,4 @@
-"""Edits that put values into a robot's file: numbers that stay are not touched, new elements are indented."""
+"""Edits of values in a robot's file. Unchanged numbers keep their text; new elements are indented."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ from polhode.io.xml_source import Edit, Element, set_attribute, set_text
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["attribute", "first_child", "indented", "number_text", "text_of"]
+__all__ = ["attribute", "first_child", "indent_element", "number_text", "text_of"]
 
 
 def number_text(values: Iterable[float]) -> str:
-    """Write numbers so that they come back with every digit."""
+    """Write numbers with all digits, so that they are read back unchanged."""
     return " ".join(repr(float(x) + 0.0) for x in values)
 
 
 def attribute(source: bytes, element: Element, name: str, text: str) -> list[Edit]:
-    """Set an attribute, unless it says these numbers already in its own way."""
+    """Set an attribute, unless it has these numbers already, in any format."""
     return [] if _same(element.attributes.get(name), text) else [set_attribute(source, element, name, text)]
 
 
 def text_of(element: Element, text: str) -> list[Edit]:
-    """Set a text, alike."""
+    """Set a text, unless it has these numbers already."""
     return [] if _same(element.text, text) else [set_text(element, text)]
 
 
 def first_child(source: bytes, parent: Element, text: str) -> Edit:
-    """Put elements before the first child, behind the same blanks."""
+    """Insert elements before the first child, with the same indentation."""
     if parent.inside == parent.end:
         start = source[parent.start : parent.inside - 2].rstrip().decode()
         return Edit(parent.start, parent.end, f"{start}>{text}</{parent.tag}>")
@@ -36,7 +36,7 @@ def first_child(source: bytes, parent: Element, text: str) -> Edit:
     return Edit(first, first, text + _blanks_before(source, parent.inside, first))
 
 
-def indented(source: bytes, parent: Element, opening: str, inner: Iterable[str], closing: str) -> str:
+def indent_element(source: bytes, parent: Element, opening: str, inner: Iterable[str], closing: str) -> str:
     """Write an element with its children on lines of their own where those of the parent stand so."""
     first = parent.children[0].start if parent.children else parent.inside
     blanks = _blanks_before(source, parent.inside, first)

@@ -1,4 +1,4 @@
-"""What the shapes of a link say about its inertia: the homogeneous body they are, and the box around them."""
+"""The shapes of a link: the homogeneous body that they make, and the box around them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from polhode.io.components import overlapping
 from polhode.io.loaded import load
 from polhode.io.mesh import Mesh, equal_rows, used_vertices
 from polhode.robots.mjcf import legacy_solid
-from polhode.robots.model import quoted, shortened
+from polhode.robots.model import quote, shorten
 from polhode.robots.room import MARKER
 from polhode.units import metres_per
 
@@ -90,7 +90,7 @@ class Geometry:
     marker: float | None = None
 
 
-class _Read(NamedTuple):
+class _MeshOrSolids(NamedTuple):
     """A mesh, and those of its vertices that triangles use; or solids of CAD in the corners of wide boxes."""
 
     mesh: Mesh
@@ -112,7 +112,7 @@ class GeometryReader:
 
     def __init__(self, folder: Path, addresses: Addresses) -> None:
         self._folder, self._addresses = folder, addresses
-        self._meshes: dict[tuple[Path, str], _Read | str] = {}
+        self._meshes: dict[tuple[Path, str], _MeshOrSolids | str] = {}
         self._solids: dict[tuple[Path, str, str, tuple[float, ...], str], tuple[RigidBody | None, str]] = {}
 
     def read(self, link: Link) -> Geometry:
@@ -137,13 +137,13 @@ class GeometryReader:
             return Geometry(body, volume, role, None, None, len(boxes), told)
         return Geometry(body, volume, role, low, high, len(boxes) - len(known), told)
 
-    def filled(self, link: Link) -> RigidBody | None:
+    def fill_shapes(self, link: Link) -> RigidBody | None:
         """Return the shapes filled with density 1, whatever the file says of their masses."""
         plain = replace(link, shapes=tuple(replace(s, density=1.0, mass=None) for s in link.shapes))
         return self._whole(plain, link.folder or self._folder, {})[0]
 
     def coarseness(self, link: Link) -> float:
-        """Return how far the shapes may miss the surface they stand for, in metres.
+        """Return the largest distance between the shapes and the surface that they approximate, in metres.
 
         A mesh misses a round surface by the sagitta of its facets; a box, a cylinder and the like only stand
         for the true part, which is taken to be within 2 % of their diagonal.
@@ -188,7 +188,7 @@ class GeometryReader:
         return None, 0.0, role, marker if np.isfinite(marker) else None
 
     def _body(self, shape: Shape, folder: Path, notes: dict[str, str]) -> tuple[RigidBody, float] | None:
-        """Return the body of a shape where it stands, and its volume."""
+        """Return the body of a shape in the frame of the link, and its volume."""
         if shape.problem:
             return None
         key = (folder, shape.kind, shape.mesh, shape.size, shape.counting)
@@ -207,8 +207,8 @@ class GeometryReader:
         return placed.scaled(mass=weight), float(solid.mass)
 
     def _mesh_solid(self, shape: Shape, folder: Path) -> tuple[RigidBody | None, str]:
-        """Return the solid that a mesh bounds, or its convex hull, and what has to be said of it."""
-        read, name = self._mesh(shape.mesh, folder), shortened(shape.mesh)
+        """Return the solid that a mesh bounds, or its convex hull, and notes on it."""
+        read, name = self._mesh(shape.mesh, folder), shorten(shape.mesh)
         if isinstance(read, str):
             return None, read
         if read.solids is not None:
@@ -226,7 +226,7 @@ class GeometryReader:
             except ValueError as error:
                 first = str(error)
         if shape.counting == "legacy" and len(mesh.faces):
-            return _counted(name, legacy_solid(vertices, mesh.faces), solid)
+            return _fill_as_mujoco(name, legacy_solid(vertices, mesh.faces), solid)
         if solid is not None:
             return solid, _overlapping(f"mesh {name}", vertices, mesh.faces)
         try:
@@ -236,16 +236,16 @@ class GeometryReader:
         told = Note(f"mesh {name} does not bound a solid: its convex hull was taken", kind=HULL, subject=name)
         return hull, told if shape.counting != "convex" else ""
 
-    def _mesh(self, address: str, folder: Path) -> _Read | str:
+    def _mesh(self, address: str, folder: Path) -> _MeshOrSolids | str:
         key = (folder, address)
         if key not in self._meshes:
             self._meshes[key] = self._load(address, folder)
         return self._meshes[key]
 
-    def _load(self, address: str, folder: Path) -> _Read | str:
+    def _load(self, address: str, folder: Path) -> _MeshOrSolids | str:
         if not address:
             return Note("mesh (without a name) was not found", kind=LOST, subject="(without a name)")
-        name = shortened(address)
+        name = shorten(address)
         path, fault = self._addresses.find(address, folder)
         if path is None:
             if fault:
@@ -270,7 +270,7 @@ class GeometryReader:
         if not np.isfinite(corners).all():
             vertex = int(used[np.flatnonzero(~np.isfinite(corners).all(axis=1))[0]])
             return f"mesh {name}: {path}: vertex {vertex} is not finite; check the file"
-        return _Read(mesh, corners)
+        return _MeshOrSolids(mesh, corners)
 
     def _box(self, shape: Shape, folder: Path, notes: dict[str, str]) -> tuple[Floats, Floats] | None:
         """Opposite corners of the box along the axes of the link around a shape."""
@@ -304,7 +304,7 @@ class GeometryReader:
         return position - reach, position + reach
 
 
-def _of_cad(cad: CadFile) -> _Read:
+def _of_cad(cad: CadFile) -> _MeshOrSolids:
     """Return solids of a CAD file with density 1, in metres, and the corners of wide boxes around them."""
     from polhode.io.cad_files import solids_of
 
@@ -317,11 +317,13 @@ def _of_cad(cad: CadFile) -> _Read:
     )
     corners *= metres_per("mm")
     empty = np.empty((0, 3), dtype=np.int64)
-    return _Read(Mesh(corners, empty, cad.format), corners, solids_of(cad, density=1.0)[0], cad.overlaps)
+    return _MeshOrSolids(
+        Mesh(corners, empty, cad.format), corners, solids_of(cad, density=1.0)[0], cad.overlaps
+    )
 
 
-def _counted(name: str, legacy: RigidBody, solid: RigidBody | None) -> tuple[RigidBody, str]:
-    """Return what MuJoCo takes a mesh for, and say where that is not what it fills."""
+def _fill_as_mujoco(name: str, legacy: RigidBody, solid: RigidBody | None) -> tuple[RigidBody, str]:
+    """Return the body that MuJoCo computes for a mesh, and a note if it is not the solid of the mesh."""
     by = 'MuJoCo\'s inertia="legacy", its default'
     if solid is None:
         return legacy, f"mesh {name} does not bound a solid: {by}, adds the tetrahedra of its triangles"
@@ -353,7 +355,7 @@ def _overlapping(name: str, vertices: Floats, faces: NDArray[np.int64]) -> str:
 def _solid(shape: Shape) -> tuple[RigidBody | None, str]:
     """Return the solid of a shape that is no mesh, or why there is none."""
     if shape.kind not in _SOLIDS:
-        return None, f"a shape of kind {quoted(shape.kind)} has no volume that could be told"
+        return None, f"a shape of kind {quote(shape.kind)} has no volume that could be told"
     try:
         return _SOLIDS[shape.kind](shape.size), ""
     except ValueError as error:
@@ -371,7 +373,7 @@ _SMOOTH: Final = np.deg2rad(40.0)
 
 
 def sagitta(vertices: NDArray[np.float64], faces: NDArray[np.integer]) -> float:
-    r"""Return the largest height of an arc over the facets that stand for it.
+    r"""Return the largest distance of an arc from the facets that approximate it.
 
     Two facets of width w that meet at an angle θ (between their normals) are chords of one arc,
     :math:`w = 2 r \sin(\theta/2)`, whose height over a chord is

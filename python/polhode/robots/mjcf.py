@@ -26,7 +26,7 @@ from polhode.robots.model import (
     Place,
     Shape,
     numbers,
-    quoted,
+    quote,
     scale,
     unit,
 )
@@ -123,10 +123,10 @@ class _Reader:
 
     def below(self, parent: Element, inherited: str | None, above: str) -> Iterator[Link]:
         """Read the bodies and the attached models that hang on a body or the world, by its key."""
-        for body in self.members(parent, "body", Place.here(), inherited):
+        for body in self.members(parent, "body", Place.identity(), inherited):
             yield from self.bodies(body, above)
-        for attach in self.members(parent, "attach", Place.here(), inherited):
-            for link in self._attached(attach.element, above):
+        for attach in self.members(parent, "attach", Place.identity(), inherited):
+            for link in self._read_attach(attach.element, above):
                 yield replace(link, problem=attach.problem or link.problem)
 
     def bodies(self, member: Member, above: str) -> Iterator[Link]:
@@ -138,7 +138,7 @@ class _Reader:
         declared = body.find("inertial")
         is_inferred = declared is None or self.infers_always
         try:
-            geoms = self.members(body, "geom", Place.here(), inherited)
+            geoms = self.members(body, "geom", Place.identity(), inherited)
             shapes = tuple(self._shape(geom, weighs=is_inferred) for geom in geoms)
             # MuJoCo keeps what is declared where no geom weighs, whatever the compiler says.
             masses = (geom.density if geom.mass is None else geom.mass for geom in shapes)
@@ -173,9 +173,9 @@ class _Reader:
         yield from self.below(body, inherited, key)
 
     def _joint(self, body: Element, name: str, above: str, key: str) -> Joint:
-        """Return what moves a body: its joints, else nothing."""
-        free = [*self.members(body, "freejoint", Place.here(), None)]
-        joints = [*free, *self.members(body, "joint", Place.here(), None)]
+        """Return the joint that moves a body; None without a joint."""
+        free = [*self.members(body, "freejoint", Place.identity(), None)]
+        joints = [*free, *self.members(body, "joint", Place.identity(), None)]
         if not joints:
             return Joint("", "fixed", above, key)
         kind = "free" if free else joints[0].element.attributes.get("type", "hinge")
@@ -193,16 +193,16 @@ class _Reader:
                 name = child.attributes.get("childclass", inherited)
                 yield from self.members(child, tag, place.then(step), name, problem or fault)
             elif child.tag == "replicate":
-                yield from self._copied(child, tag, Member(child, place, inherited, problem))
+                yield from self._read_copies(child, tag, Member(child, place, inherited, problem))
 
     def _step(self, element: Element, attributes: dict[str, str]) -> tuple[Place, str]:
-        """Return a frame, and what is wrong with it: that ends the verdict of what stands in it alone."""
+        """Return a frame, and the text of its fault; the fault concerns only the elements in this frame."""
         try:
             return self._place(element, attributes), ""
         except FileFormatError as error:
-            return Place.here(), Note(*error.args)
+            return Place.identity(), Note(*error.args)
 
-    def _copied(self, replicate: Element, tag: str, first: Member) -> Iterator[Member]:
+    def _read_copies(self, replicate: Element, tag: str, first: Member) -> Iterator[Member]:
         """Return the elements of every copy; bodies once, as they are the same in all."""
         attributes = replicate.attributes
         turn = {"pos": attributes.get("offset", "0 0 0"), "euler": attributes.get("euler", "0 0 0")}
@@ -230,8 +230,8 @@ class _Reader:
             name = self.sources.read(path, file, model).attributes.get("model", "")
         self.models[name] = file
 
-    def _attached(self, attach: Element, above: str) -> Iterator[Link]:
-        """Read what an ``<attach>`` brings: a body or a frame of another model, or all its bodies."""
+    def _read_attach(self, attach: Element, above: str) -> Iterator[Link]:
+        """Read the bodies of an ``<attach>``: a body or a frame of another model, or all its bodies."""
         tag = next((tag for tag in ("body", "frame") if tag in attach.attributes), "")
         wanted = attach.attributes.get(tag, "")
         if "model" not in attach.attributes and tag:
@@ -240,7 +240,7 @@ class _Reader:
         name = attach.attributes.get("model", "")
         if name not in self.models:
             raise FileFormatError(
-                f"{attach.where}: <attach> of model {quoted(name)}, which no <model> of the assets "
+                f"{attach.where}: <attach> of model {quote(name)}, which no <model> of the assets "
                 "names; add it"
             )
         file = self.models[name]
@@ -256,16 +256,16 @@ class _Reader:
                 everything = model.everything(world, tag, None)
                 found = [each for each in everything if each.element.attributes.get("name") == wanted]
                 for member in found:
-                    read = model.bodies(member, above) if tag == "body" else model.framed(member, above)
+                    read = model.bodies(member, above) if tag == "body" else model.read_frame(member, above)
                     yield from read
                 if found:
                     return
             if tag:
                 raise FileFormatError(
-                    f"{attach.where}: {file} has no {tag} {quoted(wanted)}; correct the name"
+                    f"{attach.where}: {file} has no {tag} {quote(wanted)}; correct the name"
                 )
 
-    def framed(self, frame: Member, above: str) -> Iterator[Link]:
+    def read_frame(self, frame: Member, above: str) -> Iterator[Link]:
         """Read the bodies of a frame."""
         inherited = frame.element.attributes.get("childclass", frame.inherited)
         yield from self.below(frame.element, inherited, above)
@@ -276,7 +276,7 @@ class _Reader:
             if child.tag not in ("body", "frame", "replicate"):
                 continue
             if child.tag == tag:
-                yield Member(child, Place.here(), inherited, "")
+                yield Member(child, Place.identity(), inherited, "")
             yield from self.everything(child, tag, child.attributes.get("childclass", inherited))
 
     def _add_class(
@@ -305,7 +305,7 @@ class _Reader:
             if len(self.sequence) != 3 or not (
                 set(self.sequence) <= set("xyz") or set(self.sequence) <= set("XYZ")
             ):
-                sequence = quoted(self.sequence.swapcase())
+                sequence = quote(self.sequence.swapcase())
                 raise FileFormatError(
                     f"{element.where}: euler by eulerseq {sequence}, which is not read: three letters of "
                     "xyz or of XYZ have to stand there; give quat"
@@ -338,7 +338,7 @@ class _Reader:
         return Inertial(float(mass), place.position, place.rotation @ tensor @ place.rotation.T)
 
     def _shape(self, member: Member, *, weighs: bool) -> Shape:
-        """Read a geom; where the inertia is taken from it, a hollow one is told."""
+        """Read a geom; add a note if a hollow one defines the inertia."""
         geom, frame, inherited, problem = member
         if problem:
             raise FileFormatError(problem)
@@ -366,11 +366,13 @@ class _Reader:
         if "mesh" in attributes:  # MuJoCo takes the size from the mesh, whatever stands here
             kind = f"{kind} fitted to a mesh"
             return Shape(kind, (), frame, "collision", "", density, mass, geom.where)
-        place, size = self._sized(geom, attributes, kind)
+        place, size = self._read_size(geom, attributes, kind)
         return Shape(kind, size, frame.then(place), "collision", "", density, mass, geom.where)
 
-    def _sized(self, geom: Element, attributes: dict[str, str], kind: str) -> tuple[Place, tuple[float, ...]]:
-        """Full lengths and the place; ``fromto`` gives the length and place of what is long."""
+    def _read_size(
+        self, geom: Element, attributes: dict[str, str], kind: str
+    ) -> tuple[Place, tuple[float, ...]]:
+        """Return the place and the full lengths; ``fromto`` gives both for a long shape."""
         place = self._place(geom, attributes)
         if kind not in _HALF_LENGTHS:
             return place, ()
@@ -395,7 +397,7 @@ class _Reader:
 
 
 def _turning_z_to(axis: Any) -> Any:
-    """Turn z to an axis by the shortest rotation."""
+    """Return the shortest rotation from z to an axis."""
     if axis[2] < -1.0 + 1e-12:
         return np.diag([1.0, -1.0, -1.0])
     return matrix(np.array([-axis[1], axis[0], 0.0, 1.0 + axis[2]]) / np.sqrt(2.0 * (1.0 + axis[2])))
@@ -434,21 +436,23 @@ def total_mass_of(compilers: Sequence[Element]) -> float:
 
 
 def as_compiled(robot: Robot, verdicts: Sequence[Verdict]) -> list[Verdict]:
-    """Put into the verdicts of inferred bodies what the compiler makes of them."""
+    """Apply the settings of the compiler to the verdicts of inferred bodies."""
     pairs = list(zip(robot.links, verdicts, strict=True))
     if not (robot.total_mass or any(link.compiler for link in robot.links)):
         return list(verdicts)
-    found = [_bounded(link.compiler, verdict) if link.compiler else verdict for link, verdict in pairs]
+    found = [_apply_bounds(link.compiler, verdict) if link.compiler else verdict for link, verdict in pairs]
     masses = [_mass(link, verdict) for link, verdict in zip(robot.links, found, strict=True)]
     total = sum(mass for mass in masses if mass is not None)
     if not (robot.total_mass and total > 0.0):
         return found
     if None in masses:
         unknown = robot.links[masses.index(None)].name
-        return [_told(v, f"settotalmass would scale it: the mass of {unknown} is not known") for v in found]
+        return [
+            _add_reason(v, f"settotalmass would scale it: the mass of {unknown} is not known") for v in found
+        ]
     factor = robot.total_mass / total
     return [
-        _told(v, f"times {factor:.4g} by settotalmass", v.mass * factor, np.asarray(v.moments) * factor)
+        _add_reason(v, f"times {factor:.4g} by settotalmass", v.mass * factor, np.asarray(v.moments) * factor)
         if v.mass is not None and v.moments is not None
         else v
         for v in found
@@ -463,8 +467,8 @@ def _number(compilers: Sequence[Element], name: str) -> float:
     return value
 
 
-def _bounded(compiler: Compiler, verdict: Verdict) -> Verdict:
-    """Raise what is less than the bounds, and balance moments that break the triangle inequality."""
+def _apply_bounds(compiler: Compiler, verdict: Verdict) -> Verdict:
+    """Raise mass and moments to the bounds, and balance moments that violate the triangle inequality."""
     is_empty = verdict.verdict == "missing" and min(compiler.mass, compiler.moment) > _LEAST
     if not is_empty and (verdict.verdict != "inferred" or verdict.mass is None):
         return verdict
@@ -477,7 +481,7 @@ def _bounded(compiler: Compiler, verdict: Verdict) -> Verdict:
         return verdict
     if is_empty:
         verdict = verdict._replace(verdict="inferred", reason="", better=None)
-    return _told(verdict, "by boundmass and boundinertia of the compiler", mass, moments)
+    return _add_reason(verdict, "by boundmass and boundinertia of the compiler", mass, moments)
 
 
 def _mass(link: Link, verdict: Verdict) -> float | None:
@@ -489,7 +493,7 @@ def _mass(link: Link, verdict: Verdict) -> float | None:
     return max(verdict.mass, link.compiler.mass) if link.compiler else verdict.mass
 
 
-def _told(verdict: Verdict, words: str, mass: float | None = None, moments: Any = None) -> Verdict:
+def _add_reason(verdict: Verdict, words: str, mass: float | None = None, moments: Any = None) -> Verdict:
     """Add words, and numbers where they are given, to the verdict of an inferred body."""
     if verdict.verdict != "inferred":
         return verdict
@@ -549,7 +553,7 @@ def mesh_shape(
 
 
 def legacy_solid(vertices: NDArray[np.float64], faces: NDArray[np.integer]) -> RigidBody:
-    """Return the matter of density 1 that MuJoCo takes a mesh for with ``inertia="legacy"``, its default.
+    """Return the body of density 1 that MuJoCo computes for a mesh with ``inertia="legacy"``, its default.
 
     The tetrahedra from the centroid of the surface to its triangles all count as full, whichever way they are
     wound: twice where they overlap, as where a mesh is not convex. From their centre of mass new tetrahedra
@@ -620,6 +624,6 @@ def copies(replicate: Element) -> int:
     (count,) = numbers(replicate, text, 1, "count")
     if count != int(count) or count < 1:
         raise FileFormatError(
-            f"{replicate.where}: count is {quoted(text)} where a whole number from 1 has to stand"
+            f"{replicate.where}: count is {quote(text)} where a whole number from 1 has to stand"
         )
     return int(count)

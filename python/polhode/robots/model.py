@@ -1,4 +1,4 @@
-"""What robot files say about each link, whatever their format."""
+"""Links and joints of a robot, the same for all file formats."""
 
 from __future__ import annotations
 
@@ -29,29 +29,29 @@ __all__ = [
     "Robot",
     "Shape",
     "numbers",
-    "quoted",
+    "quote",
     "scale",
-    "shortened",
+    "shorten",
     "unit",
 ]
 
 WORLD: Final = "world"
-"""Stands for what never moves, where a joint names it."""
+"""Name of the fixed world in a joint."""
 
 
 class Place(NamedTuple):
-    """Where something is in another frame: v_frame = rotation @ v + position."""
+    """Position and rotation in another frame: v_frame = rotation @ v + position."""
 
     rotation: Floats
     position: Floats
 
     @classmethod
-    def here(cls) -> Place:
-        """Return the frame itself."""
+    def identity(cls) -> Place:
+        """Return the identity: no rotation, no displacement."""
         return cls(np.eye(3), np.zeros(3))
 
     def then(self, inner: Place) -> Place:
-        """Place something that is placed in this place."""
+        """Compose two placements: first `inner`, then this one."""
         return Place(self.rotation @ inner.rotation, self.rotation @ inner.position + self.position)
 
 
@@ -115,7 +115,7 @@ class Shape:
 
 
 class Compiler(NamedTuple):
-    """What MuJoCo's compiler does to the bodies of a model after it has read them.
+    """Settings of MuJoCo's compiler that change the bodies of a model.
 
     Attributes
     ----------
@@ -264,11 +264,11 @@ def numbers(element: Element, text: str | None, count: int | None, what: str) ->
         )
         way_out = "; expand the file with xacro first" if text and "${" in text else ""
         must = f"{wanted} has to stand" if count == 1 else f"{wanted} have to stand"
-        given = "is missing," if text is None else f"is {quoted(text)}"
+        given = "is missing," if text is None else f"is {quote(text)}"
         raise FileFormatError(f"{element.where}: {what} {given} where {must}{way_out}")
     if values.size and np.abs(values).max() > _LARGEST:
         raise FileFormatError(
-            f"{element.where}: {what} is {quoted(text)}, beyond {_LARGEST:g}, where squares have no "
+            f"{element.where}: {what} is {quote(text)}, beyond {_LARGEST:g}, where squares have no "
             "room in numbers; correct it"
         )
     return values
@@ -298,13 +298,13 @@ def unit(element: Element, vector: Floats) -> Floats:
     return direction
 
 
-def shortened(text: str, most: int = 200) -> str:
-    """Return a text, or its beginning and how long it is."""
+def shorten(text: str, most: int = 200) -> str:
+    """Return a text; a long one as its beginning and its length."""
     return text if len(text) <= most else f"{text[:most]}... ({len(text)} characters)"
 
 
-def quoted(text: str | None, most: int = 80) -> str:
-    """Return a text between quotes alike; None where there is none."""
+def quote(text: str | None, most: int = 80) -> str:
+    """Return a text between quotes, a long one shortened; ``None`` if there is no text."""
     if text is None or len(text) <= most:
         return repr(text)
     return f"{text[:most]!r}... ({len(text)} characters)"

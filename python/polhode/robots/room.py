@@ -1,4 +1,4 @@
-"""Whether a link's shapes, or its robot as a whole, have room for matter as its tensor spreads it."""
+"""Check whether a link's shapes, or the whole robot, have room for matter as its tensor spreads it."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ __all__ = [
 MOST: Final = 3.0
 """Matter on the surface of a box has at most 3 times the moments of the box filled."""
 LEAST: Final = 0.1
-"""Ten times less than the shape's own is a heavy core, or another unit."""
+"""A moment ten times smaller than the shape's own means a heavy core, or another unit."""
 FAR: Final = 1000.0
-"""No shape that could not be read explains more: it would be 30 times larger than those that were."""
+"""Largest factor that an unread shape can explain: it would be 30 times larger than the others."""
 MARKER: Final = 25_000.0
-"""In kg/m^3: shapes of a link that would be denser than this are markers, such as dots of contact."""
+"""Density in kg/m^3 beyond which the shapes of a link are markers, such as dots of contact."""
 # The densest matter, osmium, in kg/m^3.
 _DENSEST: Final = 22_590.0
 # No shape is taken to be farther off than this, of the diagonal of all.
@@ -47,7 +47,7 @@ _STEPS: Final = 40
 
 
 class Finding(NamedTuple):
-    """What a law says: the word of the verdict that it leads to, what is beyond it, and why that word."""
+    """Result of one law: the verdict's word, the quantity that exceeds the law, and the reason."""
 
     word: Literal["suspect", "coarse", "impossible"]
     reason: str
@@ -55,7 +55,7 @@ class Finding(NamedTuple):
 
 
 def beyond_room(body: RigidBody, geometry: Geometry, coarseness: Callable[[], float]) -> Finding | None:
-    """Say how matter within the link's shapes could not be spread as the tensor says; None if it could.
+    """Return why no matter within the link's shapes can have the tensor; None if some can.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def beyond_room(body: RigidBody, geometry: Geometry, coarseness: Callable[[], fl
 
 
 def _beyond(body: RigidBody, low: Floats, high: Floats, reason: str) -> Finding:
-    """Say how bad it is: makers publish tensors far beyond the room of their shapes, and simulators run them.
+    """Return how severe the excess is: published tensors often exceed their shapes, and simulators run them.
 
     More than 1000 times the box filled is beyond any reason. Less than 3 times may have room in the middle of
     the box, so that the centre of mass is at fault, which no reason explains either.
@@ -142,7 +142,7 @@ def _apart(one: float, other: float) -> tuple[str, str]:
 def beyond_size(
     body: RigidBody, geometry: Geometry, own: RigidBody | None, reach: float, *, is_all: bool
 ) -> Finding | None:
-    """Say how far a tensor is from any size that is known, where not all shapes could be read.
+    """Compare a tensor with the sizes that are known, if not all shapes could be read.
 
     What was read is a part of the link: the room of the rest is not known, but a tensor beyond 1000 times
     that of what is known is taken for impossible, and one beyond 3 times for suspect.
@@ -186,7 +186,7 @@ def beyond_size(
 
 
 def too_dense(body: RigidBody) -> Finding | None:
-    """Say where a tensor is less than that of a ball of the densest matter; None where it is not."""
+    """Return a finding if a tensor is smaller than that of a ball of the densest matter; else None."""
     mass = float(body.mass)
     radius = (3.0 * mass / (4.0 * np.pi * _DENSEST)) ** (1.0 / 3.0)
     spread, least = float(np.trace(body.inertia)) / 2.0 / mass, 0.6 * radius**2
@@ -200,7 +200,7 @@ def too_dense(body: RigidBody) -> Finding | None:
 
 
 def density_needed(mass: float, volume: float, factor: float) -> str:
-    """Say of which density the shape would have to be for its moments to be those declared."""
+    """State the density at which the shape would have the declared moments."""
     if not (volume > 0.0 and mass > 0.0 and factor > MOST):
         return ""
     density = mass / volume

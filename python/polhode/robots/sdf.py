@@ -15,7 +15,7 @@ from polhode._format import Note
 from polhode.errors import FileFormatError
 from polhode.io.xml_source import Edit, Element
 from polhode.robots import urdf
-from polhode.robots.edits import first_child, indented, number_text, text_of
+from polhode.robots.edits import first_child, indent_element, number_text, text_of
 from polhode.robots.model import (
     WORLD,
     Inertial,
@@ -24,9 +24,9 @@ from polhode.robots.model import (
     Place,
     Shape,
     numbers,
-    quoted,
+    quote,
     scale,
-    shortened,
+    shorten,
     unit,
 )
 from polhode.robots.urdf import LinkReader, forms, roll_pitch_yaw, tensor_text
@@ -42,9 +42,9 @@ if TYPE_CHECKING:
 __all__ = [
     "check_version",
     "child_text",
-    "included",
     "is_true",
     "links",
+    "read_include",
 ]
 
 _WATER = "1000"
@@ -64,7 +64,7 @@ _SIZES = {
 
 
 class Scope(NamedTuple):
-    """Where elements stand: in which folder, with which names before theirs, in a model that moves or not.
+    """Context of elements: their folder, the prefix of their names, and whether their model is static.
 
     Attributes
     ----------
@@ -95,8 +95,8 @@ def links(root: Element, sources: Sources) -> Iterator[Link]:
     ]
     sources.joints[:] = [
         joint._replace(
-            parent=_resolved(joint.parent, keys, sources.frames),
-            child=_resolved(joint.child, keys, sources.frames),
+            parent=_resolve_link(joint.parent, keys, sources.frames),
+            child=_resolve_link(joint.child, keys, sources.frames),
         )
         for joint in sources.joints
     ]
@@ -112,7 +112,7 @@ def below(parent: Element, sources: Sources, scope: Scope) -> Iterator[Link]:
     for element in parent.children:
         tag = element.tag
         if tag == "include" and element.find("uri") is not None:
-            yield from included(element, sources, scope, below)
+            yield from read_include(element, sources, scope, below)
         elif tag == "link":
             yield _link(element, sources, scope)
         elif tag == "joint":
@@ -166,8 +166,8 @@ def _joint(element: Element, scope: Scope) -> Joint:
     return Joint(element.attributes.get("name", ""), element.attributes.get("type", ""), *ends)
 
 
-def _resolved(name: str, keys: dict[str, None], frames: dict[str, str]) -> str:
-    """Find the link that a joint means: by its name, that of a frame on it, or that of its model."""
+def _resolve_link(name: str, keys: dict[str, None], frames: dict[str, str]) -> str:
+    """Find the link of a joint: by the name of the link, of a frame on it, or of its model."""
     for _ in range(len(frames) + 1):
         if name in keys or name == WORLD or name not in frames:
             break
@@ -180,9 +180,9 @@ def _resolved(name: str, keys: dict[str, None], frames: dict[str, str]) -> str:
 
 def _pose(element: Element | None) -> Place:
     if element is None or not element.text.strip():
-        return Place.here()
+        return Place.identity()
     if element.attributes.get("relative_to"):
-        frame = quoted(element.attributes["relative_to"])
+        frame = quote(element.attributes["relative_to"])
         raise FileFormatError(
             f"{element.where}: a pose relative to {frame} is not followed; give it in the link"
         )
@@ -197,7 +197,7 @@ def _pose(element: Element | None) -> Place:
 
 
 def _without_commas(text: str) -> str:
-    """Take the commas off the numbers of a pose, as libsdformat does; it reads ``0,0`` as one number."""
+    """Remove the commas from the numbers of a pose, as libsdformat does; it reads ``0,0`` as one number."""
     return _COMMA.sub("", text)
 
 
@@ -241,13 +241,13 @@ def _shapes(link: Element) -> Iterator[Shape]:
         except FileFormatError as error:
             if role == "collision":
                 raise
-            yield Shape(form.tag, (), Place.here(), role, where=form.where, problem=Note(*error.args))
+            yield Shape(form.tag, (), Place.identity(), role, where=form.where, problem=Note(*error.args))
 
 
 def _shape(element: Element, form: Element, role: Literal["collision", "visual"]) -> Shape:
     pose = element.find("pose")
     if pose is not None and pose.attributes.get("relative_to"):
-        return Shape("pose in another frame", (), Place.here(), role, where=element.where)
+        return Shape("pose in another frame", (), Place.identity(), role, where=element.where)
     place = _pose(pose)
     if form.tag in _SIZES:
         size = tuple(x for name, count in _SIZES[form.tag] for x in _value(form, name, count))
@@ -267,7 +267,7 @@ def _rewrite(link: Element, declared: Element | None, source: bytes, new: Inerti
     if declared is None:
         parts = [f"<pose>{pose_text}</pose>"] if np.any(new.center_of_mass) else []
         parts += [f"<mass>{new.mass!r}</mass>", _inertia(texts)]
-        return [first_child(source, link, indented(source, link, "<inertial>", parts, "</inertial>"))]
+        return [first_child(source, link, indent_element(source, link, "<inertial>", parts, "</inertial>"))]
     edits, additions = [], ""
     pose, mass, inertia = (declared.find(tag) for tag in ("pose", "mass", "inertia"))
     if pose is not None:
@@ -304,7 +304,7 @@ _WITHOUT_LINKS: Final = frozenset({"sun", "ground_plane"})
 _ROOTS: Final = frozenset({"sdf", "robot", "gazebo", "world", "model"})
 
 
-def included(include: Element, sources: Sources, scope: Scope, read_links: Reader) -> Iterator[Link]:
+def read_include(include: Element, sources: Sources, scope: Scope, read_links: Reader) -> Iterator[Link]:
     """Read the links of an included model; one that is not found is a link that cannot be read.
 
     Parameters
@@ -318,21 +318,21 @@ def included(include: Element, sources: Sources, scope: Scope, read_links: Reade
     """
     uri = child_text(include, "uri")
     if uri.startswith(("http://", "https://")):
-        sources.notes[f"{shortened(uri)} is not judged: nothing is fetched from a network"] = None
+        sources.notes[f"{shorten(uri)} is not judged: nothing is fetched from a network"] = None
         return
     try:
-        path = _located(include, uri, sources, scope.folder)
+        path = _find_model_file(include, uri, sources, scope.folder)
         root = sources.read(path, uri, include)
         if root.tag == "mujoco":
-            sources.notes[f"{shortened(uri)} is not judged: it is MJCF, to be checked for itself"] = None
+            sources.notes[f"{shorten(uri)} is not judged: it is MJCF, to be checked for itself"] = None
             return
         if root.tag not in _ROOTS:
-            found = f"the root of {shortened(uri)} is <{shortened(root.tag)}>"
+            found = f"the root of {shorten(uri)} is <{shorten(root.tag)}>"
             raise FileFormatError(f"{include.where}: {found}, not <sdf> or <robot>; check the file")
-        check_version(root, f"{include.where}: {shortened(uri)}")
+        check_version(root, f"{include.where}: {shorten(uri)}")
     except FileFormatError as error:
         if uri.removeprefix("model://").strip("/") in _WITHOUT_LINKS:
-            sources.notes[f"{shortened(uri)} is not judged: Gazebo's own, of which nothing moves"] = None
+            sources.notes[f"{shorten(uri)} is not judged: Gazebo's own, of which nothing moves"] = None
             return
         name = sources.name(scope.prefix, f"(include of {include.where})", include)
         is_static = scope.is_static or is_true(include, "static")
@@ -364,8 +364,8 @@ def check_version(root: Element, name: str) -> None:
         )
 
 
-def _located(include: Element, uri: str, sources: Sources, folder: Path) -> Path:
-    """Find the file that an address means: itself, or the newest that a model's folder offers."""
+def _find_model_file(include: Element, uri: str, sources: Sources, folder: Path) -> Path:
+    """Find the file of an address: the file itself, or the newest one in the folder of a model."""
     path, fault = sources.addresses.find(uri, folder)
     if path is None and not fault and "://" not in uri:  # the bare name of a model in a folder of models
         path, fault = sources.addresses.find(f"model://{uri}", folder)
@@ -378,7 +378,7 @@ def _located(include: Element, uri: str, sources: Sources, folder: Path) -> Path
             path, fault = sources.addresses.find("model.sdf", home)
     if path is None or not path.is_file():
         reason = fault or "was not found; name the folder that holds it with --packages"
-        raise FileFormatError(f"{include.where}: {shortened(uri)} ", reason)
+        raise FileFormatError(f"{include.where}: {shorten(uri)} ", reason)
     return path
 
 

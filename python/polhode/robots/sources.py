@@ -1,6 +1,6 @@
-"""The files that a robot is made of besides its own, read safely.
+"""Read the other files of a robot, safely.
 
-Nothing is fetched from a network. What is included is XML under the same rules as the file itself, a file can
+Nothing is fetched from a network. An included file is XML under the same rules as the file itself, a file can
 not include itself, and there is an end to how many are read and to what they add up to.
 """
 
@@ -17,7 +17,7 @@ from polhode._format import Argument, Note
 from polhode.errors import FileFormatError
 from polhode.io.reading import LIMITS, Budget, LimitError, note_read, status_of
 from polhode.io.xml_source import Element, parse_xml
-from polhode.robots.model import shortened
+from polhode.robots.model import shorten
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Addresses",
-    "Found",
     "LimitError",
+    "Lookup",
     "Sources",
     "own_root",
     "read_source",
@@ -65,7 +65,7 @@ class Sources:
         self._open: set[Path] = set()
 
     def locate(self, address: str, folder: Path, at: Element) -> Path:
-        """Find a file that has to be there.
+        """Find a file; raise an error if it is missing.
 
         Parameters
         ----------
@@ -83,9 +83,9 @@ class Sources:
         """
         path, fault = self.addresses.find(address, folder)
         if fault:
-            raise FileFormatError(f"{at.where}: {shortened(address)} ", fault)
+            raise FileFormatError(f"{at.where}: {shorten(address)} ", fault)
         if path is None or not path.is_file():
-            name = shortened(address)
+            name = shorten(address)
             raise FileFormatError(f"{at.where}: there is no file {name}; put it at {folder / name}")
         return path
 
@@ -99,7 +99,7 @@ class Sources:
         """
         self.budget.spend("files", where=f"{at.where}: {address}")
         try:
-            source = read_source(path, self.budget.left("included bytes"))
+            source = read_source(path, self.budget.remaining("included bytes"))
         except OSError as error:
             raise FileFormatError(
                 f"{at.where}: {address} cannot be read: {error.strerror}; check {path}"
@@ -118,12 +118,12 @@ class Sources:
         self.budget.spend("copies", number, at.where)
 
     def count_copied(self, number: int, at: Element, *, keep: bool) -> None:
-        """Count the elements within copies, alike; those of copies within copies are not kept twice."""
+        """Count the elements within copies; those of nested copies are counted once."""
         of = self.budget if keep else Budget("", 0)
         of.spend("elements in copies", number, at.where)
 
     def name(self, prefix: str, own: str, at: Element) -> str:
-        """Return a link its name; a long one is cut, and links are counted.
+        """Return the name of a link, a long one shortened; count the link.
 
         Raises
         ------
@@ -134,12 +134,12 @@ class Sources:
         return self.prefix(prefix + own)
 
     def prefix(self, text: str) -> str:
-        """Return what names of links begin with, cut where it is long: they all hold it."""
-        return shortened(text, _LONGEST_NAME)
+        """Return the prefix of the names of links, shortened, because every name holds it."""
+        return shorten(text, _LONGEST_NAME)
 
     @contextmanager
     def inside(self, path: Path, address: str, at: Element) -> Iterator[None]:
-        """Be within a file, which may then not be asked for again."""
+        """Mark a file as being read; it may not include itself."""
         resolved = path.resolve()
         if resolved in self._open:
             raise FileFormatError(f"{at.where}: {address} is read within itself; take one of the two out")
@@ -212,8 +212,8 @@ _MOST_FOLDERS: Final = 5000
 _LONGEST: Final = 4096
 
 
-class Found(NamedTuple):
-    """What became of an address.
+class Lookup(NamedTuple):
+    """Result of the search for an address.
 
     Attributes
     ----------
@@ -250,7 +250,7 @@ class Addresses:
         self._roots: dict[Path, tuple[Path, ...]] = {}
         self._named: dict[Path, dict[str, Path]] = {}
 
-    def find(self, address: str, folder: Path) -> Found:
+    def find(self, address: str, folder: Path) -> Lookup:
         """Find a file or a folder.
 
         Parameters
@@ -261,9 +261,9 @@ class Addresses:
             Where a relative path starts.
         """
         if len(address) > _LONGEST:
-            return Found(None, f"is a name of {len(address)} characters, more than files have; shorten it")
+            return Lookup(None, f"is a name of {len(address)} characters, more than files have; shorten it")
         if "\0" in address:
-            return Found(None, "holds a character of code 0, which no file has; take it out")
+            return Lookup(None, "holds a character of code 0, which no file has; take it out")
         fault = ""
         for path, roots in self._candidates(address, folder):
             if not self._allow_outside and _is_outside(path, roots):
@@ -277,9 +277,9 @@ class Addresses:
                 continue
             is_readable, reason = _kind(path)
             if is_readable:
-                return Found(path)
+                return Lookup(path)
             fault = fault or reason
-        return Found(None, fault)
+        return Lookup(None, fault)
 
     def _candidates(self, address: str, folder: Path) -> Iterator[tuple[Path, tuple[Path, ...]]]:
         """Return each path that an address may stand for, and the folders that it has to lie in."""
@@ -411,14 +411,14 @@ def _from_environment() -> Iterator[Path]:
 
 
 def _spellings(name: str) -> tuple[str, ...]:
-    """Return a path, and as it is meant where Windows wrote it."""
+    """Return a path, and the same path with the separators of Windows replaced."""
     if not name:
         return ()
     return (name, name.replace("\\", "/")) if "\\" in name else (name,)
 
 
 def _is_outside(path: Path, roots: Sequence[Path]) -> bool:
-    """Whether a path leads out of all these folders: as it is written, or by the links on its way."""
+    """Return whether a path leads out of all these folders, also through symbolic links."""
     written = Path(os.path.normpath(path))
     if not any(written.is_relative_to(root) for root in roots):
         return True

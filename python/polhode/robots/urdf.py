@@ -14,7 +14,7 @@ from polhode._core import rotate
 from polhode._format import Note
 from polhode.errors import FileFormatError
 from polhode.io.xml_source import Edit, Element, blanks_of
-from polhode.robots.edits import attribute, first_child, indented, number_text
+from polhode.robots.edits import attribute, first_child, indent_element, number_text
 from polhode.robots.model import WORLD, Inertial, Joint, Link, Place, Shape, numbers, scale
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ _MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
 
 class LinkReader(NamedTuple):
-    """How a format says what a link has.
+    """Reader of links: how a format states their inertia and shapes.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class LinkReader(NamedTuple):
     def read(
         self, element: Element, sources: Sources, folder: Path, prefix: str, *, inferred: bool = False
     ) -> Link:
-        """Read a link; what is wrong with its numbers is kept for the verdict."""
+        """Read a link; faults of its numbers are stored for the verdict."""
         inertial: Inertial | None = None
         shapes: tuple[Shape, ...] = ()
         problem = ""
@@ -96,7 +96,7 @@ def links(
 
 
 def _oddities(link: Element, met: set[str]) -> Iterator[str]:
-    """Return what is written for a link and not read; `met` are the names of the links before it."""
+    """Return notes on content of a link that is not read; `met` are the names of the links before it."""
     name = link.attributes.get("name", "")
     if name in met:
         yield f"{link.where}: link {name!r} again; parsers refuse two links of one name: rename one"
@@ -143,7 +143,7 @@ def tensor_text(tensor: NDArray[np.float64]) -> dict[str, str]:
 
 def _place(element: Element | None) -> Place:
     if element is None:
-        return Place.here()
+        return Place.identity()
     attributes = element.attributes
     position = numbers(element, attributes.get("xyz", "0 0 0"), 3, "xyz")
     angles = numbers(element, attributes.get("rpy", "0 0 0"), 3, "rpy")
@@ -169,7 +169,7 @@ def _shapes(link: Element) -> Iterator[Shape]:
         except FileFormatError as error:
             if role == "collision":
                 raise
-            yield Shape(form.tag, (), Place.here(), role, where=form.where, problem=Note(*error.args))
+            yield Shape(form.tag, (), Place.identity(), role, where=form.where, problem=Note(*error.args))
 
 
 def _shape(element: Element, form: Element, role: Literal["collision", "visual"]) -> Shape:
@@ -203,7 +203,7 @@ def _rewrite(link: Element, declared: Element | None, source: bytes, new: Inerti
         tensor = " ".join(f'{name}="{text}"' for name, text in tensor_text(new.inertia).items())
         parts = [f'<origin xyz="{position}" rpy="0 0 0"/>'] if np.any(new.center_of_mass) else []
         parts += [f'<mass value="{new.mass!r}"/>', f"<inertia {tensor}/>"]
-        return [first_child(source, link, indented(source, link, "<inertial>", parts, "</inertial>"))]
+        return [first_child(source, link, indent_element(source, link, "<inertial>", parts, "</inertial>"))]
     edits = []
     origin = declared.find("origin")
     if origin is not None:

@@ -124,7 +124,7 @@ class Verdict(NamedTuple):
 def judge(
     robot: Robot, geometry: GeometryReader, density: float | None = None, mass: float | None = None
 ) -> list[Verdict]:
-    """Judge every link.
+    """Check every link.
 
     Parameters
     ----------
@@ -154,11 +154,11 @@ def judge(
             judging.link(link, each, standing)._replace(file=link.file)
             for link, each, standing in zip(robot.links, read, stand, strict=True)
         ]
-        return _filled(robot, as_compiled(robot, found), geometry, density, mass)
+        return _fill_masses(robot, as_compiled(robot, found), geometry, density, mass)
 
 
 def has_own_tensor(link: Link) -> bool:
-    """Return whether a tensor may have been measured: a body has it, and it is no placeholder."""
+    """Return whether a tensor may have been measured: it is possible, and it is no placeholder."""
     declared = link.inertial
     if declared is None or link.defaults or _isotropic(declared.inertia) is not None:
         return False
@@ -194,7 +194,7 @@ def _has_mass(link: Link, geometry: Geometry) -> bool:
 
 
 def _has_spread(link: Link, geometry: Geometry) -> bool:
-    """Return whether a body has its tensor, with three moments above 0: whatever is added keeps them so."""
+    """Return whether a tensor is possible, with three moments above 0: it stays so if matter is added."""
     body = geometry.body
     try:
         if link.inertial is not None:
@@ -214,7 +214,7 @@ def _is_point(declared: Inertial) -> bool:
 
 
 def _reach(robot: Robot, geometry: Sequence[Geometry]) -> float:
-    """Return how far the robot reaches at most, end to end, by its joints and the shapes that were read."""
+    """Return the largest extent of the robot, by its joints and the shapes that were read."""
     joints = sum(link.reach for link in robot.links)
     shapes = (
         float(np.linalg.norm(each.high - each.low))
@@ -241,7 +241,7 @@ def _isotropic(tensor: Floats) -> float | None:
 
 
 class _Judging(NamedTuple):
-    """What the verdict of a link depends on besides the link."""
+    """Data for the verdict of a link besides the link itself."""
 
     geometry: GeometryReader
     format: str
@@ -296,11 +296,14 @@ class _Judging(NamedTuple):
             what = "the nearest tensor of a body" if own is None else f"its {geometry.role} shape"
             notes = (
                 *notes,
-                f"line {link.line}: {link.name}: {what} has {_refused(moment, least)}: not written",
+                f"line {link.line}: {link.name}: {what} has {_describe_refusal(moment, least)}: not written",
             )
             better = None
         if inside is not None and not float(moments[0]) > least:
-            notes = (*notes, f"line {link.line}: {link.name} has {_refused(float(moments[0]), least)}")
+            notes = (
+                *notes,
+                f"line {link.line}: {link.name} has {_describe_refusal(float(moments[0]), least)}",
+            )
             inside = None
         elif inside is not None:
             notes = (
@@ -320,7 +323,7 @@ class _Judging(NamedTuple):
             factor,
             geometry.role if own is not None else "",
             notes,
-            None if better is None else _rounded(better),
+            None if better is None else _round_inertial(better),
             inside=inside,
         )
 
@@ -332,7 +335,7 @@ class _Judging(NamedTuple):
         own: RigidBody | None,
         factor: float | None,
     ) -> tuple[Word, str]:
-        """Say which law fails, the plainest first."""
+        """Return the first law that fails, in the order from simple to complex."""
         try:
             body = RigidBody(declared.mass, declared.inertia, declared.center_of_mass)
         except InvalidInertiaError as error:  # its remedies are those of Python's arguments
@@ -343,7 +346,7 @@ class _Judging(NamedTuple):
             size = beyond_size(body, geometry, own, self.reach, is_all=self.is_all)
         else:
             size = beyond_room(body, geometry, lambda: self.geometry.coarseness(link))
-        compared = _compared(factor, geometry) if own is not None else ""
+        compared = _compare_with_shape(factor, geometry) if own is not None else ""
         needed = density_needed(declared.mass, geometry.volume, factor or 0.0)
         moment = _isotropic(declared.inertia)
         if moment is not None and moment in self.placeholders:
@@ -352,22 +355,22 @@ class _Judging(NamedTuple):
             told = f"{told}; it stands in {count} links" if count > 1 else told
             is_true = own is not None and size is None and _are_near(own.inertia, declared.inertia)
             if not is_true:
-                return "placeholder", _joined(told, compared, size.reason if size else "")
+                return "placeholder", _join_reasons(told, compared, size.reason if size else "")
         if size is not None and size.word == "impossible":
-            return size.word, _joined(compared, size.reason, size.why, needed)
+            return size.word, _join_reasons(compared, size.reason, size.why, needed)
         if geometry.marker is not None:
             told = (
                 f"its mass would have {geometry.marker:.3g} kg/m^3 in its shapes, beyond {MARKER:g}: they "
                 "are markers, and nothing else that was read tells its size"
             )
-            return "suspect", _joined(told, *((size.reason, size.why) if size else ()))
+            return "suspect", _join_reasons(told, *((size.reason, size.why) if size else ()))
         if factor is not None and not LEAST <= factor <= MOST:
-            return "suspect", _joined(compared, *((size.reason, size.why) if size else ()), needed)
+            return "suspect", _join_reasons(compared, *((size.reason, size.why) if size else ()), needed)
         if size is not None and size.word == "coarse":
-            return size.word, _joined(compared, size.reason)
+            return size.word, _join_reasons(compared, size.reason)
         if size is None and own is None:
             size = too_dense(body)
-        return (size.word, _joined(size.reason, size.why)) if size is not None else ("good", compared)
+        return (size.word, _join_reasons(size.reason, size.why)) if size is not None else ("good", compared)
 
 
 def _are_near(one: Floats, other: Floats) -> bool:
@@ -375,31 +378,31 @@ def _are_near(one: Floats, other: Floats) -> bool:
     return bool(np.abs(one - other).max() <= 0.01 * np.abs(one).max())
 
 
-def _joined(*reasons: str) -> str:
+def _join_reasons(*reasons: str) -> str:
     return "; ".join(reason for reason in reasons if reason)
 
 
-def _filled(
+def _fill_masses(
     robot: Robot,
     verdicts: list[Verdict],
     geometry: GeometryReader,
     density: float | None,
     mass: float | None,
 ) -> list[Verdict]:
-    """Return links whose file says no mass what their shapes have, of that density or that mass together."""
+    """Compute mass and inertia of links without a mass from their shapes, by a density or a common mass."""
     if density is None and mass is None:
         return verdicts
     without = {
         i: body
         for i, (link, verdict) in enumerate(zip(robot.links, verdicts, strict=True))
         if is_without_mass(link, verdict)
-        if (body := geometry.filled(link)) is not None
+        if (body := geometry.fill_shapes(link)) is not None
     }
     volume = sum(float(body.mass) for body in without.values())
     unread = [
         link.name
         for link, verdict in zip(robot.links, verdicts, strict=True)
-        if is_without_mass(link, verdict) and link.shapes and geometry.filled(link) is None
+        if is_without_mass(link, verdict) and link.shapes and geometry.fill_shapes(link) is None
     ]
     if mass is not None and unread:
         raise PolhodeError(
@@ -421,13 +424,14 @@ def _filled(
         better = Inertial(float(f"{float(weighed.mass):.9g}"), weighed.center_of_mass, weighed.inertia)
         found, least = verdicts[i], LEAST_MOMENT.get(robot.format, 0.0)
         if not (moment := _least_moment(better)) > least:
-            told = f"line {found.line}: {found.name}: its shape has {_refused(moment, least)}: not written"
+            reason = _describe_refusal(moment, least)
+            told = f"line {found.line}: {found.name}: its shape has {reason}: not written"
             verdicts[i] = found._replace(notes=(*found.notes, told))
             continue
         verdicts[i] = found._replace(
             shape_moments=weighed.principal_moments,
             shapes=geometry.read(robot.links[i]).role,
-            better=_rounded(better),
+            better=_round_inertial(better),
         )
     return verdicts
 
@@ -439,14 +443,14 @@ def _farthest(declared: Floats, own: Floats) -> float | None:
     return None if np.isnan(distance).all() else float(ratios[np.nanargmax(distance)])
 
 
-def _compared(factor: float | None, geometry: Geometry) -> str:
+def _compare_with_shape(factor: float | None, geometry: Geometry) -> str:
     if factor is None or 0.99 <= factor <= 1.01:
         return "" if factor is None else f"as its {geometry.role} shape"
     return f"{times(factor)} its {geometry.role} shape's"
 
 
 def _better(declared: Inertial, own: RigidBody | None, word: Word) -> Inertial | None:
-    """Find what to declare instead."""
+    """Find better values for the declaration."""
     if own is not None:
         return Inertial(declared.mass, own.center_of_mass, own.inertia)
     if word == "impossible" and declared.mass > 0.0:
@@ -468,13 +472,13 @@ def _least_moment(inertial: Inertial) -> float:
     return float(principal_moments(inertial.inertia)[0])
 
 
-def _refused(moment: float, least: float) -> str:
+def _describe_refusal(moment: float, least: float) -> str:
     told = f"a moment of {moment:.3g} kg m^2"
     return f"{told}, and MuJoCo refuses what has no more than {least:g}" if least else f"{told}, no extent"
 
 
-def _rounded(found: Inertial) -> Inertial:
-    """Round to nine digits where those are clear of the edge of what a body can have; else move it inside."""
+def _round_inertial(found: Inertial) -> Inertial:
+    """Round to nine digits if the rounded tensor is possible; else move it inside the possible ones."""
     rounded = Inertial(found.mass, _nine(found.center_of_mass), _nine(found.inertia))
     if inside_edge(rounded.inertia) is rounded.inertia:
         return rounded
@@ -494,7 +498,7 @@ _FREE: Final = ("floating", "free")
 
 
 class Standing(NamedTuple):
-    """How a link stands in its robot.
+    """Role of a link in its robot.
 
     Attributes
     ----------
@@ -539,7 +543,7 @@ class _Group:
 
 
 def standings(robot: Robot, has_mass: Sequence[bool], has_spread: Sequence[bool]) -> list[Standing]:
-    """Describe for every link whether it can move and what carries mass there.
+    """For each link: find whether it can move, and which links below it have mass.
 
     Parameters
     ----------

@@ -141,7 +141,7 @@ def angular_momentum(
 
 
 def torque(inertia: Any = None, omega: Any = None, angular_acceleration: Any = None) -> Any:
-    """Euler's equations for the torque: ``N = I ω̇ + ω × I ω``.
+    """Return Euler's equations for the torque: ``N = I ω̇ + ω × I ω``.
 
     Parameters
     ----------
@@ -218,7 +218,7 @@ def rotation(sequence: str = "ZXZ", angles: Any = None) -> Any:
     Matrix
     """
     turned = sympy.eye(3)
-    for axis, angle in _intrinsic(sequence, _given(angles)):
+    for axis, angle in _intrinsic(sequence, _angles_or_default(angles)):
         turned = turned * _about(axis, angle)
     return turned
 
@@ -266,7 +266,7 @@ def euler_rates(sequence: str = "ZXZ", frame: str = "body", angles: Any = None, 
         different axes, where its cosine is zero.
     """
     _check_frame(frame)
-    (first, start), (second, middle), (third, end) = _intrinsic(sequence, _given(angles))
+    (first, start), (second, middle), (third, end) = _intrinsic(sequence, _angles_or_default(angles))
     # Next to the middle axis stands a frame in which the three axes depend on the middle angle alone.
     middle_turn = _about(second, middle)
     if frame == "space":
@@ -283,7 +283,7 @@ def euler_rates(sequence: str = "ZXZ", frame: str = "body", angles: Any = None, 
 def _columns(sequence: str, frame: str, angles: Any) -> Any:
     """Return the matrix of ω = J (rates): the axes about which the angles turn."""
     _check_frame(frame)
-    turns = _intrinsic(sequence, _given(angles))
+    turns = _intrinsic(sequence, _angles_or_default(angles))
     columns = [_axis(axis) for axis, _ in turns]
     for k in range(3):
         # An axis is turned in space by the angles before it; the body has the later ones turned back.
@@ -300,7 +300,7 @@ def _check_frame(frame: str) -> None:
         raise ValueError(f"frame: expected 'body' or 'space', got {frame!r}")
 
 
-def _given(angles: Any) -> Any:
+def _angles_or_default(angles: Any) -> Any:
     return symbols.angles if angles is None else angles
 
 

@@ -1,4 +1,4 @@
-"""Shapes of uniform density: their tensors in letters, from one table of sizes and second moments."""
+"""Shapes of uniform density: symbolic tensors, from one table of sizes and second moments."""
 
 from __future__ import annotations
 
@@ -193,7 +193,7 @@ def shape(name: str, *, corners: int | None = None) -> Shape:
 
 
 def _tidy(expression: Any) -> Any:
-    """Factor it where it has few letters: sums over the corners of a polygon stay as they are."""
+    """Factor an expression with few symbols; sums over the corners of a polygon stay unchanged."""
     return sympy.factor(expression) if len(expression.free_symbols) <= 4 else expression
 
 
@@ -343,4 +343,4 @@ SHAPES: Final[dict[str, Row]] = {
     "ring": _row("rods", {"radius": _R}, 2 * _pi * _R, _R**2 / 2, _R**2 / 2, 0),
     "arc": _arc(),
 }
-"""By the name of the function that gives the numbers."""
+"""Shapes by the name of the numeric function."""

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
         axis_probabilities,
         mode_probabilities,
     )
-    from polhode.uncertainty.propagation import Propagated, propagate
-    from polhode.uncertainty.uncertain import TenNumbers, joined, to_ufloats
+    from polhode.uncertainty.propagation import PropagationResult, propagate
+    from polhode.uncertainty.uncertain import InertialParameters, joined, to_ufloats
 else:
 
     def __getattr__(name):
@@ -39,22 +39,22 @@ _HOMES = {
         ("AxisProbabilities", "ModeProbabilities", "axis_probabilities", "mode_probabilities"),
         "probabilities",
     ),
-    **dict.fromkeys(("Propagated", "propagate"), "propagation"),
-    **dict.fromkeys(("TenNumbers", "joined", "to_ufloats"), "uncertain"),
+    **dict.fromkeys(("PropagationResult", "propagate"), "propagation"),
+    **dict.fromkeys(("InertialParameters", "joined", "to_ufloats"), "uncertain"),
 }
 """The file of this room in which each public name stands."""
 
 __all__ = [
     "AxisProbabilities",
+    "InertialParameters",
     "Ledger",
     "ModeProbabilities",
     "Part",
     "PeriodsLinear",
     "PeriodsSigma",
-    "Propagated",
+    "PropagationResult",
     "Shares",
     "Sigmas",
-    "TenNumbers",
     "axis_probabilities",
     "joined",
     "ledger",

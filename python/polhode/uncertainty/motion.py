@@ -1,4 +1,4 @@
-"""Uncertainty of motions: of the states of a run, and of what follows from a free motion."""
+"""Uncertainty of motions: of the states of a run, and of the results of a free motion."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from polhode import _core
 from polhode._format import short
 from polhode.errors import PolhodeError
-from polhode.uncertainty.propagation import Neighbours, Propagated, is_enough, propagate, slopes_of
+from polhode.uncertainty.propagation import Neighbours, PropagationResult, is_enough, propagate, slopes_of
 from polhode.uncertainty.variables import angles_of, of_forms, row_of, rows_of
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ __all__ = [
 
 
 def runs_from_zero(run: Trajectory) -> list[tuple[Trajectory, Places, Places]]:
-    """Return runs of a closed form from t = 0, forwards and backwards, which meet all times of this one.
+    """Return runs of a closed form from t = 0, forwards and backwards, with all times of this one.
 
     With each: which of the times, flat, and their places in the run.
 
@@ -57,8 +57,8 @@ def runs_from_zero(run: Trajectory) -> list[tuple[Trajectory, Places, Places]]:
     motion = run.uncertain_start
     if motion is None or isinstance(motion, tuple):
         raise ValueError(
-            "covariance: the state at the first time is uncertain by the motion before it, or a load acted "
-            "that a file did not keep; simulate from the start on, or ask uncertainty.propagate"
+            "covariance: the uncertainty of the first state is unknown here, because the motion was resumed "
+            "or its load was not saved; simulate from the original start, or use uncertainty.propagate"
         )
     times, found = np.ravel(run.t), []
     for sense, is_its in ((1.0, times >= 0.0), (-1.0, times < 0.0)):
@@ -114,7 +114,7 @@ class StateSigma(_StateSigma):
 
 
 def state_covariance(self: Trajectory) -> Floats | None:
-    """Compute what :attr:`polhode.Trajectory.covariance` holds."""
+    """Compute :attr:`polhode.Trajectory.covariance`."""
     forms, _ = _forms(self)
     if forms is None:
         return None
@@ -124,7 +124,7 @@ def state_covariance(self: Trajectory) -> Floats | None:
 
 
 def state_sigma(self: Trajectory) -> StateSigma | None:
-    """Return standard deviations of attitude and angular velocity, shape (..., T, 3) each, or None."""
+    """Compute the standard deviations of attitude and angular velocity, shape (..., T, 3) each, or None."""
     found = self.covariance
     if found is None:
         return None
@@ -173,23 +173,23 @@ def spin_covariance(self: Trajectory, frame: Literal["space", "body"]) -> Floats
 
 
 def _of_carried(self: Trajectory) -> tuple[Floats, Floats]:
-    """Return the derivatives of the momentum carried along by ω and by the states; it is linear in both."""
+    """Return the derivatives, by ω and by the states, of the momentum of wheels; it is linear in both."""
     load = self._acting("covariance")
     assert load is not None
     stack = self.omega.shape[:-2]
     over_time = self._over_time(load)
     own = {name: np.zeros((*stack, len(self.t), values.shape[-1])) for name, values in self.states.items()}
 
-    def carried(omega: Floats) -> Floats:
+    def momentum_of(omega: Floats) -> Floats:
         return over_time.carried(self.t, np.broadcast_to(omega, self.omega.shape), own)[0]
 
-    columns = [carried(axis) for axis in np.eye(3)]
+    columns = [momentum_of(axis) for axis in np.eye(3)]
     for values in own.values():
         for k in range(values.shape[-1]):
             values[..., k] = 1.0
-            columns.append(carried(np.zeros(3)))
+            columns.append(momentum_of(np.zeros(3)))
             values[..., k] = 0.0
-    still = carried(np.zeros(3))  # of rotors, and of wheels whose speed is given
+    still = momentum_of(np.zeros(3))  # of rotors, and of wheels whose speed is given
     found = np.stack([column - still for column in columns], axis=-1)
     return found[..., :3], found[..., 3:]
 
@@ -246,7 +246,7 @@ def _forms(self: Trajectory) -> tuple[Floats | None, dict[tuple[int, ...], int]]
 
 
 def _forms_from_zero(self: Trajectory) -> tuple[Floats | None, dict[tuple[int, ...], int]]:
-    """Return the same for a motion in closed form, at any times."""
+    """Return the same changes and columns as `_forms`, for a motion in closed form at any times."""
     stack = self.omega.shape[: self.omega.ndim - 1 - self.t.ndim]
     flat = np.zeros(0)
     columns: dict[tuple[int, ...], int] = {}
@@ -298,11 +298,11 @@ def _tensors(self: Trajectory) -> Floats:
 
 
 DIRECTIONS: Final = 64
-"""In which second- and third-order terms are looked for."""
+"""Number of directions in which second- and third-order terms are evaluated."""
 NEAR: Final = 1.0 / 64
-"""Of a step, in deviations: so short that the first order is all that is seen."""
+"""Step in deviations: so short that orders above the first are negligible."""
 ROUNDING: Final = 1e-9
-"""Of attitude in radians, and of the angular velocity."""
+"""Rounding errors of the attitude in radians, and of the angular velocity."""
 
 
 class StateLinear(NamedTuple):
@@ -321,7 +321,7 @@ class StateLinear(NamedTuple):
 
 
 def state_linear(run: Trajectory) -> StateLinear:
-    """Describe at which times the sigmas of an uncertain motion are linear enough.
+    """Find at which times the first order is enough for the sigmas of an uncertain motion.
 
     Runs of 256 neighbours, along random directions in the space of what is uncertain, show the terms of
     second and third order. They are run by the defaults of :meth:`polhode.RigidBody.simulate`.
@@ -341,9 +341,9 @@ def state_linear(run: Trajectory) -> StateLinear:
 
 
 def _row(run: Trajectory, stack: tuple[int, ...], row: int) -> NDArray[np.bool_]:
-    """Return the same for one motion of a stack, shape (T, 6)."""
+    """Find at which times the first order is enough for one motion of a stack, shape (T, 6)."""
     place = np.unravel_index(row, stack)
-    body, load = _taken(run.body, stack, row), _taken(run.load, stack, row)
+    body, load = _take_row(run.body, stack, row), _take_row(run.load, stack, row)
     start = run.uncertain_start
     of_omega, of_attitude = start if isinstance(start, tuple) else (None, None)
     arguments = []
@@ -395,8 +395,8 @@ def _row(run: Trajectory, stack: tuple[int, ...], row: int) -> NDArray[np.bool_]
     return is_enough(first, 0.5 * (above - below), 0.5 * (above + below), (first**2).mean(axis=0), noise)
 
 
-def _taken(many: Any, stack: tuple[int, ...], row: int) -> Any:
-    """Take what a row has of a stack of bodies or loads."""
+def _take_row(many: Any, stack: tuple[int, ...], row: int) -> Any:
+    """Return the element of a stack of bodies or loads that belongs to a row."""
     if many is None or not many.shape:
         return many
     return many[np.unravel_index(rows_of(many.shape, stack)[row], many.shape)]
@@ -489,12 +489,12 @@ def periods_sigma(motion: FreeMotion) -> PeriodsSigma | None:
     periods = motion.periods
     axis = np.where(np.isnan(periods.spin), 0, motion.cones.axis)[..., np.newaxis]
 
-    def named(values: Any) -> dict[str, Any]:
+    def by_name(values: Any) -> dict[str, Any]:
         of_axes = np.take_along_axis(values[..., 2:5], axis, axis=-1)[..., 0]
         turn, own = values[..., 0], values[..., 1]
         return {"turn": turn, "wobble": own, "spin": own, "rotation": own, "precession": of_axes, "flip": own}
 
-    sigma, linear = named(np.asarray(found.sigma)), named(np.asarray(found.linear))
+    sigma, linear = by_name(np.asarray(found.sigma)), by_name(np.asarray(found.linear))
     sigma["flip"] = 0.5 * sigma["flip"]
     given = motion._from_periods
     if given is not None:
@@ -519,7 +519,7 @@ def periods_sigma(motion: FreeMotion) -> PeriodsSigma | None:
     )
 
 
-def each_motion(motion: FreeMotion, f: Callable[..., Any], tail: tuple[int, ...]) -> Propagated:
+def each_motion(motion: FreeMotion, f: Callable[..., Any], tail: tuple[int, ...]) -> PropagationResult:
     """Propagate ``f(body, omega)``, of shape `tail`, to first order, for each motion of a stack by itself.
 
     The angular velocity of a motion that was made from periods is solved anew for each neighbour.
@@ -549,7 +549,7 @@ def each_motion(motion: FreeMotion, f: Callable[..., Any], tail: tuple[int, ...]
         name: np.array([getattr(one, name) for one in found], dtype=bool if name == "linear" else float)
         for name in tails
     }
-    return Propagated(**{name: joined[name].reshape((*shape, *of))[()] for name, of in tails.items()})
+    return PropagationResult(**{name: joined[name].reshape((*shape, *of))[()] for name, of in tails.items()})
 
 
 def _row_of_body(motion: FreeMotion, row: int) -> _core.RigidBody:
@@ -590,7 +590,7 @@ class FromPeriods(NamedTuple):
 
     @property
     def uncertain(self) -> list[_core.Uncertain]:
-        """Those of the two periods that are uncertain."""
+        """The uncertain ones of the two periods."""
         return [one for one in self[:2] if isinstance(one, _core.Uncertain)]
 
     def motion(self, body: _core.RigidBody, periods: Any) -> FreeMotion:
@@ -604,7 +604,7 @@ class FromPeriods(NamedTuple):
 
 @dataclass(frozen=True)
 class _Attitude:
-    """Quaternions as what `Uncertain` takes for rotations."""
+    """Quaternions in the form that `Uncertain` accepts for rotations."""
 
     quaternion: Any
 
@@ -615,7 +615,7 @@ class _Attitude:
 def start_from_periods(
     motion: FreeMotion, arguments: dict[str, Any]
 ) -> tuple[FromPeriods, tuple[_core.Uncertain, _core.Uncertain]]:
-    """Solve for the start of a motion with given periods anew along each source of uncertainty.
+    """Solve for the start of a motion with given periods, once for each source of uncertainty.
 
     Parameters
     ----------

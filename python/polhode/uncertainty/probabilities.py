@@ -1,4 +1,4 @@
-"""How probable it is that an axis keeps its rank, and that a free body keeps its mode."""
+"""Probabilities that an axis keeps its rank, and that a free body keeps its mode."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ NODES: Final = np.polynomial.legendre.leggauss(16)
 FAR: Final = 39.0
 """Deviations beyond which a normal density is zero in numbers of this precision."""
 AROUND: Final = np.array([-9.0, -6.0, -4.0, -2.0, 0.0, 2.0, 4.0, 6.0, 9.0])
-"""Where a step that is one wide is cut for the quadrature."""
+"""Nodes that divide a step of width one for the quadrature."""
 
 
 class AxisProbabilities(NamedTuple):

@@ -11,7 +11,7 @@ import numpy as np
 from polhode import _core
 from polhode._format import short
 from polhode._hints import check_kind
-from polhode._progress import watched
+from polhode._progress import progress_bar
 from polhode.errors import PolhodeError
 from polhode.uncertainty.uncertain import joined
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 __all__ = [
     "HALVINGS",
     "Neighbours",
-    "Propagated",
+    "PropagationResult",
     "is_enough",
     "propagate",
     "slopes_of",
@@ -41,16 +41,16 @@ __all__ = [
 LACKING: Final = 0.015
 """Largest part of a variance that the first order may lack: a percent of the deviation, with a margin."""
 NEAR: Final = 0.25
-"""Steps along a body's own probes, in deviations: so short that the second order is all that is seen."""
+"""Steps along a body's own probes, in deviations: so short that orders above the second are negligible."""
 PROBES: Final = 32
 """Directions in which second- and third-order terms are looked for."""
 ROUNDING: Final = 1e-13
-"""Of a number, by which a function may err."""
+"""Relative rounding error of a function."""
 SMALL: Final = 1e-12
-"""Beside the largest of an array: such a number may be what is left of zero."""
+"""A number below this fraction of the largest of an array may be zero with rounding errors."""
 
 
-class Propagated(NamedTuple):
+class PropagationResult(NamedTuple):
     """Value of a function of an uncertain body, with its uncertainty.
 
     Attributes
@@ -88,8 +88,8 @@ def propagate(
     n: int = 10_000,
     seed: int | None = None,
     progress: Progress = None,
-) -> Propagated:
-    """Uncertainty of any function of a body.
+) -> PropagationResult:
+    """Compute the uncertainty of any function of a body.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def propagate(
 
     Returns
     -------
-    Propagated
+    PropagationResult
 
     Raises
     ------
@@ -172,7 +172,7 @@ def propagate(
 
 
 def _numbers(f: Function, given: tuple[Any, ...], shape: tuple[int, ...] | None = None) -> Floats:
-    """Return the value of a function, which keeps its shape."""
+    """Call the function and return its value; the shape of all values must be the same."""
     value = np.asarray(f(*given), dtype=float)
     if shape is not None and value.shape != shape:
         message = f"f: its value has the shape {value.shape} here and {shape} for the body itself"
@@ -241,7 +241,7 @@ def is_enough(
 
 
 def _is_rounding(value: Floats, first: Floats, change: Floats) -> NDArray[np.bool_]:
-    """Whether a number of an array is zero but for rounding of the others: its changes follow no slopes."""
+    """Whether a number of an array is zero except for rounding; its changes have no meaning then."""
     size = SMALL * np.abs(value[np.isfinite(value)]).max(initial=0.0)
     products = np.abs((first * change).sum(axis=0))
     follows = products**2 > 0.25 * (first**2).sum(axis=0) * (change**2).sum(axis=0)
@@ -250,7 +250,7 @@ def _is_rounding(value: Floats, first: Floats, change: Floats) -> NDArray[np.boo
 
 
 def _follows(f: Function, around: Neighbours, value: Floats, variance: Floats) -> NDArray[np.bool_]:
-    """Whether the ways from body to body taken here lead where the body's own second order does."""
+    """Whether the steps from body to body agree with the body's own second-order terms."""
     missed, count = np.zeros(value.size), 0
     for probe in around.probes(NEAR):
         here, there = (sum(_numbers(f, given, value.shape).ravel() for given in pair) / 2 for pair in probe)
@@ -260,13 +260,13 @@ def _follows(f: Function, around: Neighbours, value: Floats, variance: Floats) -
     return np.asarray(missed / max(count, 1) <= LACKING * variance + noise**2)
 
 
-def _linear(f: Function, around: Neighbours) -> Propagated:
+def _linear(f: Function, around: Neighbours) -> PropagationResult:
     value = _numbers(f, around.start)
     slopes = slopes_of(f, around, value.shape)
-    return _told(value, slopes.T @ slopes, _is_linear(f, around, value, slopes))
+    return _make_result(value, slopes.T @ slopes, _is_linear(f, around, value, slopes))
 
 
-def _second_order(f: Function, around: Neighbours) -> Propagated:
+def _second_order(f: Function, around: Neighbours) -> PropagationResult:
     value = _numbers(f, around.start)
     slopes, rank = slopes_of(f, around, value.shape), around.rank
     bends = np.zeros((rank, rank, value.size))
@@ -282,13 +282,13 @@ def _second_order(f: Function, around: Neighbours) -> Propagated:
             bends[i, j] = bends[j, i] = mixed / (4 * h * h)
     mean = value + 0.5 * np.einsum("iin->n", bends).reshape(value.shape)
     covariance = slopes.T @ slopes + 0.5 * np.einsum("ijm,ijn->mn", bends, bends)
-    return _told(mean, covariance, _is_linear(f, around, value, slopes))
+    return _make_result(mean, covariance, _is_linear(f, around, value, slopes))
 
 
-def _monte_carlo(f: Function, around: Neighbours, n: int, seed: int, progress: Progress) -> Propagated:
+def _monte_carlo(f: Function, around: Neighbours, n: int, seed: int, progress: Progress) -> PropagationResult:
     value = _numbers(f, around.start)
     found = []
-    with watched(f"{n} draws", progress) as tell:
+    with progress_bar(f"{n} draws", progress) as tell:
         for given in around.draws(n, seed):
             found.append(_numbers(f, given, value.shape).ravel())
             if tell is not None:
@@ -300,28 +300,28 @@ def _monte_carlo(f: Function, around: Neighbours, n: int, seed: int, progress: P
     # second order is seen; in the third, of a quotient, it may be twice as much.
     first = (slopes_of(f, around, value.shape) ** 2).sum(axis=0)
     follows = _follows(f, around, value, np.minimum(first, np.diagonal(covariance)) / 3)
-    return _told(mean.reshape(value.shape), covariance, follows)
+    return _make_result(mean.reshape(value.shape), covariance, follows)
 
 
-def _told(value: Floats, covariance: Floats, linear: NDArray[np.bool_]) -> Propagated:
+def _make_result(value: Floats, covariance: Floats, linear: NDArray[np.bool_]) -> PropagationResult:
     sigma = np.sqrt(np.diagonal(covariance)).reshape(value.shape)
     if value.shape == ():
-        return Propagated(float(value), float(sigma), covariance, bool(linear[0]))
-    return Propagated(value, sigma, covariance, linear.reshape(value.shape))
+        return PropagationResult(float(value), float(sigma), covariance, bool(linear[0]))
+    return PropagationResult(value, sigma, covariance, linear.reshape(value.shape))
 
 
 CLOSE: Final = 4.0
-"""Moments within so many deviations of their gap may change places: the tensor tells them better than
-angles do."""
+"""Moments within this many deviations of their gap may change places; then tensor elements are used
+instead of angles."""
 TRIES: Final = 1000
-"""Draws of which none is a body, in a row, before it is told."""
+"""Number of impossible draws after which an error is raised, if few draws are possible."""
 HALVINGS: Final = 40
-"""How often a step is halved before there is no body beside."""
+"""Number of halvings of a step after which no neighbouring body exists."""
 ORDER: Final = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 
 class Neighbours:
-    """The bodies and other numbers that a covariance makes likely, by coordinates that are standard normal.
+    """Bodies and other numbers as functions of standard normal coordinates, by their covariance.
 
     To first order all ways from body to body are one. To second order bodies move straight in their ten
     numbers, or straight in principal moments and small angles of their axes: whichever is nearer to what
@@ -366,7 +366,7 @@ class Neighbours:
             self._way = _Way(body, self._factor)
 
     def at(self, coordinates: Floats) -> tuple[Any, ...]:
-        """Return the body and the other numbers with these coordinates; their own are zero."""
+        """Return the body and the other numbers with these coordinates; zero gives the mean values."""
         moved = self._others @ coordinates
         values: list[Any] = []
         for value in self._values:
@@ -378,11 +378,11 @@ class Neighbours:
 
     @property
     def start(self) -> tuple[Any, ...]:
-        """The body and the other numbers as they are."""
+        """The body and the other numbers, unchanged."""
         return tuple(self._values) if self.body is None else (self.body, *self._values)
 
     def step(self, direction: Floats) -> float:
-        """Return the longest step, up to one deviation, that leads to bodies both ways."""
+        """Return the longest step, up to one deviation, with possible bodies in both directions."""
         step = 1.0
         for _ in range(HALVINGS):
             try:
@@ -396,7 +396,7 @@ class Neighbours:
         raise PolhodeError(message)
 
     def probes(self, step: float) -> Iterator[tuple[list[tuple[Any, ...]], list[tuple[Any, ...]]]]:
-        """Return the bodies a step each way along each probe: as moved here, and as the body knows."""
+        """Return the bodies one step both ways along each probe: by this class, and by the body itself."""
         if self.body is None:
             return
         slopes, bends = self.body._probes()
@@ -410,7 +410,7 @@ class Neighbours:
             yield [(body, *self._values) for body in here], [(body, *self._values) for body in there]
 
     def draws(self, n: int, seed: int) -> Iterator[tuple[Any, ...]]:
-        """Draw bodies and other numbers, and warn of draws that no body has."""
+        """Draw bodies and other numbers; warn of draws that no body can have."""
         generator = np.random.default_rng(seed)
         refused = 0
         made = 0
@@ -435,7 +435,7 @@ class Neighbours:
 
 
 class _Way:
-    """The way from a body to its neighbours, by changes of its ten numbers that are right to first order."""
+    """Map from a change of the ten numbers, right to first order, to a neighbouring body."""
 
     def __init__(self, body: RigidBody, factor: Floats) -> None:
         tensor, principal = body.inertia, body.principal
@@ -448,12 +448,12 @@ class _Way:
         # Straight steps leave what has no extent along an axis.
         is_flat = second.min() <= 1e-9 * second.max() and factor.any()
         self._is_straight = not is_flat and self._misses(self._straight, slopes, bends) <= self._misses(
-            self._turned, slopes, bends
+            self._perturb, slopes, bends
         )
 
     def to(self, change: Floats) -> RigidBody:
         """Return the body after a change."""
-        return _body(self._straight(change) if self._is_straight else self._turned(change))
+        return _body(self._straight(change) if self._is_straight else self._perturb(change))
 
     def straight_to(self, change: Floats) -> RigidBody:
         """Return the body after a change that is right to second order."""
@@ -462,7 +462,7 @@ class _Way:
     def _straight(self, change: Floats) -> Floats:
         return self._numbers + change
 
-    def _turned(self, change: Floats) -> Floats:
+    def _perturb(self, change: Floats) -> Floats:
         """Return the ten numbers after a change of principal moments and angles."""
         turned = self._axes.T @ _symmetric(change[4:]) @ self._axes
         gaps = np.where(self._apart, self._moments[None, :] - self._moments[:, None], 1.0)
@@ -473,7 +473,7 @@ class _Way:
         return np.array([*(self._numbers[:4] + change[:4]), *(tensor[place] for place in ORDER)])
 
     def _misses(self, way: Callable[[Floats], Floats], slopes: Floats, bends: Floats) -> float:
-        """Describe how far from the body's own second order a way along its probes leads."""
+        """Compute the distance of a step along the probes from the body's own second order."""
         missed = 0.0
         for slope, bend in zip(slopes, bends, strict=True):
             even = 0.5 * (way(slope) + way(-slope)) - self._numbers
@@ -510,7 +510,7 @@ def _number(argument: Any, place: int) -> Uncertain:
 
 
 def _body(numbers: Floats) -> RigidBody:
-    """Make a body; what a lamina or rod lacks by rounding is none."""
+    """Make a body; a violation of the triangle inequality by rounding (lamina, rod) is ignored."""
     return _core.RigidBody(float(numbers[0]), _symmetric(numbers[4:]), numbers[1:4], rtol=1e-13)
 
 

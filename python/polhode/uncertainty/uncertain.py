@@ -1,4 +1,4 @@
-"""Uncertain numbers: several as one object, and those of the package `uncertainties`, in and out."""
+"""Uncertain numbers: several as one object, and conversion from and to the package `uncertainties`."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from polhode import RigidBody
 
 __all__ = [
-    "TenNumbers",
+    "InertialParameters",
     "joined",
     "to_ufloats",
     "ufloat_kinds",
@@ -78,7 +78,7 @@ def joined(values: Any) -> Any:
 
 
 class _Number:
-    """A number with its change by one standard deviation of each variable; to numpy an object, no list."""
+    """A number with its change by one standard deviation of each variable; NumPy treats it as one object."""
 
     def __init__(self, value: Any, terms: dict[tuple[int, int], float]) -> None:
         self.value = float(value)
@@ -86,7 +86,7 @@ class _Number:
 
 
 def _holds(values: Any, kinds: tuple[type, ...]) -> bool:
-    """Whether there is one: nothing is asked of other objects, which may call the package anew."""
+    """Whether an uncertain number is among the values; other objects are not touched."""
     rest: list[Any] = [values]
     seen: dict[int, Any] = {}  # a list may hold itself
     while rest:
@@ -136,11 +136,11 @@ _WORDS: Final[dict[Any, tuple[int, int]]] = {}
 """The variable of this package for each variable of `uncertainties` that was met. These cannot be referred to
 weakly, and one may come back in any later number, so they are kept."""
 _MET: Final[dict[tuple[int, int], Any]] = {}
-"""The way back: variables of `uncertainties` for those of this package, met or made."""
+"""The inverse map: variables of `uncertainties` for those of this package."""
 
 
-class TenNumbers(NamedTuple):
-    """The numbers of a body, as numbers of the package *uncertainties*.
+class InertialParameters(NamedTuple):
+    """Inertial parameters of a body, as numbers of the package *uncertainties*.
 
     Attributes
     ----------
@@ -158,13 +158,13 @@ class TenNumbers(NamedTuple):
 
 
 def ufloat_kinds() -> tuple[type, ...]:
-    """Return the class of their numbers, where somebody has loaded the package."""
+    """Return the class of numbers of `uncertainties`, if the package is loaded."""
     module = sys.modules.get("uncertainties")
     return () if module is None else (module.UFloat,)
 
 
 def ufloat_terms(number: Any) -> dict[tuple[int, int], float]:
-    """Return the change of one of their numbers by one standard deviation of each of our variables.
+    """Return the change of a number of `uncertainties` by one standard deviation of each variable of polhode.
 
     What depends on one variable there depends on one variable here, in all calls.
     """
@@ -182,7 +182,7 @@ def ufloat_terms(number: Any) -> dict[tuple[int, int], float]:
 
 
 def _words(variable: Any) -> tuple[int, int]:
-    """Our variable for one of theirs."""
+    """Return the variable of polhode for a variable of `uncertainties`."""
     if variable not in _WORDS:
         high, low = _core.Uncertain(0.0, 1.0)._forms()[0][0][0]
         _WORDS[variable] = (high, low)
@@ -190,7 +190,7 @@ def _words(variable: Any) -> tuple[int, int]:
     return _WORDS[variable]
 
 
-def to_ufloats(body: RigidBody) -> TenNumbers:
+def to_ufloats(body: RigidBody) -> InertialParameters:
     """Return the numbers of one body as numbers of the package *uncertainties*, with all their correlations.
 
     Parameters
@@ -199,7 +199,7 @@ def to_ufloats(body: RigidBody) -> TenNumbers:
 
     Returns
     -------
-    TenNumbers
+    InertialParameters
         Mass, centre of mass and tensor about the centre of mass. They are correlated with those numbers of
         *uncertainties* that the body was made of.
 
@@ -241,7 +241,7 @@ def to_ufloats(body: RigidBody) -> TenNumbers:
     center, tensor = body.center_of_mass.tolist(), body.inertia
     element = {(0, 0): 4, (1, 1): 5, (2, 2): 6, (0, 1): 7, (0, 2): 8, (1, 2): 9}
     rows = [[number(float(tensor[i, j]), element[min(i, j), max(i, j)]) for j in range(3)] for i in range(3)]
-    return TenNumbers(
+    return InertialParameters(
         number(body.mass, 0),
         np.array([number(c, 1 + k) for k, c in enumerate(center)], dtype=object),
         np.array(rows, dtype=object),
@@ -249,7 +249,7 @@ def to_ufloats(body: RigidBody) -> TenNumbers:
 
 
 def _variable(words: tuple[int, int], ufloat: Callable[[float, float], Any]) -> Any:
-    """Their variable for one of ours."""
+    """Return the variable of `uncertainties` for a variable of polhode."""
     if words not in _MET:
         variable = ufloat(0.0, 1.0)
         _MET[words] = variable

@@ -1,4 +1,4 @@
-"""Numbers as functions of the variables (source, place) that they are uncertain by."""
+"""Numbers as functions of the variables (source, place) of their uncertainty."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ __all__ = [
 
 
 def rows_of(shape: tuple[int, ...], stack: tuple[int, ...]) -> list[int]:
-    """Which row of what has one shape each row of a stack takes."""
+    """For each row of a broadcast stack: return the index of its source row."""
     rows = np.arange(np.prod(shape, dtype=int)).reshape(shape)
     taken: list[int] = np.broadcast_to(rows, stack).ravel().tolist()
     return taken

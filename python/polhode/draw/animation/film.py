@@ -40,7 +40,7 @@ __all__ = [
     "Picture",
     "draw_disc",
     "film",
-    "placed",
+    "place_names",
 ]
 
 _SIZE: Final = 480
@@ -81,7 +81,7 @@ def film(
     program = "" if is_gif else _ffmpeg(file)
     picture = Picture(scene, pixels, has_labels=labels)
 
-    def shown() -> Iterator[Picture]:
+    def show_frames() -> Iterator[Picture]:
         for frame in range(count):
             picture.show(frame)
             yield picture
@@ -89,9 +89,9 @@ def film(
                 progress((frame + 1) / count)
 
     if is_gif:
-        _write_gif(shown(), file, _delays(count, scene.duration))
+        _write_gif(show_frames(), file, _delays(count, scene.duration))
     else:
-        _write_mp4(shown(), file, picture, program, count / scene.duration)
+        _write_mp4(show_frames(), file, picture, program, count / scene.duration)
 
 
 def _delays(count: int, duration: float) -> list[int]:
@@ -127,7 +127,7 @@ def _write_mp4(pictures: Iterator[Picture], file: Path, picture: Picture, progra
 
 
 def _end(writer: Any, file: Path, error: BaseException | None = None) -> None:
-    """Wait for ffmpeg to end; an error with its own words where it failed."""
+    """Wait for ffmpeg to end; if it failed, raise an error with its message."""
     try:
         writer.finish()
     except subprocess.CalledProcessError as failed:
@@ -177,15 +177,15 @@ _BODY: Final = 0.8
 _ZOOM: Final = 1.15
 _AXIS_DASHES: Final = ("--", "-", ":")
 _PATH_COLOR: Final = "#555555"
-"""Of the path of a top's axis."""
+"""Colour of the path of a top's axis."""
 _RING: Final = np.linspace(0.0, 2.0 * np.pi, 49)
 _TITLE: Final[dict[str, Any]] = {"fontsize": 11, "weight": "bold"}
 _TEXT: Final[dict[str, Any]] = {"fontsize": 10}
 _NAME: Final[dict[str, Any]] = {"fontsize": 11}
 _TITLE_PART: Final = 0.25
-"""Of the height, that a title takes at most."""
+"""Largest fraction of the height for the title."""
 _FOOT_PART: Final = 0.35
-"""That the speeds of wheels take at most."""
+"""Largest fraction of the height for the speeds of wheels."""
 _LEAST: Final = 0.6
 """Letters so many times smaller are still read."""
 
@@ -229,12 +229,12 @@ class Picture:
         self._ax.patch.set_alpha(0.0)
 
     def pixels(self) -> NDArray[np.uint8]:
-        """Draw and give red, green, blue and opacity, shape (height, width, 4)."""
+        """Draw, and return red, green, blue and opacity, shape (height, width, 4)."""
         self._canvas.draw()
         return np.array(self._canvas.buffer_rgba())
 
     def show(self, frame: int) -> None:
-        """Put everything where it is in a frame."""
+        """Move everything to its place in a frame."""
         self._ax.clear()
         view = toward_viewer(self._ax)
         show_around(self._ax, np.zeros(3), 0.95)
@@ -280,7 +280,7 @@ class Picture:
         self._ax.plot(*tips.T, color=OMEGA_COLOR, alpha=0.5, linewidth=1.0, zorder=3)
 
     def _draw_arrows(self, frame: int, to_space: Floats) -> list[tuple[Floats, str, str]]:
-        """Draw h, L and ω; give their tips, colours and names."""
+        """Draw h, L and ω; return their tips, colours and names."""
         scene = self._scene
         tips = [(scene.path[scene.sample[frame]] / longest(scene.path), OMEGA_COLOR, "ω")]
         strongest = longest(scene.momentum)
@@ -300,27 +300,27 @@ class Picture:
             text.remove()
         scene = self._scene
         middle = self._on_screen(np.zeros((1, 3)))[0]
-        names = [self._named(text, color, "bold", tip, middle) for tip, color, text in tips]
+        names = [self._make_name(text, color, "bold", tip, middle) for tip, color, text in tips]
         for k, (axis, color) in enumerate(zip(scene.axes.T, AXIS_COLORS, strict=True)):
-            names.append(self._named(f"e{'₁₂₃'[k]}", color, "normal", 1.05 * to_space @ axis, middle))
+            names.append(self._make_name(f"e{'₁₂₃'[k]}", color, "normal", 1.05 * to_space @ axis, middle))
         scale = _BODY / longest(scene.shape.vertices)
         for disc in scene.discs:
             if view @ to_space @ disc.axis > 0.0:  # else it is behind the body
                 rim = scale * disc.circle(_RING, disc.radius, disc.half) @ to_space.T
                 edge = rim[np.linalg.norm(self._on_screen(rim) - middle, axis=1).argmax()]
                 own = self._on_screen(rim.mean(axis=0, keepdims=True))[0]
-                names.append(self._named(disc.name, INSIDE_COLOR, "normal", edge, own))
+                names.append(self._make_name(disc.name, INSIDE_COLOR, "normal", edge, own))
         for text, direction in zip("xyz", np.eye(3), strict=True):
-            names.append(self._named(text, "0.5", "normal", 1.3 * direction, middle))
+            names.append(self._make_name(text, "0.5", "normal", 1.3 * direction, middle))
         self._names = [
             self.figure.text(
                 *(there / self._size), name.text, color=name.color, weight=name.weight, ha="center",
                 va="center_baseline", path_effects=self._outline, parse_math=False, **_NAME,
             )
-            for name, there in placed(names, self._low, self._high)
+            for name, there in place_names(names, self._low, self._high)
         ]  # fmt: skip
 
-    def _named(self, text: str, color: str, weight: str, point: Floats, middle: Floats) -> Name:
+    def _make_name(self, text: str, color: str, weight: str, point: Floats, middle: Floats) -> Name:
         """Return the name of a point in space, which stands away from a point of the picture."""
         at = self._on_screen(point[np.newaxis])[0]
         far = float(np.linalg.norm(at - middle))
@@ -335,7 +335,7 @@ class Picture:
         return seen
 
     def _write_title(self) -> float:
-        """Write the title, in as many lines as it needs; give the height that it takes."""
+        """Write the title, in as many lines as it needs; return its height."""
         margin, line = self._line(_TEXT), self._line(_TITLE)
         room, most = self._size[0] - margin, max(1, int(_TITLE_PART * self._size[1] / line))
         lines: list[str] = []
@@ -349,7 +349,7 @@ class Picture:
         return 0.35 * margin + len(lines) * line
 
     def _write_foot(self) -> float:
-        """Make room for the time and the speeds of wheels, in columns; give the height that they take."""
+        """Make room for the time and the speeds of wheels, in columns; return their height."""
         scene, line = self._scene, self._line(_TEXT)
         texts = [
             max((disc.words(k, factor, scene.time_unit) for k in range(len(scene.t))), key=len)
@@ -400,7 +400,7 @@ _DISC_RING: Final = np.linspace(0.0, 2.0 * np.pi, 49)
 def draw_disc(
     ax: Any, disc: Disc, to_space: Floats, scale: float, turned: float | None, view: Floats
 ) -> bool:
-    """Draw a wheel at an attitude; tell whether it is on the near side of the body.
+    """Draw a wheel at an attitude; return whether it is on the near side of the body.
 
     Parameters
     ----------
@@ -454,14 +454,14 @@ def draw_disc(
 
 _AROUND: Final = np.deg2rad([0.0, 45.0, -45.0, 90.0, -90.0, 135.0, -135.0, 180.0])
 _FAR: Final = (0.75, 1.4, 2.2)
-"""From the point to the text, in heights of the text."""
+"""Distances from the point to the text, in heights of the text."""
 _APART: Final = 0.1
-"""Least space between two names, in the same."""
+"""Least space between two names, in heights of the text."""
 
 
 @dataclass(frozen=True)
 class Name:
-    """What is written beside a point of a picture.
+    """A text beside a point of a picture.
 
     Attributes
     ----------
@@ -481,8 +481,8 @@ class Name:
     size: Floats
 
 
-def placed(names: Sequence[Name], low: Floats, high: Floats) -> list[tuple[Name, Floats]]:
-    """Find the middle of each name; one that has no room of its own between two corners is left out.
+def place_names(names: Sequence[Name], low: Floats, high: Floats) -> list[tuple[Name, Floats]]:
+    """Find a free place for each name between two corners; a name without room is left out.
 
     Parameters
     ----------

@@ -31,7 +31,7 @@ _MODULES: Final = (
     "vectors", "double", "elliptic", "free", "frames", "trail", "labels", "camera", "theme", "surface",
     "solid", "clock", "wheels", "views", "energy", "live", "main",
 )  # fmt: skip
-"""Of the folder ``page``, each after those that it imports; a browser reads them as one."""
+"""Modules of the folder ``page``, each after those that it imports; a browser reads them as one."""
 _SHARED: Final = {
     "SECONDS": SECONDS,
     "PICTURES": RATE,
@@ -41,14 +41,14 @@ _SHARED: Final = {
     "RINGS": RINGS,
     "TINTS": BOX_TINTS.tolist(),
 }
-"""What the package and the page both know: the module ``shared`` that others import is written of it."""
+"""Constants that the package and the page share, written as the page's module ``shared``."""
 
 _SHORT: Final = (1e-30, 1e30)
 """Sizes that keep their digits in floats of four bytes."""
 
 
 def page(scene: Scene) -> str:
-    """Write the page: what is in the folder ``page`` as one text, with the motion in it.
+    """Write the page: the files of the folder ``page`` and the motion, as one text.
 
     Parameters
     ----------
@@ -63,11 +63,11 @@ def page(scene: Scene) -> str:
         "title": scene.title,
         "time_unit": scene.time_unit,
         "duration": scene.duration,
-        "t": _packed(scene.t, "<f8"),
-        "quaternion": _packed(scene.quaternion, "<f4"),
-        "omega": _packed(omega, "<f4"),
+        "t": _encode(scene.t, "<f8"),
+        "quaternion": _encode(scene.quaternion, "<f4"),
+        "omega": _encode(omega, "<f4"),
         "omega_unit": omega_unit,
-        "inside": None if inside is None else _packed(inside, "<f4"),
+        "inside": None if inside is None else _encode(inside, "<f4"),
         "inside_unit": inside_unit,
         "axes": scene.axes.T.tolist(),
         "moments": scene.moments.tolist(),
@@ -83,9 +83,9 @@ def page(scene: Scene) -> str:
         },
         "wheels": [_wheel(disc, shape_unit) for disc in scene.discs],
         "energy": _energy(scene),
-        "vertices": _packed(vertices, "<f4"),
-        "faces": _packed(shape.faces, "<u4"),
-        "colors": _packed(shape.colors, "u1"),
+        "vertices": _encode(vertices, "<f4"),
+        "faces": _encode(shape.faces, "<u4"),
+        "colors": _encode(shape.colors, "u1"),
     }
     # Inside a script element "</script" ends it, and after "<!--" and "<script" its own end does not.
     text = json.dumps(motion, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
@@ -105,7 +105,7 @@ def _start(scene: Scene) -> dict[str, list[float]] | None:
 
 
 def _surface(surface: Surface) -> dict[str, Any]:
-    """Return what the path in the body lies on: the kind of motion, marks and curves of a gyrostat."""
+    """Return the surface of the path in the body: the kind of motion, marks and curves of a gyrostat."""
     return {
         "kind": surface.kind,
         "momentum": None if surface.momentum is None else surface.momentum.tolist(),
@@ -117,7 +117,7 @@ def _surface(surface: Surface) -> dict[str, Any]:
                 "direction": mark.direction.tolist(),
                 "circle": None if mark.circle is None else mark.circle.tolist(),
                 "level": mark.level,
-                "curve": None if mark.curve is None else _packed(mark.curve, "<f4"),
+                "curve": None if mark.curve is None else _encode(mark.curve, "<f4"),
             }
             for mark in surface.marks
         ],
@@ -125,7 +125,7 @@ def _surface(surface: Surface) -> dict[str, Any]:
 
 
 def _in_reach(vectors: Floats) -> tuple[Floats, float]:
-    """Return vectors as short floats hold them, and the unit that they are counted in: a power of two."""
+    """Return vectors in a unit in which single precision holds them, and this unit: a power of two."""
     size = longest(vectors)
     unit = 1.0 if _SHORT[0] < size < _SHORT[1] else float(2.0 ** np.floor(np.log2(size)))
     return vectors / unit, unit
@@ -142,8 +142,8 @@ def _wheel(disc: Disc, unit: float) -> dict[str, Any]:
         "radius": disc.radius / unit,
         "half": disc.half / unit,
         "constant": float(rate[0]) if rate is not None and is_constant else None,
-        "rate": None if rate is None or is_constant else _packed(rate, "<f4"),
-        "angle": None if angle is None or is_constant else _packed(angle, "<f8"),
+        "rate": None if rate is None or is_constant else _encode(rate, "<f4"),
+        "angle": None if angle is None or is_constant else _encode(angle, "<f8"),
     }
 
 
@@ -151,15 +151,15 @@ def _energy(scene: Scene) -> dict[str, Any]:
     """Return the energy at the frames, in all digits, so that a drift is the motion's own."""
     energy = scene.energy
     return {
-        "kinetic": None if scene.is_free else _packed(energy.kinetic, "<f8"),
-        "potential": None if energy.potential is None else _packed(energy.potential, "<f8"),
+        "kinetic": None if scene.is_free else _encode(energy.kinetic, "<f8"),
+        "potential": None if energy.potential is None else _encode(energy.potential, "<f8"),
         "why": energy.why,
         "size": energy.size,
         "travel": energy.travel,
     }
 
 
-def _packed(numbers: np.ndarray[Any, Any], kind: str) -> str:
+def _encode(numbers: np.ndarray[Any, Any], kind: str) -> str:
     """Write numbers as the text of their bytes."""
     return base64.b64encode(np.ascontiguousarray(numbers, dtype=kind).tobytes()).decode("ascii")
 

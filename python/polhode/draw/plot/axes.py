@@ -1,4 +1,4 @@
-"""Axes to draw in, how they look, and surfaces with the curves on them in the right order."""
+"""Axes and their style, and surfaces that hide the curves behind them."""
 
 from __future__ import annotations
 
@@ -40,11 +40,11 @@ __all__ = [
     "translucent",
 ]
 
-_Given = TypeVar("_Given")
+_AxesArgument = TypeVar("_AxesArgument")
 _FRAME: Final = 56.0
 """Points that labels, numbers and margins take of the height of a picture over time."""
 _ENTRY: Final = 4.2
-"""What a legend adds to a text for its line and the room to the next entry, in sizes of its font."""
+"""Width of a legend's line and of the gap to the next entry, in sizes of its font."""
 
 
 def matplotlib(module: str) -> Any:
@@ -55,19 +55,19 @@ def matplotlib(module: str) -> Any:
 def axes_2d(ax: Axes | None) -> Axes:
     """Return the axes to draw in, in a new figure where there are none."""
     if ax is not None:
-        return _checked(ax)
+        return _check_axes(ax)
     return cast("Axes", matplotlib("pyplot").subplots(layout="constrained")[1])
 
 
 def axes_3d(ax: Axes3D | None) -> Axes3D:
     """Return the axes of three dimensions to draw in, in a new figure where there are none."""
     if ax is not None:
-        return _checked(ax)
+        return _check_axes(ax)
     figure = matplotlib("pyplot").figure(layout="constrained")
     return cast("Axes3D", figure.add_subplot(projection="3d", computed_zorder=False))
 
 
-def _checked(ax: _Given) -> _Given:
+def _check_axes(ax: _AxesArgument) -> _AxesArgument:
     if isinstance(ax, str | PathLike):
         raise TypeError(
             f"ax: expected axes of matplotlib, got {str(ax)!r}; draw first and save the figure: "
@@ -77,7 +77,7 @@ def _checked(ax: _Given) -> _Given:
 
 
 def tidy(ax: Axes) -> Axes:
-    """Return axes over time the grid and the open frame that all of them have."""
+    """Set the grid and the open frame that all axes over time have."""
     ax.margins(x=0.0)
     ax.grid(color="0.9", linewidth=0.6)
     ax.set_axisbelow(True)
@@ -125,7 +125,7 @@ def in_lines(ax: Axes, label: str) -> str:
 
 
 def show_around(ax: Axes3D, middle: Any, half: float) -> None:
-    """Show the cube around a point that reaches so far along every axis."""
+    """Set the limits of all axes to a cube around a point, with this half side."""
     for name, value in zip("xyz", middle, strict=True):
         getattr(ax, f"set_{name}lim")(value - half, value + half)
 
@@ -158,7 +158,7 @@ def solid_ellipsoid(ax: Axes3D, semi_axes: Floats, axes: Floats, center: Floats,
 
 
 def translucent(surface: Any, opacity: float) -> None:
-    """Let what is behind a surface of many pieces be seen through it.
+    """Make a surface of many pieces translucent.
 
     The pieces are drawn opaque, and their picture is made translucent as a whole. Pieces that are translucent
     one by one cover each other along their edges, which is seen as a grid.
@@ -166,12 +166,12 @@ def translucent(surface: Any, opacity: float) -> None:
     if opacity >= 1.0:
         return
 
-    def thinned(picture: Floats, _dpi: float) -> tuple[Floats, int, int]:
+    def limit_opacity(picture: Floats, _dpi: float) -> tuple[Floats, int, int]:
         thin = picture.copy()
         thin[..., 3] = np.minimum(thin[..., 3], opacity)  # matplotlib may filter twice
         return thin, 0, 0
 
-    surface.set_agg_filter(thinned)
+    surface.set_agg_filter(limit_opacity)
     surface.set_rasterized(True)  # formats of lines, such as SVG, know no filters
 
 

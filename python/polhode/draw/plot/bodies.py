@@ -11,7 +11,7 @@ from polhode._hints import check_kind, with_hints
 from polhode._optional import require
 from polhode.draw.plot.axes import axes_3d, show_around, toward_viewer, translucent
 from polhode.draw.style import AXIS_COLORS, OUTLINE_COLOR
-from polhode.draw.triangles import cut, unit_normals
+from polhode.draw.triangles import subdivide, unit_normals
 
 if TYPE_CHECKING:
     from mpl_toolkits.mplot3d.axes3d import Axes3D
@@ -68,7 +68,7 @@ def body(
     corners = np.asarray(faces, dtype=np.int64)
     size = max(float(np.ptp(points, axis=0).max()), float(np.finfo(float).tiny))
     normals = unit_normals(points[corners])
-    pieces, owner = cut(points[corners], size / _PIECES)
+    pieces, owner = subdivide(points[corners], size / _PIECES)
     brightness = 0.66 + 0.42 * (normals @ (_LIGHT / np.linalg.norm(_LIGHT)))
     own = _SURFACE if colors is None else _core.real_numbers(colors, "colors")
     if own.shape not in ((3,), (len(corners), 3)):

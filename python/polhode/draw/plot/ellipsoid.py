@@ -316,13 +316,13 @@ def _disc(ax: Axes3D, height: float, radius: float) -> None:
 
 _AROUND: Final = np.linspace(0.0, 2.0 * np.pi, 121)
 _INK: Final = "#222222"
-"""Of the circle on which axes lie anywhere."""
+"""Colour of the circle of axes with any direction in a plane."""
 
 
 def error_ellipses(
     ax: Axes3D, body: RigidBody, semi_axes: Floats, center: Floats, coverage: float, enlarged: float
 ) -> None:
-    """Draw them about the ends of the axes, and name their sizes; nothing where nothing is uncertain.
+    """Draw error ellipses about the ends of the axes, with their sizes; nothing for a certain body.
 
     Parameters
     ----------
@@ -408,7 +408,7 @@ def _ellipses(
 def _free_axes(
     ax: Axes3D, body: RigidBody, semi_axes: Floats, center: Floats, loose: NDArray[np.bool_]
 ) -> list[Any]:
-    """Draw the circle on which two axes lie anywhere; of a ball there is none, since all three do."""
+    """Draw the circle of two axes that may have any direction in their plane; none for a ball."""
     if not loose.any():
         return []
     if loose.sum() > 1:
@@ -464,7 +464,7 @@ def angle_covariance(body: RigidBody) -> Floats | None:
 
 
 def axis_scatter(covariance: Floats, k: int) -> Floats:
-    """Covariance of where axis k points, along axes k + 1 and k + 2, shape (2, 2).
+    """Covariance of the direction of axis k, along axes k + 1 and k + 2, shape (2, 2).
 
     Parameters
     ----------

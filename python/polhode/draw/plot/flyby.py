@@ -1,4 +1,4 @@
-"""What became of clones after a flyby."""
+"""Picture of the clones after a flyby."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def flyby(
 
 
 def _hatch_tails(ax: Axes, values: Any, edges: Any) -> list[Any]:
-    """Hatch the outermost bars that hold values from beyond them; return what the legend says of it."""
+    """Hatch the outermost bars, which also hold the values beyond them; return the legend's entry."""
     patches: Any = matplotlib("patches")
     style = {"fill": False, "hatch": "////", "edgecolor": "0.2", "linewidth": 0.0}
     below, above = int((values < edges[0]).sum()), int((values > edges[-1]).sum())

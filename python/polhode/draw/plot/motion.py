@@ -47,7 +47,7 @@ _SHOWN: Final = 1e-12
 
 
 def _until(motion: FreeMotion | HeavyTop | GyrostatMotion, end: float | None) -> Trajectory:
-    """Return as many states of one motion in closed form as its curves need."""
+    """Compute the states of one motion in closed form at as many times as its curves need."""
     check_one(motion.shape, "angular_velocity")
     if end is None:
         raise ValueError(
@@ -210,7 +210,7 @@ def euler_angles(
 
 @with_hints
 def invariants(trajectory: Trajectory, ax: Axes | None = None, *, time_label: str = "s") -> Axes:
-    """Draw how far energy and angular momentum have drifted from their values at the start.
+    """Draw the drift of energy and angular momentum from their values at the start.
 
     Parameters
     ----------
@@ -285,7 +285,7 @@ def _components(
         for i in range(3):
             columns = [trajectory.t, curve[:, i], *([] if halves is None else [halves[number, :, i]])]
             if lowest is not None and i in lowest:
-                columns = _cut(columns, lowest[i])
+                columns = _cut_at_turns(columns, lowest[i])
             if halves is not None:
                 draw_band(ax, columns[0], columns[1], columns[2], i)
             ax.plot(
@@ -299,7 +299,7 @@ def _components(
 
 
 def _lowest(angles: Floats) -> float:
-    """Choose where the turn of an angle begins: at −180°, or at 0° where this saves half of the breaks."""
+    """Choose the range of an angle: from −180°, or from 0° if this saves half of the breaks."""
     breaks = [
         int((np.abs(np.diff(one, axis=-1)) > 0.5 * _TURN).sum())
         for one in (angles, np.where(angles < 0.0, angles + _TURN, angles))
@@ -307,8 +307,8 @@ def _lowest(angles: Floats) -> float:
     return 0.0 if breaks[0] >= max(1, 2 * breaks[1]) else -0.5 * _TURN
 
 
-def _cut(columns: list[Floats], lowest: float) -> list[Floats]:
-    """Bring an angle into its turn; where it leaves it, its curve goes to the edge and on from the other one.
+def _cut_at_turns(columns: list[Floats], lowest: float) -> list[Floats]:
+    """Bring an angle into its range. Where the angle leaves it, the curve goes on at the other edge.
 
     The columns are times, the angle, and what else goes with it.
     """
@@ -342,7 +342,7 @@ def _over_time(ax: Axes, time_label: str, quantity: str, note: str | None = None
 
 
 _INK: Final = "0.35"
-"""Of what the legend says of bands."""
+"""Colour of the legend's entry of bands."""
 
 
 def of_omega(trajectory: Trajectory, turn: Floats | None, coverage: float | None) -> Floats | str | None:
@@ -429,7 +429,7 @@ def draw_band(ax: Axes, t: Floats, curve: Floats, half: Floats, component: int) 
 def name_band(
     ax: Axes, t: Floats, half: Floats | str | None, coverage: float | None, scale: float
 ) -> tuple[str | None, int]:
-    """Prepare the legend's entry, and give what else the legend has to say, and how many columns it has.
+    """Prepare the legend's entry; return the other texts of the legend and its number of columns.
 
     It says why there is no band, or from when on one is wider than the scale of what is drawn: there at the
     latest the first order is not enough.

@@ -87,7 +87,7 @@ def portrait(
     check_one(gyrostat.shape, "gyrostat")
     if levels < 0:
         raise ValueError(f"levels: {levels} is negative")
-    inertia, inside, found, path = _asked(gyrostat, momentum)
+    inertia, inside, found, path = _read_gyrostat(gyrostat, momentum)
     new = ax is None
     ax = axes_3d(ax)
     if new:
@@ -178,7 +178,7 @@ def portraits(
     return np.asarray(row[0])
 
 
-def _asked(
+def _read_gyrostat(
     gyrostat: Gyrostat | GyrostatMotion, momentum: float | None
 ) -> tuple[Floats, Floats, Equilibria, Floats | None]:
     """Return the tensor, h/|L|, the equilibria and, of a motion, its path of L/|L| in the body."""
@@ -213,7 +213,7 @@ def _draw_path(ax: Axes3D, path: Floats) -> None:
 
 
 def _levels(stationary: list[float], count: int) -> list[float]:
-    """Energies between stationary ones, denser towards the extrema, where a curve's size is as the root."""
+    """Return energies between the stationary ones, denser near the extrema, where curves grow as the root."""
     distinct = sorted(set(stationary))
     if len(distinct) < 2:
         return []
@@ -237,7 +237,7 @@ def _levels(stationary: list[float], count: int) -> list[float]:
 
 
 def _curves(inertia: Floats, inside: Floats, level: float) -> Iterator[Floats]:
-    """Where the energy on the unit sphere has one value: pieces, cut at the edges of a cube."""
+    """Return the curve of one energy on the unit sphere, in pieces that end at the edges of a cube."""
     contourpy: Any = require("contourpy", extra="plot", purpose="drawing")
     edge = np.linspace(-0.25 * np.pi, 0.25 * np.pi, _CELLS + 1)
     for axis in range(3):
@@ -281,7 +281,7 @@ def _marks(ax: Axes3D, points: Floats, kinds: list[str], labels: bool) -> None:
 
 
 def _legend(kinds: list[str], width: float) -> dict[str, Any]:
-    """Return what a legend of marks is made of, in as many columns as so many points have room for."""
+    """Return the entries of a legend of marks, in as many columns as this width (in points) allows."""
     columns = columns_that_fit(width, [_LOOKS[kind][2] for kind in kinds], 9.0, len(kinds))
     return {
         "handles": [_mark(kind) for kind in kinds],

@@ -241,7 +241,7 @@ def _outline(mesh: PolyData) -> PolyData:
 
 
 def add_surface(plotter: Plotter, shape: Shape, name: str, opacity: float) -> list[Any]:
-    """Add a shaded surface in its colours with its outline; give the actors."""
+    """Add a shaded surface in its colours with its outline; return the actors."""
     mesh = surface(shape.vertices, shape.faces)
     colors = shape.colors.astype(np.uint8)
     actors = [
@@ -257,7 +257,7 @@ def add_surface(plotter: Plotter, shape: Shape, name: str, opacity: float) -> li
 
 
 AXIS_STYLE: Final[dict[str, Any]] = {"lighting": False, "reset_camera": False}
-"""Of lines: in their own colour from every side."""
+"""Style of lines: in their own colour from every side."""
 
 
 def pyvista() -> Any:
@@ -274,7 +274,7 @@ def new_plotter() -> Plotter:
 
 
 def show_all(plotter: Plotter) -> None:
-    """Move the camera to where all is seen, nearer than pyvista puts it."""
+    """Move the camera so that all is seen, nearer than pyvista does."""
     plotter.reset_camera()
     plotter.camera.zoom(1.1)
 
@@ -293,7 +293,7 @@ def line(start: Floats, end: Floats, radius: float) -> PolyData:
 
 
 def arrow(tip: Floats, radius: float) -> PolyData:
-    """Make an arrow from the origin, not of length zero; its head is as thick whatever its length."""
+    """Make an arrow from the origin; its head has the same thickness for any length."""
     length = float(np.linalg.norm(tip))
     mesh: PolyData = pyvista().Arrow(
         direction=tip,

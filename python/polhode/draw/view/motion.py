@@ -145,7 +145,7 @@ def motion(
 
 
 class _Player:
-    """The actors of a motion, put where they are at a sample."""
+    """The actors of a motion, placed as at one sample."""
 
     def __init__(self, plotter: Plotter, scene: Scene, name: str) -> None:
         self._plotter, self._scene, self._name = plotter, scene, name
@@ -154,9 +154,9 @@ class _Player:
         self._index, self._begun = 0, 0.0
         self._is_running = False
         self._slider: Any = None
-        self._tips = self._scaled(_core.rotate(scene.quaternion, scene.omega))
+        self._tips = self._scale(_core.rotate(scene.quaternion, scene.omega))
         inside = np.zeros((0, 3)) if scene.inside is None else _core.rotate(scene.quaternion, scene.inside)
-        momenta = self._scaled(np.concatenate([scene.momentum, inside]))
+        momenta = self._scale(np.concatenate([scene.momentum, inside]))
         self._momenta, self._inside = momenta[: len(scene.t)], momenta[len(scene.t) :]
         self._bodies = add_surface(plotter, scene.shape, f"{name}-body", 1.0)
         for k, (color, axis) in enumerate(zip(AXIS_COLORS, scene.axes.T, strict=True)):
@@ -175,7 +175,7 @@ class _Player:
         self._show(int(np.abs(self._scene.t - time).argmin()))
 
     def take_control(self) -> None:
-        """Return the window a slider for time, and let the space bar start and stop the motion."""
+        """Add a slider for time to the window; the space bar starts and stops the motion."""
         t = self._scene.t
         self._slider = self._plotter.add_slider_widget(
             self.seek,
@@ -192,7 +192,7 @@ class _Player:
         self._plotter.add_timer_event(max_steps=2**31 - 1, duration=_TICK, callback=self.tick)
 
     def toggle(self) -> None:
-        """Let the motion run, or stop it; from its end it begins anew."""
+        """Start or stop the motion; at its end it starts again."""
         self._is_running = not self._is_running
         if self._index == len(self._scene.t) - 1:
             self._index = 0
@@ -212,10 +212,10 @@ class _Player:
         self._plotter.render()
 
     def _rate(self) -> float:
-        """Return the time of the motion that goes by in a second."""
+        """Return the time of the motion that passes in one second."""
         return float(np.ptp(self._scene.t) or 1.0) / self._scene.duration
 
-    def _scaled(self, vectors: Floats) -> Floats:
+    def _scale(self, vectors: Floats) -> Floats:
         return vectors * (_ARROW * self._reach / longest(vectors))
 
     def _add_space(self) -> None:
@@ -265,13 +265,13 @@ class _Player:
 
 _RING: Final = np.linspace(0.0, 2.0 * np.pi, 49)
 _BESIDE: Final = 1.3
-"""How far its name stands from the middle, in radii."""
+"""Distance of a wheel's name from its middle, in radii."""
 _ABOVE: Final = 1.03
-"""How far the marks stand from the middle, in half thicknesses: outside of the faces."""
+"""Distance of the marks from the middle, in half thicknesses: outside of the faces."""
 
 
 class WheelActors:
-    """A disc with its marks, put where they are at a sample.
+    """A disc with its marks, placed as at one sample.
 
     Parameters
     ----------
@@ -295,12 +295,12 @@ class WheelActors:
         self._body = [self._add(rim, RIM_COLOR, "rim"), self._add(faces, DISC_COLOR, "faces")]
 
     def show(self, index: int, placed: Floats) -> None:
-        """Put it where it is at a sample, in a body that is placed so."""
+        """Place the wheel as at one sample, in a body with this placement."""
         for actor in self._body:
             actor.user_matrix = placed
         angle = 0.0 if self._disc.angle is None else float(self._disc.angle[index]) / self._factor
         for actor in self._marks:
-            actor.user_matrix = placed @ _turned(self._disc, angle)
+            actor.user_matrix = placed @ _turn_about_axis(self._disc, angle)
         around = self._disc.circle(_RING, _BESIDE * self._disc.radius, 0.0) @ placed[:3, :3].T
         highest = around[around[:, 2].argmax()]
         add_name(self._plotter, highest, self._disc.name, INSIDE_COLOR, f"{self._name}-label")
@@ -310,7 +310,7 @@ class WheelActors:
 
 
 def _marks(disc: Disc) -> list[Any]:
-    """Make a broad spoke and the others on both faces; rings in their place where the angle is not known."""
+    """Make one broad and several narrow spokes on both faces; rings instead if the angle is unknown."""
     thick = 0.02 * disc.radius
     if disc.angle is None:
         rings = [
@@ -329,7 +329,7 @@ def _marks(disc: Disc) -> list[Any]:
 
 
 def _fan(disc: Disc, angles: Floats, radius: float, above: float) -> Any:
-    """Make sectors of both faces, so many half thicknesses from the middle."""
+    """Make sectors on both faces, at this many half thicknesses from the middle."""
     sides = (-above * disc.half, above * disc.half)
     parts = [np.vstack([disc.middle + side * disc.axis, disc.circle(angles, radius, side)]) for side in sides]
     count = len(angles) + 1
@@ -337,7 +337,7 @@ def _fan(disc: Disc, angles: Floats, radius: float, above: float) -> Any:
     return surface(np.vstack(parts), np.vstack([first, first + count]))
 
 
-def _turned(disc: Disc, angle: float) -> Floats:
+def _turn_about_axis(disc: Disc, angle: float) -> Floats:
     """Return the turn about the axis of a disc, shape (4, 4)."""
     x, y, z = disc.axis
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

@@ -141,7 +141,7 @@ def ledger(
     is_part[made.order] = made.is_leaf
     parts = read_parts(read, is_part, where, overwrite=overwrite, rtol=rtol)
     words = {name: tuple(read.words(name)) for name in ("name", "comment") if name in read}
-    return _rolled(made, tuple(parents), is_part, parts, words, rtol, read.name or "table")
+    return _roll_up(made, tuple(parents), is_part, parts, words, rtol, read.name or "table")
 
 
 def ledger_of_bodies(
@@ -163,10 +163,10 @@ def ledger_of_bodies(
     made = make_tree(ids, parents, lambda row: repr(ids[row]))
     is_part = np.array([body is not None for body in bodies])
     parts = parts_of_bodies(ids, bodies)
-    return _rolled(made, tuple(parents), is_part, parts, {"comment": tuple(comments)}, None, "assembly")
+    return _roll_up(made, tuple(parents), is_part, parts, {"comment": tuple(comments)}, None, "assembly")
 
 
-def _rolled(
+def _roll_up(
     made: Tree,
     parents: tuple[str, ...],
     is_part: NDArray[np.bool_],
@@ -242,7 +242,7 @@ def _edges(table: Table, tree: Any) -> tuple[list[str], list[str]]:
 
 
 def _refuse_infinite(tree: Tree, numbers: tuple[Floats, ...], what: str) -> None:
-    """Name the lowest node whose numbers are beyond the range of floats; so are those of all above it."""
+    """Refuse numbers beyond the range of floats; the error names the lowest node that has them."""
     if all(np.isfinite(rows[:, 0]).all() for rows in numbers):
         return
     bad = np.flatnonzero(~np.isfinite(np.concatenate(numbers)).all(axis=0))
@@ -251,7 +251,7 @@ def _refuse_infinite(tree: Tree, numbers: tuple[Floats, ...], what: str) -> None
 
 
 def _rolled_sum(tree: Tree, amounts: Floats) -> Floats:
-    """Roll up a sum, by place."""
+    """Roll up a sum; the numbers are ordered by place."""
     amounts = np.where(tree.is_leaf, amounts, 0.0)
     for places in reversed(tree.levels[1:]):
         np.add.at(amounts, tree.above[places], amounts[places])

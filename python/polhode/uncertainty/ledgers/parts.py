@@ -39,7 +39,7 @@ __all__ = [
 
 SIGMAS: Final = tuple(f"sigma_{name}" for name in NUMBERS)
 _OWN: Final = (*NUMBERS, *SIGMAS, "growth", "density", "sigma_density")
-"""What the row of a part states in numbers; that of a node with children must not."""
+"""Columns of numbers in the row of a part; a node with children must not have them."""
 COLUMNS: Final = (
     "id", "parent", "name", "comment", *_OWN,
     "POIconv", "Ipoint", "about", "source", "file", "solid", "arguments", "predicted_mass",
@@ -53,7 +53,7 @@ _ABOUT: Final = ("", "center_of_mass", "com", "origin")
 
 
 class Parts(NamedTuple):
-    """What the table says of its leaves, by row; rows with children hold nothing of use.
+    """Data of the leaves of the table, by row; rows with children are meaningless.
 
     Attributes
     ----------
@@ -110,7 +110,7 @@ def read_parts(
     leaves = np.flatnonzero(is_leaf)
     if not overwrite:
         _refuse_own(table, ~is_leaf, where)
-    values, sigma = (_stacked(table, names) for names in (NUMBERS, SIGMAS))
+    values, sigma = (_stack_columns(table, names) for names in (NUMBERS, SIGMAS))
     of_density = table.numbers("sigma_density")
     is_silent = is_leaf & np.isnan(of_density)
     for cells in sigma:
@@ -143,7 +143,7 @@ def read_parts(
     return Parts(values[0], values[1:4], values[4:], growth, sigma, correlated, source, unstated, opposite)
 
 
-def _stacked(table: Table, names: tuple[str, ...]) -> Floats:
+def _stack_columns(table: Table, names: tuple[str, ...]) -> Floats:
     stacked = np.empty((len(names), table.count))
     for row, name in zip(stacked, names, strict=True):
         row[:] = table.numbers(name)
@@ -260,7 +260,7 @@ def _independent(values: Floats, sigma: Floats) -> Floats:
 
 
 def _check_bodies(values: Floats, leaves: Integers, where: Callable[[int], str], rtol: float | None) -> None:
-    """Let the constructor of bodies judge every part; name the first that it refuses."""
+    """Check every part with the constructor of bodies; the error names the first that it refuses."""
     for start in range(0, len(leaves), _CHUNK):
         some = leaves[start : start + _CHUNK]
         try:
@@ -436,7 +436,7 @@ def shape_rows(
             if key not in made:  # a file that is there often is read once
                 options = _arguments(arguments)
                 make = _of_file(table.folder / what) if kinds[0] == "file" else _shape(what)
-                made[key] = _called(make, what, options, weight)
+                made[key] = _call_maker(make, what, options, weight)
         except (ValueError, OSError) as error:
             kind = type(error) if isinstance(error, PolhodeError) else PolhodeError
             raise kind(f"{where(row)}: {error}") from error
@@ -482,7 +482,7 @@ def _shape(name: str) -> Callable[..., RigidBody]:
     return shape
 
 
-def _called(
+def _call_maker(
     make: Callable[..., RigidBody], what: str, options: dict[str, Any], weight: dict[str, float]
 ) -> RigidBody:
     """Make a body; arguments that it does not take are refused by name."""

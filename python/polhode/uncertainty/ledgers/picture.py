@@ -1,4 +1,4 @@
-"""Pictures of a ledger: who contributes mass, as a sunburst, and who contributes variance, as bars."""
+"""Pictures of a ledger: contributions to the mass as a sunburst, contributions to a variance as bars."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ if TYPE_CHECKING:
 __all__ = ["bars", "sunburst"]
 
 _RINGS: Final = 3
-"""Levels of a sunburst."""
+"""Largest number of levels of a sunburst."""
 _LEAST: Final = 0.004
-"""Of the circle: what is less is drawn together with its neighbours of that kind."""
+"""Fraction of the circle below which neighbouring wedges are drawn as one."""
 _FILLED: Final = 0.94
-"""Of their part of a figure, by axes that have neither labels nor a title."""
+"""Fraction of a figure for axes without labels and title."""
 _MARGIN: Final = 0.04
-"""Between a name and the edge of its wedge, of the width of a ring."""
+"""Margin between a name and the edge of its wedge, relative to the width of a ring."""
 _SIZES: Final = (8.0, 7.0, 6.0, 5.0)
-"""Of the letters of names, the best first."""
+"""Font sizes of names, the best first."""
 _DARK: Final = 0.5
 """Brightness below which letters are white."""
 _BARS: Final = 12
 _LONGEST: Final = 22
 _COLORS: Final = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#56B4E9", "#F0E442")
-"""Those of Okabe and Ito."""
+"""Colours of Okabe and Ito."""
 _OTHERS: Final = "0.8"
 
 

@@ -1,4 +1,4 @@
-"""What a ledger holds: nodes with their sums and uncertainties, who contributes to these; and its files."""
+"""Results of a ledger: nodes with sums and uncertainties, contributions of the parts, and files."""
 
 from __future__ import annotations
 

@@ -124,7 +124,7 @@ def roll_covariances(
         for start in range(0, len(level), _CHUNK // 8):
             dense = level[start : start + _CHUNK // 8]
             parents, starts, _ = groups(tree.above[dense])
-            moved = _shifted(unpack(covariances[:, slot[dense]]), values.arm[:, dense])
+            moved = _shift_matrices(unpack(covariances[:, slot[dense]]), values.arm[:, dense])
             covariances[:, slot[parents]] += np.add.reduceat(pack(moved), starts, axis=1)
     return covariances
 
@@ -159,7 +159,7 @@ def unpack(packed: Floats) -> Floats:
     return packed[_PLACE]
 
 
-def _shifted(matrices: Floats, d: Floats) -> Floats:
+def _shift_matrices(matrices: Floats, d: Floats) -> Floats:
     """Return S Q Sᵀ for Q of shape (10, 10, n)."""
     return shift(shift(matrices, d).swapaxes(0, 1), d)
 
@@ -195,17 +195,17 @@ def _add_leaves(
 
 
 def groups(above: Integers) -> tuple[Integers, Integers, Integers]:
-    """Return the parents, where the children of each begin, and how many they are."""
+    """Return the parents, the first child of each, and the number of its children."""
     starts = np.flatnonzero(np.diff(above, prepend=-2))
     return above[starts], starts, np.diff(starts, append=len(above))
 
 
 _ROUNDING: Final = 1e-15
-"""Of the sum of their sizes: what is left of effects that cancel."""
+"""Effects that cancel leave this fraction of the sum of their sizes."""
 
 
 class Contributions(NamedTuple):
-    """What each source of error adds to the variance of one number of a node.
+    """Contributions of each source of error to the variance of one number of a node.
 
     Attributes
     ----------
@@ -248,7 +248,7 @@ class Covariances:
         self._slot = np.where(is_dense, np.cumsum(is_dense) - 1, -1)
         packed = np.zeros((55, int(is_dense.sum())))
         own = np.setdiff1d(own, self._shared)
-        packed[:, self._slot[own]] = _squared(self._of(own))
+        packed[:, self._slot[own]] = _covariance_of_draws(self._of(own))
         self._packed = roll_covariances(tree, values, self._sigma, is_dense, packed)
         if len(self._shared):
             budget = Budget(name, len(tree.order), "rows")
@@ -258,7 +258,7 @@ class Covariances:
                 budget.spend("shared errors", len(pairs))
                 order = np.argsort(pairs, kind="stable")
                 nodes, starts, _ = groups(pairs[order])
-                squares = _squared(draws[:, :, order])
+                squares = _covariance_of_draws(draws[:, :, order])
                 self._packed[:, self._slot[nodes]] += np.add.reduceat(squares, starts, axis=1)
 
         self.sigma = self._sigmas()
@@ -287,7 +287,7 @@ class Covariances:
         return full
 
     def contributions(self, number: int, row: int) -> Contributions:
-        """Return which part adds what to the variance of one of the ten numbers of the node in a row."""
+        """Return the contributions of the parts to the variance of one of a node's ten numbers."""
         tree, values = self._tree, self._values
         node = int(tree.place[row])
         leaves = np.flatnonzero(tree.below(row) & tree.is_leaf)
@@ -368,7 +368,7 @@ def _rolled_draws(
         nodes, sources = keys // most, keys % most
 
 
-def _squared(draws: Floats) -> Floats:
+def _covariance_of_draws(draws: Floats) -> Floats:
     """Return the covariances of independent draws, packed: (10, 10, n) to (55, n)."""
     return pack(np.einsum("ajn,bjn->abn", draws, draws))
 

@@ -74,7 +74,7 @@ class Table:
         return column in self.columns
 
     def where(self, row: int) -> str:
-        """Name a row."""
+        """Return the name of a row for error messages."""
         place = f"row {row}" if self.lines is None else f"line {self.lines[row]}"
         return f"{self.name}: {place}" if self.name else place
 
@@ -106,14 +106,14 @@ class Table:
         if isinstance(cells, np.ndarray) and cells.dtype.kind in "fiu":
             numbers = cells.astype(np.float64, copy=False)
         else:
-            numbers = self._parsed(column, cells, percent)
+            numbers = self._parse_numbers(column, cells, percent)
         infinite = np.flatnonzero(np.isinf(numbers))
         if len(infinite):
             row = int(infinite[0])
             raise PolhodeError(f"{self.where(row)}: {column} must be finite, got {numbers[row]}")
         return numbers
 
-    def _parsed(self, column: str, cells: Any, percent: bool) -> NDArray[np.float64]:
+    def _parse_numbers(self, column: str, cells: Any, percent: bool) -> NDArray[np.float64]:
         words = [cell if isinstance(cell, float) else _word(cell) for cell in cells]
         try:
             numbers = np.array([float("nan" if word == "" else word) for word in words])
@@ -128,7 +128,7 @@ class Table:
             )
         except ValueError:
             if percent and any(str(word).endswith("%") for word in words):
-                return self._parsed(column, [_of_percent(word) for word in words], False)
+                return self._parse_numbers(column, [_of_percent(word) for word in words], False)
             row = next(row for row, word in enumerate(words) if not _is_number("nan" if word == "" else word))
         if row is not None:
             raise PolhodeError(
@@ -323,7 +323,7 @@ _SHOWN = 8
 
 
 class Tree(NamedTuple):
-    """Who is whose part.
+    """The tree of parts: the parent of each.
 
     Rows are those of the table. Places count through the levels from the root down: within a level the
     children of one parent stand side by side, in the order of their parents.
@@ -376,7 +376,7 @@ class Tree(NamedTuple):
         return depth
 
     def below(self, row: int) -> NDArray[np.bool_]:
-        """Return of each place whether it is the node of this row or below it."""
+        """For each place: return whether it is the node of this row or below it."""
         inside: NDArray[np.bool_] = self.order == row
         for places in self.levels[1:]:
             inside[places] |= inside[self.above[places]]
