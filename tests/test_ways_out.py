@@ -60,7 +60,7 @@ HANDING_ON = (
 """Ends of messages that hand on those of others, which are checked where they are made."""
 EXCEPTIONS = {
     "module {__name__} has no attribute {name}": "Python's own words, which tools expect",
-    "{scope.where}: {key}: {unknown(str(key), known)}": "`unknown` asks for the nearest key, or tells them all",
+    "{scope.where}: {key}: {unknown(str(key), known)}": "`unknown` asks for the nearest key or names all",
 }
 
 
