@@ -81,9 +81,9 @@ class Sources:
         FileFormatError
             If it is not there, or not one that the model may name.
         """
-        path, fault = self.addresses.find(address, folder)
-        if fault:
-            raise FileFormatError(f"{at.where}: {shorten(address)} ", fault)
+        path, reason = self.addresses.find(address, folder)
+        if reason:
+            raise FileFormatError(f"{at.where}: {shorten(address)} ", reason)
         if path is None or not path.is_file():
             name = shorten(address)
             raise FileFormatError(f"{at.where}: there is no file {name}; put it at {folder / name}")
