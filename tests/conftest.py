@@ -35,6 +35,17 @@ settings.register_profile(
 settings.load_profile(os.environ.get("POLHODE_HYPOTHESIS_PROFILE", "polhode"))
 
 
+LONG = 3600
+"""Seconds that a test marked `long` may take, unless it says otherwise."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Allow long tests their time."""
+    for item in items:
+        if item.get_closest_marker("long") and not item.get_closest_marker("timeout"):
+            item.add_marker(pytest.mark.timeout(LONG))
+
+
 def pytest_collection_finish() -> None:
     """Turn the garbage collector on, for what the tests make."""
     gc.freeze()

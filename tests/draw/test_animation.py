@@ -17,7 +17,7 @@ from page_data import data
 from PIL import Image
 from polhode import RigidBody, Trajectory, animation, euler_angles, solids
 from polhode.animation import animate
-from polhode.draw import clock, footage, sampling, shape, wheels
+from polhode.draw import sampling, shape, wheels
 
 
 @pytest.fixture(scope="module")
@@ -190,8 +190,8 @@ class TestTime:
         text = racket.animate(tmp_path / "racket.html").read_text("utf-8")
         names = ("SECONDS", "PICTURES", "TURN", "SPOKES", "SPOKE", "RINGS", "TINTS")
         found = {name: json.loads(text.split(f"\nconst {name} = ")[1].split(";\n")[0]) for name in names}
-        assert found["SECONDS"] == clock.SECONDS
-        assert (found["TURN"], found["PICTURES"]) == (sampling.TURN, footage.RATE)
+        assert found["SECONDS"] == sampling.SECONDS
+        assert (found["TURN"], found["PICTURES"]) == (sampling.TURN, sampling.RATE)
         assert (found["SPOKES"], found["SPOKE"], found["RINGS"]) == (
             wheels.SPOKES,
             wheels.SPOKE,

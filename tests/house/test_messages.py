@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from pathlib import Path
 from typing import TypeGuard
 
 import pytest
+from places import ROOT
 
-ROOT = Path(__file__).parents[1] / "python" / "polhode"
+PACKAGE = ROOT / "python" / "polhode"
 DOORS = {
     "cli/files.py": "the copy of standard input has a name that nobody knows",
     "io/unpacked.py": "an unpacked file has a name that nobody knows",
@@ -77,10 +77,10 @@ def is_pieces(node: ast.AST) -> TypeGuard[ast.Attribute]:
 
 def test_no_code_reads_a_message() -> None:
     found = {}
-    for path in ROOT.rglob("*.py"):
+    for path in PACKAGE.rglob("*.py"):
         lines = sorted(set(readers(ast.parse(path.read_text("utf-8")))))
         if lines:
-            found[path.relative_to(ROOT).as_posix()] = lines
+            found[path.relative_to(PACKAGE).as_posix()] = lines
     assert {name: lines for name, lines in found.items() if name not in DOORS} == {}
     assert found.keys() == DOORS.keys()
 

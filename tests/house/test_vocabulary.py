@@ -1,0 +1,86 @@
+"""One word a meaning: the parameters of every public function and method, by the table of words below."""
+
+from __future__ import annotations
+
+import inspect
+from typing import Any
+
+import polhode
+import pytest
+from public_objects import OBJECTS
+
+FOREIGN = {
+    "r": "point",
+    "com": "center_of_mass",
+    "centre": "center",
+    "tensor": "inertia",
+    "moi": "inertia",
+    "time": "t",
+    "times_out": "t",
+    "t_eval": "t",
+    "t_end": "end",
+    "until": "end",
+    "last": "end",
+    "members": "n",
+    "clones": "n",
+    "count": "n",
+    "omega0": "omega",
+    "orientation": "attitude",
+    "rotation_matrix": "attitude",
+    "output": "path",
+    "filename": "path",
+    "file": "path",
+    "units": "length_unit",
+    "unit": "length_unit",
+}
+"""Words that other libraries have, or that this one had, and the word here."""
+
+ALLOWED = {
+    ("polhode.units.metres_per", "unit"),  # of any length
+    ("polhode.distributions.Distribution.rows", "count"),
+}
+
+
+def parameters() -> list[tuple[str, str]]:
+    """Every parameter of a public function, method or class, by the dotted name of its owner."""
+    found = []
+    for name, value in OBJECTS.items():
+        try:
+            signature = inspect.signature(value)
+        except (TypeError, ValueError):  # no callable, or one without a signature
+            continue
+        found += [(name, parameter) for parameter in signature.parameters]
+    return found
+
+
+def test_parameters_have_the_words_of_the_vocabulary() -> None:
+    known = parameters()
+    assert len(known) > 500
+    faults = [
+        f"{owner}({name}): write {FOREIGN[name]}"
+        for owner, name in known
+        if name in FOREIGN and (owner, name) not in ALLOWED
+    ]
+    assert faults == []
+
+
+@pytest.mark.parametrize("name", ["inertia_about", "moment_about", "principal_about", "sigma_about"])
+def test_what_is_taken_about_a_point_says_about(name: str) -> None:
+    assert "about" in inspect.signature(getattr(polhode.RigidBody, name)).parameters
+
+
+@pytest.mark.parametrize(
+    "method",
+    [polhode.RigidBody.point_velocity, polhode.RigidBody.point_acceleration, polhode.Trajectory.point],
+)
+def test_a_point_that_is_asked_for_is_called_point(method: Any) -> None:
+    assert list(inspect.signature(method).parameters)[1] == "point"
+
+
+def test_no_parameter_of_a_picture_says_unit_without_converting() -> None:
+    labels = [
+        (owner, name)
+        for owner, name in parameters()
+        if owner.startswith(("polhode.plot", "polhode.view", "polhode.animation")) and name.endswith("_unit")
+    ]
+    assert labels == []
