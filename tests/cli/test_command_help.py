@@ -7,7 +7,7 @@ import shlex
 from dataclasses import fields, is_dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from command_line import one_line, run
@@ -78,9 +78,10 @@ def test_fields_are_called_as_options_are() -> None:
 
 def test_an_option_is_in_a_group_and_explained() -> None:
     for command, one in ARGUMENTS:
-        (group,) = one.parameter.group
+        parameter: Any = one.parameter
+        (group,) = parameter.group
         assert group.name not in ("", "Parameters"), f"{command} {one.name}"
-        assert one.parameter.help.endswith("."), f"{command} {one.name}"
+        assert parameter.help.endswith("."), f"{command} {one.name}"
 
 
 @pytest.mark.parametrize(
