@@ -60,22 +60,8 @@ class TestNames:
         modules = {name for name in visible if isinstance(getattr(polhode, name), types.ModuleType)}
         internal = modules - set(polhode.__all__)
         assert visible - internal == set(polhode.__all__)
-        known = {
-            "animation",
-            "cli",
-            "ensembles",
-            "events",
-            "free_motion",
-            "gyrostat",
-            "io",
-            "molecules",
-            "plot",
-            "results",
-            "robots",
-            "samples",
-            "symbolic",
-        }
-        known |= {"files", "trajectory", "units", "view"}
+        known = {"animation", "cli", "draw", "ensembles", "io", "molecules", "motion", "plot", "principal"}
+        known |= {"results", "robots", "samples", "symbolic", "units", "view"}
         assert internal <= known
 
     @pytest.mark.parametrize("name", MODULES)

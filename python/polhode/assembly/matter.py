@@ -91,7 +91,8 @@ def body_of_part(kind: str, table: Mapping[str, Any], scope: Scope, folder: Path
     except PartError:
         raise
     except PolhodeError as error:
-        error.args = (f"{scope.where}: ", error.words(_key))
+        pieces = [_key(piece) if isinstance(piece, Argument) else piece for piece in error.args]
+        error.args = (f"{scope.where}: ", *pieces)
         raise
     except (ValueError, TypeError, OverflowError, OSError) as error:
         what = words_of(error) if isinstance(error, OSError) else error

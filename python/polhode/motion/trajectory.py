@@ -967,8 +967,8 @@ class Trajectory(metaclass=Hinting):
             return self.load
         if "_within" not in self.__dict__:
             raise ValueError(
-                f"{what}: the wheels or dampers of this motion are unknown: the file holds only their "
-                "angular momentum"
+                f"{what}: the load of this motion is unknown: its file holds only the angular momentum of "
+                "wheels and dampers; simulate the motion anew with its load"
             )
         momentum, free = self._rotor_inside()
         return self._wheels_inside(what, index) if np.any(free) else _core.rotor(momentum)
