@@ -16,6 +16,7 @@ from polhode.io.loaded import SAVED_SUFFIXES, body_of_molecule, check_arguments,
 from polhode.io.mesh_solid import solid_of
 from polhode.io.reading import words_of
 from polhode.units import metres_per
+from polhode._format import Argument
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from polhode._core import RigidBody
-    from polhode._format import Argument
     from polhode.assembly.tables import Scope
     from polhode.io.loaded import Loaded
 
