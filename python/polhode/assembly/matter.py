@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from polhode import laminae, rods, solids
+from polhode._format import Argument
 from polhode.assembly.tables import COMMON, FILE, KINDS, PRINTED, PartError, check_keys, text_of
 from polhode.errors import PolhodeError
 from polhode.interop.printouts import from_printout
@@ -16,7 +17,6 @@ from polhode.io.loaded import SAVED_SUFFIXES, body_of_molecule, check_arguments,
 from polhode.io.mesh_solid import solid_of
 from polhode.io.reading import words_of
 from polhode.units import metres_per
-from polhode._format import Argument
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
