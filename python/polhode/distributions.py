@@ -400,8 +400,8 @@ class Distribution(ABC):
         return found
 
     @abstractmethod
-    def rows(self, source: Source, first: int, count: int) -> Any:
-        """Draw the numbers of `count` members from `first` on."""
+    def rows(self, source: Source, first: int, n: int) -> Any:
+        """Draw the numbers of `n` members from `first` on."""
 
     @property
     def most(self) -> int | None:
@@ -442,18 +442,18 @@ class Normal(Distribution):
     factor: Floats
     name: str | None = None
 
-    def rows(self, source: Source, first: int, count: int) -> Floats:
-        """Draw numbers of members, shape (count, ...)."""
+    def rows(self, source: Source, first: int, n: int) -> Floats:
+        """Draw numbers of members, shape (n, ...)."""
         width = self.mean.size
-        plain = _core.random_numbers("normal", *source, first, count, width)
+        plain = _core.random_numbers("normal", *source, first, n, width)
         if self.sigma is not None:
             scaled = plain * self.sigma.ravel()
         else:
             # Product by product and sum by sum: a matrix product rounds differently on each machine.
-            scaled = np.zeros((count, width))
+            scaled = np.zeros((n, width))
             for step in range(width):
                 scaled += plain[:, step, np.newaxis] * self.factor[:, step]
-        found: Floats = (self.mean.ravel() + scaled).reshape(count, *self.mean.shape)
+        found: Floats = (self.mean.ravel() + scaled).reshape(n, *self.mean.shape)
         return found
 
     def __repr__(self) -> str:
@@ -476,10 +476,10 @@ class Uniform(Distribution):
     high: Floats
     name: str | None = None
 
-    def rows(self, source: Source, first: int, count: int) -> Floats:
-        """Draw numbers of members, shape (count, ...)."""
-        parts = _core.random_numbers("uniform", *source, first, count, self.low.size)
-        found: Floats = self.low + (self.high - self.low) * parts.reshape(count, *self.low.shape)
+    def rows(self, source: Source, first: int, n: int) -> Floats:
+        """Draw numbers of members, shape (n, ...)."""
+        parts = _core.random_numbers("uniform", *source, first, n, self.low.size)
+        found: Floats = self.low + (self.high - self.low) * parts.reshape(n, *self.low.shape)
         return found
 
     def __repr__(self) -> str:
@@ -498,9 +498,9 @@ class UniformRotation(Distribution):
 
     name: str | None = None
 
-    def rows(self, source: Source, first: int, count: int) -> Floats:
-        """Draw unit quaternions of members, shape (count, 4)."""
-        found: Floats = _core.random_numbers("rotation", *source, first, count, 4)
+    def rows(self, source: Source, first: int, n: int) -> Floats:
+        """Draw unit quaternions of members, shape (n, 4)."""
+        found: Floats = _core.random_numbers("rotation", *source, first, n, 4)
         return found
 
     def __repr__(self) -> str:
@@ -523,17 +523,17 @@ class Samples(Distribution):
     order: Literal["as given", "shuffled", "with replacement"] = "as given"
     name: str | None = None
 
-    def rows(self, source: Source, first: int, count: int) -> Floats:
-        """Draw rows for members, shape (count, ...)."""
+    def rows(self, source: Source, first: int, n: int) -> Floats:
+        """Draw rows for members, shape (n, ...)."""
         size = len(self.values)
         if self.order == "with replacement":
-            parts = _core.random_numbers("uniform", *source, first, count, 1)[:, 0]
+            parts = _core.random_numbers("uniform", *source, first, n, 1)[:, 0]
             found: Floats = self.values[(parts * size).astype(np.int64)]
             return found
-        self.check(first + count, "n")
+        self.check(first + n, "n")
         if self.order == "shuffled":
-            return self.values[_shuffle(source, size)[first : first + count]]
-        return self.values[first : first + count]
+            return self.values[_shuffle(source, size)[first : first + n]]
+        return self.values[first : first + n]
 
     @property
     def most(self) -> int | None:
@@ -565,11 +565,11 @@ class PerMember(Distribution):
     function: Callable[[np.random.Generator], Any]
     name: str | None = None
 
-    def rows(self, source: Source, first: int, count: int) -> list[Any]:
+    def rows(self, source: Source, first: int, n: int) -> list[Any]:
         """Call the function for members, each with a generator of its own."""
         key = np.array(source, dtype=np.uint64)
         found: list[Any] = []
-        for member in range(first, first + count):
+        for member in range(first, first + n):
             rng = np.random.Generator(np.random.Philox(counter=_counter(member), key=key))
             try:
                 found.append(self.function(rng))

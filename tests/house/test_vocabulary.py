@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+from dataclasses import is_dataclass
 from typing import Any
 
 import polhode
@@ -37,14 +38,15 @@ FOREIGN = {
 
 ALLOWED = {
     ("polhode.units.metres_per", "unit"),  # of any length
-    ("polhode.distributions.Distribution.rows", "count"),
 }
 
 
 def parameters() -> list[tuple[str, str]]:
-    """Every parameter of a public function, method or class, by the dotted name of its owner."""
+    """Every parameter of a public function, method or class that is no record, by the name of its owner."""
     found = []
     for name, value in OBJECTS.items():
+        if inspect.isclass(value) and (issubclass(value, tuple) or is_dataclass(value)):
+            continue
         try:
             signature = inspect.signature(value)
         except (TypeError, ValueError):  # no callable, or one without a signature

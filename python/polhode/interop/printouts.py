@@ -23,22 +23,21 @@ _NAMES: Final = ("Ixy", "Ixz", "Iyz")
 
 def from_printout(
     mass: float | _core.Uncertain,
-    com: ArrayLike,
-    tensor: ArrayLike,
+    center_of_mass: ArrayLike,
+    inertia: ArrayLike,
     *,
     products: str | None = None,
     about: str = "center_of_mass",
     rtol: float | None = None,
-    name: str = "tensor",
+    name: str = "inertia",
 ) -> RigidBody:
     """Make a body from the printout of a CAD program.
 
     Parameters
     ----------
     mass : float or Uncertain
-    com : array_like, shape (3,)
-        Centre of mass.
-    tensor : array_like
+    center_of_mass : array_like, shape (3,)
+    inertia : array_like
         Three moments, six numbers Ixx Iyy Izz Ixy Ixz Iyz, or nine, row by row.
     products : {"positive", "negative"}, optional
         ``"positive"``: the off-diagonal numbers are ∫ x y dm. ``"negative"``: they are minus that, the
@@ -72,7 +71,7 @@ def from_printout(
         raise PolhodeError(f"products: expected {' or '.join(_PRODUCTS)}, got {products!r}")
     if about not in (*_ABOUT, "com"):
         raise PolhodeError(f"about: expected {' or '.join(_ABOUT)}, got {about!r}")
-    matrix = _matrix(tensor, name)
+    matrix = _matrix(inertia, name)
     off = ~np.eye(3, dtype=np.bool_)
     if products is None and matrix[off].any():
         k = int(np.flatnonzero(matrix[(0, 0, 1), (1, 2, 2)])[0])
@@ -85,8 +84,8 @@ def from_printout(
     if products == "positive":
         matrix[off] = 0.0 - matrix[off]
     if about == "origin":
-        return RigidBody(mass, center_of_mass=com, inertia_about_origin=matrix, rtol=rtol)
-    return RigidBody(mass, matrix, com, rtol=rtol)
+        return RigidBody(mass, center_of_mass=center_of_mass, inertia_about_origin=matrix, rtol=rtol)
+    return RigidBody(mass, matrix, center_of_mass, rtol=rtol)
 
 
 def _matrix(numbers: ArrayLike, name: str) -> NDArray[np.float64]:

@@ -213,10 +213,10 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "equimomental.ellipsoid": {"volume": 0.5},
     "forms.to_text": {"program": "urdf"},
     "forms.from_printout": {
-        "com": [0.25, 0.0, 0.5],
-        "tensor": [2.0, 3.0, 4.0, 0.25, 0.0, -0.5],
+        "center_of_mass": [0.25, 0.0, 0.5],
+        "inertia": [2.0, 3.0, 4.0, 0.25, 0.0, -0.5],
         "products": "positive",
-        "name": "tensor",
+        "name": "inertia",
     },
     "Trajectory.point": {"point": [1.0, 0.0, 0.5]},
     "Trajectory.resume": {"t": [0.5, 0.75, 1.0]},
