@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-import numpy as np
-
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
     from typing import Self
@@ -38,6 +36,8 @@ def one_line(result: object, fields: Mapping[str, Any]) -> str:
 
 
 def _text(value: Any) -> str:
+    import numpy as np  # only here: the help of the command line needs no NumPy
+
     if isinstance(value, np.ndarray | np.generic):
         if value.size > _FEW:
             return f"<shape {value.shape}>"
