@@ -140,13 +140,13 @@ def test_the_process_of_occt_ends_with_its_parent(tmp_path: Path) -> None:
     """Even where it computes without end, in which no thread of Python runs."""
     pid = tmp_path / "pid"
     child = (
-        "import os, sys; from polhode.io import cad_apart; cad_apart._end_with_parent(int(sys.argv[2])); "
+        "import os, sys; from polhode.io import cad_process; cad_process._end_with_parent(int(sys.argv[2])); "
         f"open({str(pid)!r}, 'w').write(str(os.getpid()))\nwhile True: pass"
     )
     parent = (
-        "from pathlib import Path; from polhode.io import cad_apart; "
-        f"cad_apart._COMMAND = ['-c', {child!r}]; "
-        f"cad_apart.read_cad_apart(Path({str(tmp_path / 'a.step')!r}))"
+        "from pathlib import Path; from polhode.io import cad_process; "
+        f"cad_process._COMMAND = ['-c', {child!r}]; "
+        f"cad_process.read_cad_process(Path({str(tmp_path / 'a.step')!r}))"
     )
     process = subprocess.Popen([sys.executable, "-c", parent])
     end = time.monotonic() + 60.0

@@ -182,11 +182,11 @@ def test_what_is_not_known_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         lines = (
             "import sys",
             "from pathlib import Path",
-            "from polhode.io import cad_apart",
+            "from polhode.io import cad_process",
             "def shared(*_):",
             f"    {body}",
-            "cad_apart.volume_shared = shared",
-            "cad_apart._main(Path(sys.argv[1]), int(sys.argv[2]))",
+            "cad_process.volume_shared = shared",
+            "cad_process._main(Path(sys.argv[1]), int(sys.argv[2]))",
         )
         monkeypatch.setattr(cad_process, "_COMMAND", ["-c", "\n".join(lines)])
         monkeypatch.setattr(cad_process, "_SHARING", (0.5 if "sleep" in body else 60.0, 0.0))

@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from polhode import _core
+from polhode._format import Argument
 from polhode.distributions import Distribution, FunctionOfDraws, per_member
 from polhode.ensembles.cluster import check_client
 from polhode.ensembles.plan import VECTORS, Plan, draws, is_each_alone, resolve_draws
 from polhode.ensembles.reduce import BLOCK
 from polhode.ensembles.result import Ensemble
 from polhode.ensembles.trial import choose_method, outputs_of, trial_of
+from polhode.errors import PolhodeError
 from polhode.reductions import Reduction
 
 if TYPE_CHECKING:
@@ -156,9 +158,9 @@ def _count(number: Any, name: str) -> int:
     if isinstance(number, bool) or not isinstance(number, int | np.integer):
         raise TypeError(f"{name}: expected a positive integer, got {number!r}")
     if number <= 0:
-        raise ValueError(f"{name}: expected a positive integer, got {number}")
+        raise PolhodeError(Argument(name), f": expected a positive integer, got {number}")
     if number >= 2**62:
-        raise ValueError(f"{name}: expected an integer below 2**62, got {number}")
+        raise PolhodeError(Argument(name), f": expected an integer below 2**62, got {number}")
     return int(number)
 
 

@@ -121,7 +121,7 @@ impl Estimate {
 /// middles the density is also asked for outside, where the signed parts cancel.
 ///
 /// # Errors
-/// When a value is negative or not finite; where the evaluations do not suffice, [`Estimate::converged`] says so;
+/// When a value is negative or not finite; where the evaluations do not suffice, [`Estimate::require_converged`] says so;
 /// [`BodyFault::TriangleInequality`] where surfaces of a mesh cross so that no masses have its moments; whatever the density itself fails with.
 pub fn from_density<E: From<Error>>(
     region: &Region,

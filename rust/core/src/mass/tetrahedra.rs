@@ -102,7 +102,7 @@ const AGAIN: usize = 4;
 /// ```
 ///
 /// # Errors
-/// [`CellFault`](crate::error::CellFault) names the cell, node or density that is at fault;
+/// [`CellFault`] names the cell, node or density that is at fault;
 /// [`BodyFault::OutOfRange`](crate::error::BodyFault::OutOfRange) a mass or moment that is too large or too small for float64;
 /// [`Error::Stopped`] where `watch` said so.
 ///
