@@ -146,7 +146,7 @@ def test_the_process_of_occt_ends_with_its_parent(tmp_path: Path) -> None:
     parent = (
         "from pathlib import Path; from polhode.io import cad_process; "
         f"cad_process._COMMAND = ['-c', {child!r}]; "
-        f"cad_process.read_cad_process(Path({str(tmp_path / 'a.step')!r}))"
+        f"cad_process.read_cad_apart(Path({str(tmp_path / 'a.step')!r}))"
     )
     process = subprocess.Popen([sys.executable, "-c", parent])
     end = time.monotonic() + 60.0

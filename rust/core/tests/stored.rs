@@ -128,17 +128,17 @@ fn no_body_that_cannot_be_comes_from_a_file() {
         ("/center_of_mass/1", json!("1"), "string"),
         ("/inertia/0/1", json!(0.2), "symmetric"),
         ("/inertia/0/0", json!(1.5), "inertia"),
-        ("/told/principal/moments/2", json!(9.0), "inertia"),
-        ("/told/principal/moments/0", json!(5.0), "exceed"),
-        ("/told/principal/axes/0/0", json!(3.0), "rotation"),
+        ("/cached/principal/moments/2", json!(9.0), "inertia"),
+        ("/cached/principal/moments/0", json!(5.0), "exceed"),
+        ("/cached/principal/axes/0/0", json!(3.0), "rotation"),
         (
-            "/told/error_bound/inertia",
+            "/cached/error_bound/inertia",
             json!(-1.0),
             "error_bound.inertia",
         ),
-        ("/told/provenance/checks/0", json!("holy"), "holy"),
-        ("/told/provenance/source", json!("dream"), "dream"),
-        ("/told/provenance/rounding", json!(-1.0), "rounding"),
+        ("/cached/provenance/checks/0", json!("holy"), "holy"),
+        ("/cached/provenance/source", json!("dream"), "dream"),
+        ("/cached/provenance/rounding", json!(-1.0), "rounding"),
     ] {
         refused::<RigidBody>(spoilt(path, value), words);
     }
