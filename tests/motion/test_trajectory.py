@@ -137,9 +137,9 @@ def test_points_go_where_the_particles_go(shape: tuple[int, ...], rng: np.random
     center = (masses[..., None] * position).sum(axis=-2) / masses.sum(axis=-1)[..., None]
     np.testing.assert_allclose(trajectory.point("center_of_mass"), center, rtol=0, atol=1e-14)
     assert trajectory.point("origin").shape == (*shape, 5, 3)
-    with pytest.raises(ValueError, match="r: 'here' is not"):
+    with pytest.raises(ValueError, match="point: 'here' is not"):
         trajectory.point("here")
-    with pytest.raises(ValueError, match=r"r: expected shape \(\.\.\., 3\), got \(2,\)"):
+    with pytest.raises(ValueError, match=r"point: expected shape \(\.\.\., 3\), got \(2,\)"):
         trajectory.point((1.0, 2.0))
 
 

@@ -402,4 +402,4 @@ class TestFix:
         assert code == 1
         assert (tmp_path / "b.urdf").read_text() == text
         assert "5 kg in its visual shapes would be 1.19e+09 kg/m^3" in out
-        assert "left as they are, since nothing tells better values" in out
+        assert "left as they are, since no better values are known" in out
