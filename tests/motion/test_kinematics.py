@@ -164,7 +164,7 @@ def test_shapes_broadcast() -> None:
     assert stack.point_velocity(points, (1.0, 2.0, 3.0)).shape == (5, 2, 3)
     assert stack.point_acceleration("origin", np.ones((7, 1, 3)), np.ones(3)).shape == (7, 2, 3)
     assert stack[0].point_velocity(np.zeros((0, 3)), (1.0, 2.0, 3.0)).shape == (0, 3)
-    with pytest.raises(ValueError, match=r"r: expected .*\"somewhere\""):
+    with pytest.raises(ValueError, match=r"point: expected .*\"somewhere\""):
         stack.point_velocity("somewhere", (1.0, 2.0, 3.0))
     with pytest.raises(ValueError, match=r"acceleration: expected shape"):
         stack.point_acceleration((0, 0, 0), (1.0, 2.0, 3.0), acceleration=1.0)

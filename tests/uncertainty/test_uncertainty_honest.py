@@ -122,7 +122,7 @@ class TestRuns:
         file = tmp_path / f"run{suffix}"
         box.simulate([0.0, 0.5], (0.1, 0.2, 1.0), load=weight, about="origin").save(file)
         again = polhode.Trajectory.from_file(file)
-        with pytest.raises(ValueError, match="did not keep"):
+        with pytest.raises(ValueError, match="was not saved"):
             _ = again.covariance
         free = box.simulate([0.0, 0.5], (0.1, 0.2, 1.0))
         free.save(file)

@@ -210,6 +210,10 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "RigidBody.from_tetrahedra": {"density": 1.5, "at": None},
     "PrincipalAxes.classify": {"rtol": 1e-6},
     "PrincipalAxes.continuous": {"self": [STACK.principal], "axis": 0, "rtol": 1e-6},
+    "RigidBody.inertia_about": {"about": [1.0, 0.0, 0.5]},
+    "RigidBody.moment_about": {"about": [1.0, 0.0, 0.5]},
+    "RigidBody.principal_about": {"about": [1.0, 0.0, 0.5]},
+    "RigidBody.sigma_about": {"about": [1.0, 0.0, 0.5]},
     "equimomental.ellipsoid": {"volume": 0.5},
     "forms.to_text": {"program": "urdf"},
     "forms.from_printout": {
