@@ -13,6 +13,7 @@ import pytest
 from mpmath import mp, mpf
 from oracles.gyrostat_cases import cases, proven
 from oracles.motion_cases import MotionCase, State, angle, apart, load_table, relative_error
+from oracles.polynomials import roots
 from polhode import RigidBody, loads
 from polhode.errors import InvalidInertiaError, PolhodeError
 
@@ -367,8 +368,8 @@ def period(moments: Any, momentum: Any, omega: Any) -> Any:
     b, c, d = b / 4, c / 6, d / 4
     second = a * e - 4 * b * d + 3 * c * c
     third = a * c * e + 2 * b * c * d - a * d * d - b * b * e - c**3
-    roots = mpmath.polyroots([4, 0, -second, -third], maxsteps=500, extraprec=800)
-    real = sorted(x.real for x in roots if abs(x.imag) < mpf(10) ** -60 * abs(x))
+    cubic = roots([4, 0, -second, -third], maxsteps=500, extraprec=800)
+    real = sorted(x.real for x in cubic if abs(x.imag) < mpf(10) ** -60 * abs(x))
     root = real[-1]
     height = mpmath.sqrt(3 * root**2 - second / 4)
     mean = mpmath.agm(2 * mpmath.sqrt(height), mpmath.sqrt(3 * root + 2 * height))

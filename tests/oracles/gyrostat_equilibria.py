@@ -8,13 +8,14 @@ at which their number changes. Components in principal axes; inputs are exact.
 from __future__ import annotations
 
 import random
-import warnings
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import mpmath
 from mpmath import mp, mpf
+
+from .polynomials import roots
 
 __all__ = ["cases", "equilibria", "folds"]
 
@@ -119,11 +120,8 @@ def _real_roots(polynomial: Sequence[Any]) -> list[Any]:
     falling = [c / size for c in reversed(polynomial)]
     while abs(falling[0]) < mpf(10) ** (10 - DIGITS):
         del falling[0]
-    with warnings.catch_warnings():
-        # The order of coefficients that every version of mpmath takes.
-        warnings.simplefilter("ignore", DeprecationWarning)
-        roots = mpmath.polyroots(falling, maxsteps=2000, extraprec=2000)
-    return [mpmath.re(root) for root in roots if abs(mpmath.im(root)) < mpf(10) ** -40 * abs(root)]
+    found = roots(falling, maxsteps=2000, extraprec=2000)
+    return [mpmath.re(root) for root in found if abs(mpmath.im(root)) < mpf(10) ** -40 * abs(root)]
 
 
 def _determinant(I: Sequence[Any], mu: Any, n: Sequence[Any]) -> Any:

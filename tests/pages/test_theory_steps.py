@@ -8,6 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 from mpmath import mp, mpf
+from oracles.polynomials import roots
 
 DIGITS = 30
 TINY = mpf(10) ** -20
@@ -93,7 +94,7 @@ def test_steady_rates_of_a_heavy_top(seed: int) -> None:
     u0, G = mpmath.cos(tilt), 1j * mpmath.sin(tilt)
     a, end = (mpmath.conj(G) * W).real + b * u0, u0 + abs(W) ** 2 / (2 * kappa)
     cubic = [2 * kappa, -(2 * kappa * end + b * b), 2 * a * b - 2 * kappa, 2 * kappa * end - a * a]
-    u1, u2, u3 = sorted(mpmath.re(root) for root in mpmath.polyroots(cubic, maxsteps=200, extraprec=200))
+    u1, u2, u3 = sorted(mpmath.re(root) for root in roots(cubic, maxsteps=200, extraprec=200))
     m = (u2 - u1) / (u3 - u1)
     K, rate = mpmath.ellipk(m), mpmath.sqrt(kappa * (u3 - u1) / 2)
     turn = mp.pi * rate / (2 * K)  # half a turn in a period
