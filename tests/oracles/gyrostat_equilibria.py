@@ -15,7 +15,7 @@ from typing import Any
 import mpmath
 from mpmath import mp, mpf
 
-from .polynomials import roots
+from oracles.polynomials import roots
 
 __all__ = ["cases", "equilibria", "folds"]
 
