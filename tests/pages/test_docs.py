@@ -102,6 +102,13 @@ class TestTheory:
         assert len(made) == len(set(dead))
 
 
+def test_the_places_that_contributing_names_are_there() -> None:
+    text = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
+    named = re.findall(r"`((?:rust|python|tests|docs|packaging|benchmarks|\.github)(?:/[\w.]+)+)`", text)
+    assert len(named) > 20
+    assert [place for place in named if not (ROOT / place).exists()] == []
+
+
 class TestInterface:
     @pytest.fixture
     def pages(self, monkeypatch: pytest.MonkeyPatch) -> dict[str, str]:

@@ -447,4 +447,4 @@ def _surface(
         found = surface(name, numbers, segments)
         if found is not None:
             return found
-    raise AssertionError(f"no surface of {name!r}")  # tests/test_figures.py draws every kind there is
+    raise AssertionError(f"no surface of {name!r}")  # tests/draw/test_figures.py draws every kind there is

@@ -483,8 +483,6 @@ def _show_progress(what: str, chunks: int) -> Iterator[None]:
 
 
 _VECTORS: Final = {"omega": 3, "attitude": 4, "position": 3, "velocity": 3}
-_NUMBERS: Final = 34
-"""How many numbers pickle has of a body."""
 _CHOSEN: Final = ("exact", "taylor")
 """The methods of which "auto" takes the first that can serve; the next can always."""
 _TIGHTEST: Final = 2.3e-15

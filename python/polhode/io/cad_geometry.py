@@ -45,7 +45,6 @@ def check_occt(purpose: str) -> None:
 
 
 _QUARTER: Final = np.pi / 2.0
-_MOST_PIECES: Final = 10_000
 
 
 @dataclass(frozen=True)

@@ -18,9 +18,8 @@ if TYPE_CHECKING:
 
     from polhode.io.reading import Budget
 
-__all__ = ["VTK_SUFFIXES", "read_vtk"]
+__all__ = ["read_vtk"]
 
-VTK_SUFFIXES: Final = (".vtk", ".vtu", ".vtp")
 _MOST_CORNERS: Final = 10_000
 """Of a face: VTK divides it in a time that grows with the square of them."""
 _PROMISES: Final = re.compile(
