@@ -19,7 +19,7 @@ import pytest
 from hostile_files import HOSTILE, dae, doubling
 from polhode import RigidBody, Trajectory, assembly, robots
 from polhode.errors import PolhodeError
-from polhode.io import load
+from polhode.io import cad_process, load
 from polhode.io.reading import LIMITS, Budget, LimitError
 from polhode.uncertainty import ledger
 
@@ -139,6 +139,7 @@ class TestBudget:
 def test_the_process_of_occt_ends_with_its_parent(tmp_path: Path) -> None:
     """Even where it computes without end, in which no thread of Python runs."""
     pid = tmp_path / "pid"
+    (tmp_path / "a.step").touch()
     child = (
         "import os, sys; from polhode.io import cad_process; cad_process._end_with_parent(int(sys.argv[2])); "
         f"open({str(pid)!r}, 'w').write(str(os.getpid()))\nwhile True: pass"
@@ -158,6 +159,15 @@ def test_the_process_of_occt_ends_with_its_parent(tmp_path: Path) -> None:
     while _is_running(number) and time.monotonic() < end:
         time.sleep(0.05)
     assert not _is_running(number)
+
+
+def test_the_seconds_of_occt() -> None:
+    """A megabyte has seven seconds to be read, eight with what its solids share; a second is always left."""
+    assert [cad_process._reading(size) for size in (0.0, 1.0, 10.0)] == [4.0, 7.0, 34.0]
+    assert [cad_process._sharing(1.0, elapsed) for elapsed in (0.0, 3.0, 3.1, 6.9, 7.1, 20.0)] == [
+        5.0, 5.0, 4.9, 1.1, 1.0, 1.0
+    ]  # fmt: skip
+    assert [cad_process._sharing(3.0, elapsed) for elapsed in (0.0, 20.0, 30.0)] == [15.0, 4.0, 1.0]
 
 
 def _is_running(number: int) -> bool:

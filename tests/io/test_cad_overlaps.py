@@ -186,10 +186,11 @@ def test_what_is_not_known_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPat
             "def shared(*_):",
             f"    {body}",
             "cad_process.volume_shared = shared",
-            "cad_process._main(Path(sys.argv[1]), int(sys.argv[2]))",
+            "cad_process._main(Path(sys.argv[1]), int(sys.argv[2]), float(sys.argv[3]))",
         )
         monkeypatch.setattr(cad_process, "_COMMAND", ["-c", "\n".join(lines)])
         monkeypatch.setattr(cad_process, "_SHARING", (0.5 if "sleep" in body else 60.0, 0.0))
+        monkeypatch.setattr(cad_process, "_BOTH", (120.0, 0.0))
         (line,) = told(path)
         assert line.startswith(words)
         assert ("1 pairs of solids that are near enough to overlap were not looked at" in line) == (
@@ -203,13 +204,3 @@ def test_what_is_not_known_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(sys, "executable", "")
     (line,) = told(path)
     assert line.startswith("OCCT was not started: 1 pairs of solids")
-
-
-@pytest.mark.parametrize(("megabytes", "seconds"), [(0.1, 5.0), (1.0, 5.0), (1.5, 7.5), (3.0, 15.0)])
-def test_the_time_for_overlaps_follows_the_size_of_the_file(
-    megabytes: float, seconds: float, tmp_path: Path
-) -> None:
-    path = tmp_path / "a.step"
-    with path.open("wb") as file:
-        file.truncate(round(megabytes * 1e6))
-    assert cad_process._sharing(path) == seconds

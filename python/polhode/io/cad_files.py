@@ -144,19 +144,17 @@ def read_cad(path: Path) -> CadFile:
     return read_with_shapes(path)[0]
 
 
-def read_with_shapes(
-    path: Path, limited: Callable[[Path | None], object] = bool
-) -> tuple[CadFile, list[Any]]:
+def read_with_shapes(path: Path, limit_time: Callable[[bool], object] = bool) -> tuple[CadFile, list[Any]]:
     """Read the solids of a file, each with its shape of OCCT at its place; see :func:`read_cad`.
 
-    Before OCCT reads it `limited` is called with the path, and with None when it has.
+    `limit_time` is called with True before OCCT reads the file, and with False when it has.
     """
     _check_numbers(path)
     occt("STEPCAFControl")  # imported before the time runs
     occt("IGESCAFControl")
-    limited(path)
+    limit_time(True)
     kind, names, document = _document(path)
-    limited(None)
+    limit_time(False)
     is_iges = kind == "IGES"
     units = {_UNITS.get(name, "m") for name in names}
     unit = units.pop() if len(units) == 1 else "m"

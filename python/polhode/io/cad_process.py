@@ -13,6 +13,7 @@ import pickle
 import signal
 import subprocess
 import sys
+import time
 from dataclasses import replace
 from pathlib import Path
 from threading import Event, Timer
@@ -28,21 +29,33 @@ if TYPE_CHECKING:
 __all__ = ["read_cad_apart"]
 
 _COMMAND: Final = ["-m", "polhode.io.cad_process"]
-_READING: Final = (4.0, 4.0)
+_READING: Final = (4.0, 3.0)
 """Seconds of computing in which a file is read, and those more for each megabyte of it."""
 _SHARING: Final = (5.0, 5.0)
-"""Seconds in which is looked for what solids share, and those more for each megabyte beyond the first."""
+"""Seconds in which OCCT looks for what solids share, and those more for each megabyte beyond the first."""
+_BOTH: Final = (8.0, 8.0)
+"""Seconds for both, likewise; a second is left for sharing in any case."""
 _SET_DEATH_SIGNAL: Final = 1
 """Linux's PR_SET_PDEATHSIG."""
 _STOPPED: Final = -signal.SIGPROF if hasattr(signal, "SIGPROF") else None
 """Exit code of a process that has computed for too long."""
 
 
-def read_cad_apart(path: Path) -> CadFile:
+def read_cad_apart(path: Path, packed: int | None = None) -> CadFile:
     """Read the solids of a STEP or IGES file, and see which of them share matter.
 
     See :func:`polhode.io.cad_files.read_cad`.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+    packed : int, optional
+        Bytes of the file that it was unpacked from. A small file that unpacks to a large one has no more
+        time than a file of a megabyte.
     """
+    megabytes = path.stat().st_size / 1e6
+    if packed is not None:
+        megabytes = min(megabytes, max(packed / 1e6, 1.0))
     if not sys.executable:  # within another program
         from polhode.io.cad_files import read_cad
 
@@ -50,33 +63,36 @@ def read_cad_apart(path: Path) -> CadFile:
         return replace(found, overlaps=overlaps_told(found, [], "OCCT was not started"))
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(place for place in sys.path if place)}
     with subprocess.Popen(
-        [sys.executable, *_COMMAND, str(path), str(os.getpid())],
+        [sys.executable, *_COMMAND, str(path), str(os.getpid()), str(_reading(megabytes))],
         env=environment,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
     ) as process:
         try:
-            cad, pairs, is_ended = _answer(process, path)
+            cad, pairs, seconds = _answer(process, path, megabytes)
         except BaseException:
             process.kill()
             raise
     code = process.returncode
     fault = f"OCCT broke down when it looked for overlaps (exit code {code})" if code != 0 else ""
-    fault = f"OCCT took more than {_sharing(path):g} s to look for overlaps" if is_ended else fault
+    fault = f"OCCT took more than {seconds:g} s to look for overlaps" if seconds is not None else fault
     return replace(cad, overlaps=overlaps_told(cad, pairs, fault))
 
 
-def _answer(process: subprocess.Popen[bytes], path: Path) -> tuple[CadFile, list[Pair], bool]:
-    """Return what a file holds, the pairs that were looked at, and whether that came to its end."""
+def _answer(
+    process: subprocess.Popen[bytes], path: Path, megabytes: float
+) -> tuple[CadFile, list[Pair], float | None]:
+    """Return what a file holds, the pairs that were looked at, and the seconds after which that was ended."""
+    start = time.monotonic()
     assert process.stdout is not None  # it is a pipe
     try:
         cad: CadFile | tuple[str, str] = pickle.load(process.stdout)
     except (EOFError, pickle.UnpicklingError):
         if process.wait() == _STOPPED:
             raise FileFormatError(
-                f"{path}: OCCT has computed for more than {_reading(path):g} s on it, the most for "
-                f"{path.stat().st_size} bytes of file; export it again, or divide it"
+                f"{path}: OCCT has computed for more than {_reading(megabytes):g} s on it, the most for "
+                f"{megabytes:.2g} MB of file; unpack it if it is packed, export it again, or divide it"
             ) from None
         raise FileFormatError(
             f"{path}: OCCT broke down on it (exit code {process.wait()}), as it does on damaged files; "
@@ -91,24 +107,27 @@ def _answer(process: subprocess.Popen[bytes], path: Path) -> tuple[CadFile, list
         is_ended.set()
         process.kill()
 
-    limit = Timer(_sharing(path), end)
+    seconds = _sharing(megabytes, time.monotonic() - start)
+    limit = Timer(seconds, end)
     limit.start()
     try:
         pairs = _pairs_in(process.stdout)
         process.wait()
     finally:
         limit.cancel()
-    return cad, pairs, is_ended.is_set()
+    return cad, pairs, seconds if is_ended.is_set() else None
 
 
-def _reading(path: Path) -> float:
+def _reading(megabytes: float) -> float:
     first, more = _READING
-    return round(first + more * path.stat().st_size / 1e6, 1)
+    return round(first + more * megabytes, 1)
 
 
-def _sharing(path: Path) -> float:
-    first, more = _SHARING
-    return round(first + more * max(path.stat().st_size / 1e6 - 1.0, 0.0), 1)
+def _sharing(megabytes: float, elapsed: float) -> float:
+    """Return the seconds for overlaps when reading has taken some."""
+    beyond = max(megabytes - 1.0, 0.0)
+    own, both = (first + more * beyond for first, more in (_SHARING, _BOTH))
+    return round(max(min(own, both - elapsed), 1.0), 1)
 
 
 def _pairs_in(stream: IO[bytes]) -> list[Pair]:
@@ -121,7 +140,7 @@ def _pairs_in(stream: IO[bytes]) -> list[Pair]:
             return pairs
 
 
-def _main(path: Path, parent: int) -> None:
+def _main(path: Path, parent: int, seconds: float) -> None:
     """Write what a file holds, or what is wrong with it, on standard output, and then what solids share."""
     _end_with_parent(parent)
     out = os.dup(1)
@@ -129,7 +148,7 @@ def _main(path: Path, parent: int) -> None:
     from polhode.io.cad_files import read_with_shapes
 
     try:
-        cad, shapes = read_with_shapes(path, _set_time_limit)
+        cad, shapes = read_with_shapes(path, lambda runs: _set_time_limit(seconds if runs else 0.0))
     except PolhodeError as error:
         _send(out, (type(error).__name__, str(error)))
         return
@@ -152,11 +171,11 @@ def _end_with_parent(parent: int) -> None:
         os._exit(1)
 
 
-def _set_time_limit(path: Path | None) -> None:
-    """Let the system end this process after the seconds of computing that a file has; None: no limit."""
+def _set_time_limit(seconds: float) -> None:
+    """Let the system end this process after so many seconds of computing; zero: no limit."""
     if hasattr(signal, "setitimer"):
         signal.signal(signal.SIGPROF, signal.SIG_DFL)
-        signal.setitimer(signal.ITIMER_PROF, 0.0 if path is None else _reading(path))
+        signal.setitimer(signal.ITIMER_PROF, seconds)
 
 
 def _send(out: int, found: object) -> None:
@@ -167,4 +186,4 @@ def _send(out: int, found: object) -> None:
 
 
 if __name__ == "__main__":
-    _main(Path(sys.argv[1]), int(sys.argv[2]))
+    _main(Path(sys.argv[1]), int(sys.argv[2]), float(sys.argv[3]))

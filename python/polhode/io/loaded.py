@@ -234,7 +234,8 @@ def load(path: str | os.PathLike[str], *, index_base: int = 1) -> Loaded:
         raise unread(file, suffix, _MESH_SUFFIXES)
     budget = _budget(file)
     with unpack(file, budget) as inside:
-        loaded = _load(inside, suffix, index_base, budget)
+        packed = None if inside is file else status_of(file).st_size
+        loaded = _load(inside, suffix, index_base, budget, packed)
         if inside is file:
             return loaded
         held = None if loaded.cad is not None or loaded._molecule is not None else loaded.mesh
@@ -248,14 +249,14 @@ def _budget(file: Path) -> Budget:
         return Budget(str(file), status_of(file).st_size)
 
 
-def _load(file: Path, suffix: str, index_base: int, budget: Budget) -> Loaded:
-    """Open and read a file that is not packed."""
+def _load(file: Path, suffix: str, index_base: int, budget: Budget, packed: int | None) -> Loaded:
+    """Open and read a file that is not packed; `packed` is the size of the one that it was unpacked from."""
     with open_file(file) as content:
         stream = content.stream
         if suffix in MOLECULE_SUFFIXES:
             return _load_molecule(content, file, suffix, budget)
         if suffix in CAD_SUFFIXES:
-            return _load_cad(file)
+            return _load_cad(file, packed)
         if content.format == "ASCII STL":
             from polhode.io.ascii_stl import read_ascii_stl
 
@@ -315,10 +316,10 @@ def _load_molecule(content: Content, file: Path, suffix: str, budget: Budget) ->
     return Loaded(file, "XYZ", _molecule=molecules.molecule_of(content.stream, file))
 
 
-def _load_cad(file: Path) -> Loaded:
+def _load_cad(file: Path, packed: int | None) -> Loaded:
     from polhode.io.cad_process import read_cad_apart
 
-    cad = read_cad_apart(file)
+    cad = read_cad_apart(file, packed)
     notes = []
     if cad.left_out:
         notes.append(f"{cad.left_out} faces of the file bound no solid and count nothing")

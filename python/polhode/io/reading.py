@@ -48,6 +48,7 @@ LIMITS: Final[Mapping[str, Limit]] = {
     "elements": Limit(1_000_000, 0.125, "divide the file"),
     "tags": Limit(2_000_000, 1.0, "divide the file"),
     "atoms": Limit(1_000_000, 0.125, "divide the file"),
+    "items": Limit(50_000, 0.0625, "place fewer parts"),
     "placements": Limit(50_000, 0.0625, "place fewer parts"),
     "triangles": Limit(1_000_000, 1.0, "place fewer parts, or coarser ones"),
     "points or cells": Limit(1_000_000, 1.0, "divide the file"),

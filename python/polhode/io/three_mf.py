@@ -256,6 +256,7 @@ class _Build:
                 current[0] = _Object(attributes.get("name", ""), attributes.get("type", "model"))
                 model.objects[name] = current[0]
             elif kind in ("component", "item"):
+                self._budget.spend("items")
                 way = _attribute(attributes, "path")
                 if kind == "item" and _attribute(attributes, "printable") == "0":
                     self._left_out["item that is not to be printed"] += 1
