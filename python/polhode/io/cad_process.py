@@ -127,7 +127,7 @@ def _sharing(megabytes: float, elapsed: float) -> float:
     """Return the seconds for overlaps when reading has taken some."""
     beyond = max(megabytes - 1.0, 0.0)
     own, both = (first + more * beyond for first, more in (_SHARING, _BOTH))
-    return round(max(min(own, both - elapsed), 1.0), 1)
+    return round(min(own, max(both - elapsed, 1.0)), 1)
 
 
 def _pairs_in(stream: IO[bytes]) -> list[Pair]:
