@@ -14,7 +14,7 @@ from typing import Any
 import psutil
 from polhode import RigidBody, ensemble
 from polhode.ensembles.cluster import chunks_of_client
-from polhode.ensembles.reduce import BLOCK
+from polhode.ensembles.merge_tree import BLOCK
 
 
 @dataclass(frozen=True)

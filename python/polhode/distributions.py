@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     Floats = NDArray[np.float64]
-    from numpy.typing import NDArray
 
 __all__ = [
     "Distribution",

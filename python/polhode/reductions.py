@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Shape = tuple[int, ...]
-    from numpy.typing import NDArray
-
     Counts = NDArray[np.int64]
 
 __all__ = [

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from ensemble_cases import BODY, SPIN, TIMES, all_bytes, all_reductions, last_spin, twisted
 from polhode import RigidBody, distributions, ensemble, loads, reductions
-from polhode.ensembles.reduce import Tree
+from polhode.ensembles.merge_tree import Tree
 from polhode.reductions import compact, level_of, moments, sort_columns, sum_by_halves
 
 N = 10_000

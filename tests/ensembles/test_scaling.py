@@ -11,7 +11,7 @@ import pytest
 from ensemble_cases import all_reductions, twisted
 from places import ROOT
 from polhode import RigidBody, flybys, orbits
-from polhode.ensembles.reduce import nodes_of_chunk
+from polhode.ensembles.merge_tree import nodes_of_chunk
 
 PAGE = (ROOT / "docs" / "scaling.md").read_text("utf-8")
 CHUNK = 120 * 4096

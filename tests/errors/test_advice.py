@@ -27,7 +27,7 @@ from polhode.cli.terminal import in_options
 from polhode.errors import FileFormatError, InvalidInertiaError, PolhodeError
 from polhode.io import load
 from polhode.io.content import EXPECTED_CONTENT
-from polhode.io.reading import words_of
+from polhode.io.budget import words_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable

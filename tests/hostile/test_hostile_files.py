@@ -20,7 +20,7 @@ from hostile_files import HOSTILE, dae, doubling
 from polhode import RigidBody, Trajectory, assembly, robots
 from polhode.errors import PolhodeError
 from polhode.io import cad_process, load
-from polhode.io.reading import LIMITS, Budget, LimitError
+from polhode.io.budget import LIMITS, Budget, LimitError
 from polhode.uncertainty import ledger
 
 SECONDS, MEGABYTES = 10.0, 1000

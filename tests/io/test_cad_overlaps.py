@@ -17,7 +17,7 @@ from command_line import run
 from polhode import RigidBody, robots
 from polhode.io import cad_files, cad_process, solid_from_file
 from polhode.io.cad_files import read_with_shapes
-from polhode.io.loaded import load
+from polhode.io.formats import load
 from robot_texts import link, urdf
 
 BOX = primitive("Box", 10.0, 10.0, 10.0)

@@ -17,7 +17,7 @@ from oracles.meshes import cube
 from polhode import RigidBody, robots
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.io import load, read_mesh, solid_from_file, unpacked
-from polhode.io.reading import LIMITS, Limit
+from polhode.io.budget import LIMITS, Limit
 
 CUBE = cube(2.0)
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048, "um": 1e-6}

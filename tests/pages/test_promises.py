@@ -15,7 +15,7 @@ from command_line import one_line, run
 from places import ROOT
 from polhode import Event, RigidBody, euler_angles, regions, robots
 from polhode.errors import SingularAttitudeError
-from polhode.io.reading import LIMITS, MOST_TEXT
+from polhode.io.budget import LIMITS, MOST_TEXT
 from robot_texts import ONE_BALL
 from scipy.spatial.transform import Rotation
 

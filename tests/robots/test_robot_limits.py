@@ -12,7 +12,7 @@ import pytest
 from command_line import one_line, run
 from polhode import robots
 from polhode.errors import FileFormatError
-from polhode.io.reading import LIMITS
+from polhode.io.budget import LIMITS
 from polhode.io.xml_source import Edit, apply_edits, parse_xml
 from polhode.robots.sources import read_source, read_stream
 

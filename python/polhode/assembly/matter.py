@@ -11,11 +11,11 @@ from polhode._format import Argument
 from polhode.assembly.tables import COMMON, FILE, KINDS, PRINTED, PartError, check_keys, text_of
 from polhode.errors import PolhodeError
 from polhode.interop.printouts import from_printout
+from polhode.io.budget import words_of
 from polhode.io.components import MOST_FACES, overlapping
 from polhode.io.content import is_molecule
-from polhode.io.loaded import SAVED_SUFFIXES, body_of_molecule, check_arguments, load, read_saved
+from polhode.io.formats import SAVED_SUFFIXES, body_of_molecule, check_arguments, load, read_saved
 from polhode.io.mesh_solid import solid_of
-from polhode.io.reading import words_of
 from polhode.units import metres_per
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from polhode._core import RigidBody
     from polhode.assembly.tables import Scope
-    from polhode.io.loaded import Loaded
+    from polhode.io.formats import Loaded
 
 __all__ = ["Matter", "body_of_part", "kind_of"]
 

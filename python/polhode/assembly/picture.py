@@ -10,7 +10,7 @@ from polhode._hints import with_hints
 from polhode.draw.shape import body_shape
 from polhode.draw.triangles import cluster_vertices
 from polhode.io.content import is_molecule
-from polhode.io.loaded import CAD_SUFFIXES, SAVED_SUFFIXES, load
+from polhode.io.formats import CAD_SUFFIXES, SAVED_SUFFIXES, load
 from polhode.io.unpacked import inner_suffix
 from polhode.plot import body as draw_body
 from polhode.plot import principal_axes

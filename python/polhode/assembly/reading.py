@@ -15,7 +15,7 @@ from polhode.assembly.overlaps import Form, Instance, find_overlaps, overlap_not
 from polhode.assembly.result import Assembly, Member
 from polhode.assembly.tables import COMMON, HERE, TOP, Place, Scope, check_keys, copies, place_of, text_of
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.io.reading import Budget, read_text, status_of, words_of
+from polhode.io.budget import Budget, read_text, status_of, words_of
 from polhode.uncertainty.ledgers import ledger_of_bodies
 
 if TYPE_CHECKING:

@@ -83,7 +83,7 @@ def report(
     from polhode.cli.files import check_outputs
     from polhode.cli.layout import held_and_shown, show_lines
     from polhode.cli.report import file_report, for_program
-    from polhode.io.reading import files_read
+    from polhode.io.budget import files_read
 
     check_outputs([("--output", output.output)], [file, extra.expect])
     with files_read() as read:
@@ -123,7 +123,7 @@ def check(
     from polhode.cli.check import check_report
     from polhode.cli.files import check_outputs
     from polhode.cli.layout import show
-    from polhode.io.reading import files_read
+    from polhode.io.budget import files_read
 
     check_outputs([("--fix", check.fix), ("--output", output.output)], [file])
     with files_read() as read:
@@ -298,7 +298,7 @@ def assemble(
     from polhode.cli.assemble import assembly_for_program, assembly_report, save_assembly
     from polhode.cli.files import check_outputs
     from polhode.cli.layout import held_and_shown, show_lines
-    from polhode.io.reading import files_read
+    from polhode.io.budget import files_read
 
     places = [*(("--save", path) for path in assemble.save), ("--output", output.output)]
     check_outputs(places, [file, extra.expect])
@@ -340,7 +340,7 @@ def ledger(
     from polhode.cli.files import check_outputs
     from polhode.cli.layout import show
     from polhode.cli.ledger import ledger_report, save_ledger
-    from polhode.io.reading import files_read
+    from polhode.io.budget import files_read
 
     places = [*(("--save", path) for path in ledger.save), ("--output", output.output)]
     check_outputs(places, [file, ledger.tree])

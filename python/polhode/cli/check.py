@@ -13,7 +13,7 @@ from polhode.cli.files import STDIN, check_outputs, label
 from polhode.cli.layout import Column, Field, Report, Table
 from polhode.cli.terminal import in_options
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.io.reading import files_read
+from polhode.io.budget import files_read
 from polhode.io.writing import write_bytes
 from polhode.robots.geometry import HULL, LOST
 from polhode.robots.sources import read_stream

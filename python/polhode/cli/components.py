@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from polhode.cli.layout import Report
     from polhode.cli.options import BodyOptions
-    from polhode.io.loaded import Loaded
+    from polhode.io.formats import Loaded
     from polhode.io.mesh_solid import MeshSolid
 
 __all__ = ["Components", "add_components", "components_of", "has_names", "overlaps_beside", "weigh"]

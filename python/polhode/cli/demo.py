@@ -15,7 +15,7 @@ from polhode.cli.report import file_report
 from polhode.cli.terminal import write
 from polhode.draw.plot.axes import show_around
 from polhode.errors import PolhodeError
-from polhode.io.loaded import read_mesh
+from polhode.io.formats import read_mesh
 from polhode.io.writing import save_picture, write_bytes
 from polhode.units import metres_per
 

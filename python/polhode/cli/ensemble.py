@@ -18,8 +18,8 @@ from polhode.cli.layout import Cell, Column, Field, Report, Table
 from polhode.cli.loading import LoadedBody
 from polhode.cli.spin import momentum_inside
 from polhode.cli.whole import any_body, check_moments_alone
+from polhode.ensembles.merge_tree import BLOCK
 from polhode.ensembles.plan import coordinates, layout
-from polhode.ensembles.reduce import BLOCK
 from polhode.ensembles.stores import check_same, header
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.euler_angles import to_quaternion
@@ -27,7 +27,7 @@ from polhode.io.writing import writing
 from polhode.units import amounts, has_unit, quantities, quantity
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from polhode.reductions import Reduction
 
     Drawn: TypeAlias = NDArray[np.float64] | Distribution
-    from collections.abc import Iterator
 
 __all__ = [
     "NUMBERS",

@@ -14,7 +14,7 @@ import numpy as np
 from polhode._format import with_sigma
 from polhode.cli.terminal import printable, write
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.io.reading import read_text
+from polhode.io.budget import read_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence

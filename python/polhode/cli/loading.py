@@ -12,7 +12,7 @@ from polhode.cli.files import as_file
 from polhode.cli.terminal import reading_progress
 from polhode.errors import PolhodeError
 from polhode.io.content import is_molecule
-from polhode.io.loaded import check_arguments, load, molecule_isotopes
+from polhode.io.formats import check_arguments, load, molecule_isotopes
 from polhode.io.mesh import weld_within
 from polhode.io.mesh_solid import MeshSolid, solid_of
 from polhode.molecules.bonding import crossings_of
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from polhode import RigidBody, Uncertain
     from polhode.cli.atoms import Atoms
     from polhode.cli.options import BodyOptions, LengthUnit
-    from polhode.io.loaded import Loaded
+    from polhode.io.formats import Loaded
     from polhode.io.mesh import Mesh
     from polhode.io.molecules import Molecule
     from polhode.molecules import CellCrossings, Isotope

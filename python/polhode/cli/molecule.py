@@ -27,7 +27,7 @@ from polhode.cli.tables import (
 )
 from polhode.errors import PolhodeError
 from polhode.io.content import EXPECTED_CONTENT, MOLECULE_SUFFIXES, is_molecule, unread
-from polhode.io.loaded import load, molecule_isotopes
+from polhode.io.formats import load, molecule_isotopes
 from polhode.io.unpacked import inner_suffix
 from polhode.molecules import (
     Isotope,

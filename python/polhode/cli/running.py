@@ -14,7 +14,7 @@ from cyclopts import CycloptsError, UnusedCliTokensError
 
 from polhode.cli.app import GOOD, app
 from polhode.cli.terminal import ReaderLeft, in_options, printable, standard_output
-from polhode.io.reading import words_of
+from polhode.io.budget import words_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

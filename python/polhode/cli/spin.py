@@ -31,17 +31,15 @@ from polhode.uncertainty.motion import each_motion
 from polhode.units import amount, amounts, has_unit, quantity, vector
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from polhode import FreeMotion, GyrostatMotion, HeavyTop
-    from polhode.cli.options import BodyOptions, SpinOptions
-
-    Floats = NDArray[np.float64]
     from collections.abc import Callable, Sequence
 
-    from polhode import Trajectory
+    from numpy.typing import NDArray
+
+    from polhode import FreeMotion, GyrostatMotion, HeavyTop, Trajectory
+    from polhode.cli.options import BodyOptions, SpinOptions
     from polhode.cli.tables import Sigmas
 
+    Floats = NDArray[np.float64]
     Part: TypeAlias = tuple[NDArray[np.float64], NDArray[np.int64]]
 
 __all__ = [

@@ -22,7 +22,7 @@ from polhode.cli.tables import (
     trust_fields,
 )
 from polhode.errors import PolhodeError
-from polhode.io.loaded import check_arguments
+from polhode.io.formats import check_arguments
 from polhode.io.read import is_whole, read_whole
 from polhode.units import amount, has_unit, quantities, split, vector
 

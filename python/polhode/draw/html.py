@@ -15,14 +15,14 @@ from polhode.draw.style import AXIS_COLORS
 from polhode.draw.surface import inertia_semi_axes
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from numpy.typing import NDArray
 
     from polhode import RigidBody
+    from polhode.motion.trajectory import Trajectory
 
     Floats = NDArray[np.float64]
-    from pathlib import Path
-
-    from polhode.motion.trajectory import Trajectory
 
 __all__ = [
     "HtmlPage",

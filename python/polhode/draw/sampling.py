@@ -20,12 +20,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from polhode import FreeMotion, GyrostatMotion, HeavyTop
+    from polhode import FreeMotion, GyrostatMotion, HeavyTop, Trajectory
 
     Floats = NDArray[np.float64]
-    from numpy.typing import NDArray
-
-    from polhode import Trajectory
 
 __all__ = [
     "CHORD",

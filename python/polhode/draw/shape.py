@@ -19,6 +19,8 @@ from polhode.draw.triangles import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike, NDArray
 
     from polhode import RigidBody
@@ -26,10 +28,6 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Mesh: TypeAlias = tuple[ArrayLike, ArrayLike]
     GivenShape: TypeAlias = Mesh | list[RigidBody | Mesh]
-    from collections.abc import Callable
-
-    from numpy.typing import NDArray
-
     Surface = tuple[Floats, NDArray[np.int64]]
     Part = tuple[str, Floats, NDArray[np.uint32], list[float], bool]
 

@@ -12,8 +12,8 @@ from polhode import _core
 from polhode._format import Argument
 from polhode.distributions import Distribution, FunctionOfDraws, per_member
 from polhode.ensembles.cluster import check_client
+from polhode.ensembles.merge_tree import BLOCK
 from polhode.ensembles.plan import VECTORS, Plan, draws, is_each_alone, resolve_draws
-from polhode.ensembles.reduce import BLOCK
 from polhode.ensembles.result import Ensemble
 from polhode.ensembles.trial import choose_method, outputs_of, trial_of
 from polhode.errors import PolhodeError

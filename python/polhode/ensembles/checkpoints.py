@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from polhode.ensembles.fingerprint import fingerprint
-from polhode.ensembles.reduce import BLOCK, State
+from polhode.ensembles.merge_tree import BLOCK, State
 from polhode.ensembles.stores import check_same, header
 from polhode.errors import FileFormatError
 from polhode.io.writing import writing
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from pathlib import Path
 
+    from polhode.ensembles.merge_tree import Tree
     from polhode.ensembles.plan import Plan
-    from polhode.ensembles.reduce import Tree
     from polhode.reductions import Reduction
 
 __all__ = ["Checkpoint"]

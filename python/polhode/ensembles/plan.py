@@ -22,7 +22,7 @@ from polhode.distributions import (
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator, Mapping
 
     from numpy.typing import NDArray
 
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Rows = NDArray[np.intp]
-    from collections.abc import Callable, Mapping
 
 __all__ = [
     "VECTORS",

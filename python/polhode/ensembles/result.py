@@ -16,8 +16,8 @@ from polhode._optional import require
 from polhode._progress import progress_bar
 from polhode.ensembles.checkpoints import Checkpoint
 from polhode.ensembles.cluster import chunks_here, chunks_of_client
+from polhode.ensembles.merge_tree import BLOCK, nodes_of_chunk, tree_of
 from polhode.ensembles.plan import bytes_of_member, coordinates, draws, layout
-from polhode.ensembles.reduce import BLOCK, nodes_of_chunk, tree_of
 from polhode.ensembles.running import arrays_of_chunk
 from polhode.ensembles.stores import NpzStore, ZarrStore, open_store
 from polhode.errors import PolhodeError

@@ -17,7 +17,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from polhode.io.loaded import Loaded, load, read_mesh, solid_from_file
+    from polhode.io.formats import Loaded, load, read_mesh, solid_from_file
     from polhode.io.mesh import Mesh
     from polhode.io.mesh_solid import MeshSolid
     from polhode.io.molecules import Molecule, read_xyz
@@ -42,15 +42,15 @@ else:
 
 _HOMES = {
     "BODY_SCHEMA": "saved",
-    "Loaded": "loaded",
+    "Loaded": "formats",
     "Mesh": "mesh",
     "MeshSolid": "mesh_solid",
     "Molecule": "molecules",
     "TRAJECTORY_SCHEMA": "saved",
-    "load": "loaded",
-    "read_mesh": "loaded",
+    "load": "formats",
+    "read_mesh": "formats",
     "read_xyz": "molecules",
-    "solid_from_file": "loaded",
+    "solid_from_file": "formats",
 }
 """In which file of this room each public name stands."""
 

@@ -10,23 +10,20 @@ import numpy as np
 
 from polhode import _core
 from polhode.errors import FileFormatError, MeshError, PolhodeError
+from polhode.io.budget import Budget, read_bytes
 from polhode.io.cad_geometry import moments_of_faces, occt
 from polhode.io.components import Overlap, describe_overlaps
-from polhode.io.reading import Budget, read_bytes
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
 
+    from polhode._typing import SupportsSigma
     from polhode.io.cad_geometry import Moments
 
     Floats = NDArray[np.float64]
-    from collections.abc import Sequence
-
-    from polhode._typing import SupportsSigma
-
     Number = float | _core.Uncertain | SupportsSigma
 
 __all__ = [

@@ -14,13 +14,12 @@ import numpy as np
 from polhode._optional import require
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
     Surface = Callable[[Floats, Floats], tuple[Floats, Floats]]
-    from collections.abc import Iterator
 
 __all__ = [
     "FaceSurface",

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from polhode.errors import FileFormatError
-from polhode.io.reading import with_way_out
+from polhode.io.budget import with_way_out
 from polhode.io.scene import Scene
 from polhode.io.xml_source import Element, parse_xml
 
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from polhode.io.budget import Budget
     from polhode.io.mesh import Mesh
-    from polhode.io.reading import Budget
 
     Floats = NDArray[np.float64]
     Integers = NDArray[np.int64]

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, Final, NamedTuple
 
 from polhode.errors import FileFormatError
+from polhode.io.budget import check_ordinary, naming
 from polhode.io.plates import is_numbered_plates
-from polhode.io.reading import check_ordinary, naming
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

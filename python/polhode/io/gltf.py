@@ -16,7 +16,7 @@ from urllib.parse import unquote
 import numpy as np
 
 from polhode.errors import FileFormatError
-from polhode.io.reading import read_bytes, whole_of, with_way_out
+from polhode.io.budget import read_bytes, whole_of, with_way_out
 from polhode.io.scene import Scene
 
 if TYPE_CHECKING:
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from polhode.io.budget import Budget
     from polhode.io.mesh import Mesh
-    from polhode.io.reading import Budget
 
     Floats = NDArray[np.float64]
     Integers = NDArray[np.int64]

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from polhode._typing import SupportsSigma
     from polhode.io.cad_files import CadFile, SolidPart
-    from polhode.io.loaded import Loaded
+    from polhode.io.formats import Loaded
     from polhode.io.mesh import Mesh
 
     Number = float | _core.Uncertain | SupportsSigma

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, BinaryIO, Final, NamedTuple
 import numpy as np
 
 from polhode.errors import FileFormatError, PolhodeError
+from polhode.io.budget import text_of, with_way_out
 from polhode.io.content import open_file
-from polhode.io.reading import text_of, with_way_out
 from polhode.molecules.nuclides import SYMBOLS, shifted_mass_number
 
 if TYPE_CHECKING:

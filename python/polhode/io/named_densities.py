@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from polhode._typing import SupportsSigma
     from polhode.io.components import Part
-    from polhode.io.loaded import Loaded
+    from polhode.io.formats import Loaded
 
     Number = float | _core.Uncertain | SupportsSigma
 

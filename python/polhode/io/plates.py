@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, BinaryIO
 import numpy as np
 
 from polhode.errors import FileFormatError
+from polhode.io.budget import text_of
 from polhode.io.mesh import Mesh
-from polhode.io.reading import text_of
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -9,15 +9,15 @@ import numpy as np
 
 from polhode._optional import require
 from polhode.errors import FileFormatError
+from polhode.io.budget import with_way_out
 from polhode.io.content import unread
 from polhode.io.mesh import Mesh, weld
-from polhode.io.reading import with_way_out
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from polhode.io.reading import Budget
+    from polhode.io.budget import Budget
 
 __all__ = [
     "check_off",

@@ -1,7 +1,7 @@
 """The one reader of bodies: Python and the command line read every file that holds a body here.
 
-The way to the body of a mesh: ``RigidBody.from_file``, this file, ``loaded`` (opens and recognises, with
-``content``, ``reading`` and ``unpacked``), ``mesh_solid`` (calls the core).
+The way to the body of a mesh: ``RigidBody.from_file``, this file, ``formats`` (opens a file and calls the
+reader of its format, with ``content``, ``budget`` and ``unpacked``), ``mesh_solid`` (calls the core).
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from polhode.io.content import is_molecule
-from polhode.io.loaded import (
+from polhode.io.formats import (
     ASSEMBLY_SUFFIX,
     SAVED_SUFFIXES,
     Whole,

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from polhode.errors import FileFormatError
-from polhode.io.reading import MOST_TEXT, Budget, LimitError, check_ordinary, naming, read_text, with_way_out
+from polhode.io.budget import MOST_TEXT, Budget, LimitError, check_ordinary, naming, read_text, with_way_out
 from polhode.io.writing import write_bytes, writing
 
 if TYPE_CHECKING:

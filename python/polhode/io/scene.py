@@ -11,7 +11,7 @@ from polhode.io.mesh import Mesh, used_vertices, weld
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from polhode.io.reading import Budget
+    from polhode.io.budget import Budget
 
     Floats = NDArray[np.float64]
     Integers = NDArray[np.int64]

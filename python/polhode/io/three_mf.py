@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from polhode.io.budget import Budget
     from polhode.io.mesh import Mesh
-    from polhode.io.reading import Budget
 
     Floats = NDArray[np.float64]
     Integers = NDArray[np.int64]

@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 from typing import IO, TYPE_CHECKING, Final
 
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.io.reading import Budget, check_ordinary, naming
+from polhode.io.budget import Budget, check_ordinary, naming
 from polhode.io.writing import writing
 
 if TYPE_CHECKING:

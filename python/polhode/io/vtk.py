@@ -10,13 +10,13 @@ import numpy as np
 
 from polhode._optional import require
 from polhode.errors import FileFormatError
+from polhode.io.budget import read_bytes
 from polhode.io.mesh import Mesh, weld
-from polhode.io.reading import read_bytes
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from polhode.io.reading import Budget
+    from polhode.io.budget import Budget
 
 __all__ = ["read_vtk"]
 

@@ -9,7 +9,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, Final
 
-from polhode.io.reading import status_of
+from polhode.io.budget import status_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

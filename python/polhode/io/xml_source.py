@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from xml.parsers import expat
 
 from polhode.errors import FileFormatError
-from polhode.io.reading import Budget
+from polhode.io.budget import Budget
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

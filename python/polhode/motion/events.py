@@ -1,4 +1,7 @@
-"""Events of a motion: functions of time and state, and the table of their passages through zero."""
+"""Events of a motion: functions of time and state, and the table of their passages through zero.
+
+The search itself is in the compiled core: ``rust/core/src/motion/simulate/events.rs``.
+"""
 
 from __future__ import annotations
 

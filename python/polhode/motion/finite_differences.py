@@ -19,10 +19,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from polhode.motion.trajectory import Trajectory
+
     Floats = NDArray[np.float64]
     Recipe = tuple[str, tuple[Any, ...]]
     RecipeMaker = Callable[[Floats], Recipe]
-    from polhode.motion.trajectory import Trajectory
 
 __all__ = [
     "by_differences",

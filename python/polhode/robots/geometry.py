@@ -11,7 +11,7 @@ from polhode import RigidBody, solids
 from polhode._format import Note
 from polhode.errors import PolhodeError
 from polhode.io.components import overlapping
-from polhode.io.loaded import load
+from polhode.io.formats import load
 from polhode.io.mesh import Mesh, equal_rows, used_vertices
 from polhode.robots.mjcf import legacy_solid
 from polhode.robots.model import quote, shorten

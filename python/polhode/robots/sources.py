@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from polhode._format import Argument, Note
 from polhode.errors import FileFormatError
-from polhode.io.reading import LIMITS, Budget, LimitError, note_read, status_of
+from polhode.io.budget import LIMITS, Budget, LimitError, note_read, status_of
 from polhode.io.xml_source import Element, parse_xml
 from polhode.robots.model import shorten
 

@@ -26,7 +26,7 @@ from polhode.robots.room import (
 from polhode.validity import nearest_valid
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Collection, Iterable, Sequence
 
     from numpy.typing import NDArray
 
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from polhode.robots.model import Link, Robot
 
     Floats = NDArray[np.float64]
-    from collections.abc import Iterable
 
 __all__ = [
     "FAILURES",

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from polhode.errors import PolhodeError
-from polhode.io.reading import status_of
+from polhode.io.budget import status_of
 
 if TYPE_CHECKING:
     from os import PathLike

@@ -1,6 +1,7 @@
 """Uncertainty of any function of a body, probabilities of axes and modes, and ledgers of parts.
 
-`RigidBody.sigma` gives the standard deviations of a body itself.
+The standard deviations of a body itself, its moments and axes, are `RigidBody.sigma` and
+`PrincipalAxes.sigma`: the compiled core computes them (``rust/core/src/uncertainty/deviations.rs``).
 """
 
 from typing import TYPE_CHECKING

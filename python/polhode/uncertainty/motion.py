@@ -15,17 +15,16 @@ from polhode.uncertainty.propagation import Neighbours, PropagationResult, is_en
 from polhode.uncertainty.variables import angles_of, of_forms, row_of, rows_of
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from polhode.motion.trajectory import Trajectory
-
-    Places = NDArray[np.intp]
-    from polhode.results import MotionSensitivity
-
-    Floats = NDArray[np.float64]
     from collections.abc import Callable
 
+    from numpy.typing import NDArray
+
     from polhode import FreeMotion
+    from polhode.motion.trajectory import Trajectory
+    from polhode.results import MotionSensitivity
+
+    Places = NDArray[np.intp]
+    Floats = NDArray[np.float64]
 
 __all__ = [
     "FromPeriods",

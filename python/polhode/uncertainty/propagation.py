@@ -16,18 +16,15 @@ from polhode.errors import PolhodeError
 from polhode.uncertainty.uncertain import joined
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
-    from polhode import RigidBody
+    from polhode import RigidBody, Uncertain
     from polhode._progress import Progress
 
     Floats = NDArray[np.float64]
     Function = Callable[..., Any]
-    from collections.abc import Callable, Iterator
-
-    from polhode import Uncertain
 
 __all__ = [
     "HALVINGS",

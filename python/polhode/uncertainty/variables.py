@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import Any
 
-    Form = list[tuple[tuple[int, int], float]]
     from numpy.typing import NDArray
 
     from polhode import RigidBody
 
+    Form = list[tuple[tuple[int, int], float]]
     Floats = NDArray[np.float64]
 
 __all__ = [

@@ -69,7 +69,7 @@
 //! | motions under loads | [`motion::loads`], [`motion::simulate`](mod@motion::simulate) |
 //! | `Σ = S Sᵀ`: what is not known of a body, and what it makes of all that follows | [`uncertainty`] |
 //! | numbers drawn for the members of an ensemble | [`random`] |
-//! | threads, lanes, progress: the only part that is not physics | [`parallel`] |
+//! | threads, lanes, progress | [`parallel`] |
 //! | what can be wrong, as plain data | [`error`] |
 //!
 //! Motion is built on mass, mass on principal axes; nothing points back up. The page of a module maps its formulas to its files.

@@ -23,17 +23,15 @@ from polhode.draw.wheels import RINGS, SPOKE, SPOKES
 from polhode.io.writing import replacing, writing
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
 
     from polhode.draw.scene import Scene
+    from polhode.draw.wheels import Disc
 
     Floats = NDArray[np.float64]
-    from collections.abc import Sequence
-
-    from polhode.draw.wheels import Disc
 
 __all__ = [
     "Name",

@@ -31,7 +31,7 @@ _MODULES: Final = (
     "vectors", "double", "elliptic", "free", "frames", "trail", "labels", "camera", "theme", "surface",
     "solid", "clock", "wheels", "views", "energy", "live", "main",
 )  # fmt: skip
-"""Modules of the folder ``page``, each after those that it imports; a browser reads them as one."""
+"""Modules of the folder ``web``, each after those that it imports; a browser reads them as one."""
 _SHARED: Final = {
     "SECONDS": SECONDS,
     "PICTURES": RATE,
@@ -48,7 +48,7 @@ _SHORT: Final = (1e-30, 1e30)
 
 
 def page(scene: Scene) -> str:
-    """Write the page: the files of the folder ``page`` and the motion, as one text.
+    """Write the page: the files of the folder ``web`` and the motion, as one text.
 
     Parameters
     ----------

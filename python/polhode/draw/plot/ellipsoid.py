@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from polhode import FreeMotion, GyrostatMotion, RigidBody
 
     Floats = NDArray[np.float64]
-    from numpy.typing import NDArray
 
 
 __all__ = [

@@ -17,6 +17,8 @@ from polhode.errors import PolhodeError
 from polhode.motion.invariants import changes, lengths
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
@@ -24,7 +26,6 @@ if TYPE_CHECKING:
     from polhode.motion.trajectory import Trajectory
 
     Floats = NDArray[np.float64]
-    from collections.abc import Callable
 
 __all__ = [
     "angular_momentum",

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from polhode.draw.shape import Shape
 
     Floats = NDArray[np.float64]
-    from numpy.typing import NDArray
 
 __all__ = [
     "AXIS_STYLE",

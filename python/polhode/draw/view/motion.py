@@ -32,11 +32,9 @@ if TYPE_CHECKING:
     from pyvista import Plotter
 
     from polhode import FreeMotion, GyrostatMotion, HeavyTop, Trajectory
+    from polhode.draw.wheels import Disc
 
     Floats = NDArray[np.float64]
-    from numpy.typing import NDArray
-
-    from polhode.draw.wheels import Disc
 
 __all__ = [
     "WheelActors",

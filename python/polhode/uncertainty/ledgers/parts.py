@@ -16,7 +16,8 @@ from polhode.errors import InvalidInertiaError, PolhodeError
 from polhode.uncertainty.ledgers.rollup import NUMBERS, own_moment, shift
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Integers = NDArray[np.intp]
-    from collections.abc import Sequence
-    from pathlib import Path
 
 __all__ = [
     "COLUMNS",

@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from polhode.io.reading import Budget
+from polhode.io.budget import Budget
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
+    from polhode.uncertainty.ledgers.parts import Parts
     from polhode.uncertainty.ledgers.table import Tree
 
     Floats = NDArray[np.float64]
     Integers = NDArray[np.intp]
     Column = dict[int, Floats | float]
-    from collections.abc import Iterator
-
-    from polhode.uncertainty.ledgers.parts import Parts
 
 __all__ = [
     "NUMBERS",

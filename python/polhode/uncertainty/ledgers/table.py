@@ -17,7 +17,7 @@ import numpy as np
 
 from polhode._format import Argument
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.io.reading import Budget, read_text
+from polhode.io.budget import Budget, read_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

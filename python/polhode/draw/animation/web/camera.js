@@ -5,7 +5,7 @@ import { dot, scaled, sum, length } from "./vectors.js";
 
 const NAME_PART = 0.4; // of the width of a view, that a name takes at most
 
-export class View {
+export class Camera {
   constructor(canvas, azimuth, elevation, redraw) {
     Object.assign(this, { canvas, redraw, home: [azimuth, elevation], center: [0, 0, 0], reach: 1.35, pen: canvas.getContext("2d"), names: [] });
     this.reset();

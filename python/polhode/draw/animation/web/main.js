@@ -1,6 +1,6 @@
 // The page: what it was given, what it shows now, and what its controls do.
 
-import { View } from "./camera.js";
+import { Camera } from "./camera.js";
 import { asked, speedWords, speeds, timeText } from "./clock.js";
 import { energyRows } from "./energy.js";
 import { Frames, numbers } from "./frames.js";
@@ -71,7 +71,7 @@ follow(null);
 let now = wanted.t ?? start, playing = wanted.t === null && !matchMedia("(prefers-reduced-motion: reduce)").matches, last = null, waiting = false;
 const rolls = () => surface.kind === "free" && motion.moments[0] > 0 && motion.ellipsoid.doubled > 0;
 let second = wanted.view === "poinsot" && rolls() ? "poinsot" : "body", view = wanted.view ?? "space";
-const views = { space: new View(element("space"), 0.9, 0.35, later), second: new View(element("second"), 0.9, 0.4, later) };
+const views = { space: new Camera(element("space"), 0.9, 0.35, later), second: new Camera(element("second"), 0.9, 0.4, later) };
 if (given.top) { views.space.center = given.top.down.map((x) => -0.3 * x); views.space.reach = 1.35; }
 const rate = (Math.abs(span) || 1) / given.duration;
 let speed = rate;

@@ -1,4 +1,7 @@
-"""ASCII STL, read strictly: a file cut short is an error, not a smaller body."""
+"""ASCII STL, read strictly: a file cut short is an error, not a smaller body.
+
+Binary STL is read in the compiled core: ``rust/core/src/io/stl.rs``.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ from typing import TYPE_CHECKING, BinaryIO, Final
 import numpy as np
 
 from polhode.errors import FileFormatError
-from polhode.io.reading import with_way_out
+from polhode.io.budget import with_way_out
 
 if TYPE_CHECKING:
     from pathlib import Path

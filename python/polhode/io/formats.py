@@ -1,4 +1,4 @@
-"""What a file holds: a triangle mesh, solids of CAD or a molecule, opened and recognised once; a saved body.
+"""The reader of each format: it opens a file and returns a mesh, solids of CAD, a molecule or a saved body.
 
 Nothing is repaired and nothing is guessed: a file is what its name says and whole, or it is an error.
 The one exception is exact: corners at bit-equal coordinates are one vertex, because STL stores each
@@ -18,12 +18,12 @@ import numpy as np
 from polhode import _core
 from polhode._format import Argument
 from polhode.errors import FileFormatError, PolhodeError
+from polhode.io.budget import Budget, check_ordinary, naming, status_of, whole_of
 from polhode.io.cad_geometry import check_occt
 from polhode.io.content import EXPECTED_CONTENT, MOLECULE_SUFFIXES, Content, is_molecule, open_file, unread
 from polhode.io.mesh import Mesh, check_faces, weld, weld_within
 from polhode.io.mesh_solid import MeshSolid, naming_file, solid_of
 from polhode.io.plates import read_numbered_plates
-from polhode.io.reading import Budget, check_ordinary, naming, status_of, whole_of
 from polhode.io.saved import read_body, read_report
 from polhode.io.unpacked import inner_suffix, unpack
 from polhode.units import METRES, metres_per
@@ -258,7 +258,7 @@ def _load(file: Path, suffix: str, index_base: int, budget: Budget, packed: int 
         if suffix in CAD_SUFFIXES:
             return _load_cad(file, packed)
         if content.format == "ASCII STL":
-            from polhode.io.ascii_stl import read_ascii_stl
+            from polhode.io.stl import read_ascii_stl
 
             corners, groups = read_ascii_stl(stream, file)
             faces = np.arange(corners.size // 3).reshape(-1, 3)
