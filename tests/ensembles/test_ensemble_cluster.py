@@ -67,11 +67,11 @@ def scaled(client: Any, count: int) -> None:
 
 def test_bits_are_those_of_this_machine_for_any_number_of_workers(workers: Any) -> None:
     states = all_bytes(twisted(500, chunk=60).compute())
-    reduced = all_bytes(twisted(20_000, reduce=all_reductions()).compute())
+    reduced = all_bytes(twisted(13_000, reduce=all_reductions()).compute())
     for count in (1, 2, 3):
         scaled(workers, count)
         assert all_bytes(twisted(500, chunk=60, client=workers).compute()) == states
-        many = twisted(20_000, reduce=all_reductions(), client=workers, chunk=4096 * count)
+        many = twisted(13_000, reduce=all_reductions(), client=workers, chunk=4096 * count)
         assert all_bytes(many.compute()) == reduced
 
 

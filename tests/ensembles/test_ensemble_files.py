@@ -163,6 +163,14 @@ class TestCheckpoints:
             self.reduced(progress=end, **options).compute(checkpoint=path)
         return told
 
+    @pytest.fixture(scope="class")
+    @classmethod
+    def kept(cls, tmp_path_factory: pytest.TempPathFactory) -> bytes:
+        """What a run that was ended has written."""
+        path = tmp_path_factory.mktemp("ended") / "kept.npz"
+        cls().ended(path)
+        return path.read_bytes()
+
     def reduced(self, **options: Any) -> Any:
         return twisted(5 * 4096 + 99, t=(0.0, 0.1), **{"reduce": all_reductions()} | options)
 
@@ -183,7 +191,7 @@ class TestCheckpoints:
         code = (
             "import sys, ensemble_cases as e, polhode.ensembles.checkpoints as c\n"
             "c._BETWEEN = 0.0\n"
-            "e.twisted(20 * 4096, t=(0, 2), reduce=e.all_reductions()).compute(checkpoint=sys.argv[1])"
+            "e.twisted(12 * 4096, t=(0, 1), reduce=e.all_reductions()).compute(checkpoint=sys.argv[1])"
         )
         process = subprocess.Popen([sys.executable, "-c", code, str(path)], cwd=TESTS)
         try:
@@ -194,10 +202,10 @@ class TestCheckpoints:
             process.send_signal(signal.SIGKILL)
             process.wait()
         told: list[float] = []
-        many = twisted(20 * 4096, t=(0, 2), reduce=all_reductions(), progress=told.append)
+        many = twisted(12 * 4096, t=(0, 1), reduce=all_reductions(), progress=told.append)
         found = many.compute(checkpoint=path)
         assert told[0] >= 0.05
-        assert all_bytes(found) == all_bytes(twisted(20 * 4096, t=(0, 2), reduce=all_reductions()).compute())
+        assert all_bytes(found) == all_bytes(twisted(12 * 4096, t=(0, 1), reduce=all_reductions()).compute())
 
     @pytest.mark.parametrize(
         ("change", "words"),
@@ -208,18 +216,18 @@ class TestCheckpoints:
             ({"rtol": 1e-9}, "an option or a reduction is not the same"),
         ],
     )
-    def test_another_one_is_refused(self, change: dict[str, Any], words: str, tmp_path: Path) -> None:
+    def test_another_one_is_refused(
+        self, change: dict[str, Any], words: str, kept: bytes, tmp_path: Path
+    ) -> None:
         path = tmp_path / "kept.npz"
-        self.ended(path)
-        before = path.read_bytes()
+        path.write_bytes(kept)
         with pytest.raises(FileFormatError, match=words):
             self.reduced(**change).compute(checkpoint=path)
-        assert path.read_bytes() == before
+        assert path.read_bytes() == kept
 
-    def test_what_is_no_checkpoint_is_refused(self, tmp_path: Path) -> None:
+    def test_what_is_no_checkpoint_is_refused(self, kept: bytes, tmp_path: Path) -> None:
         path = tmp_path / "kept.npz"
-        self.ended(path)
-        whole = path.read_bytes()
+        whole = kept
         np.savez(tmp_path / "other.npz", a=np.ones(3))
         for bad in (whole[: len(whole) // 2], b"anything", b"", (tmp_path / "other.npz").read_bytes()):
             path.write_bytes(bad)
@@ -240,9 +248,11 @@ class TestCheckpoints:
             {"done": None},
         ],
     )
-    def test_what_somebody_has_changed_is_refused(self, change: dict[str, Any], tmp_path: Path) -> None:
+    def test_what_somebody_has_changed_is_refused(
+        self, change: dict[str, Any], kept: bytes, tmp_path: Path
+    ) -> None:
         path = tmp_path / "kept.npz"
-        self.ended(path)
+        path.write_bytes(kept)
         with zipfile.ZipFile(path) as archive:
             members = {name: archive.read(name) for name in archive.namelist()}
         state = json.loads(members["state.json"])

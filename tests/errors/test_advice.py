@@ -26,8 +26,8 @@ from polhode._format import at_least, at_most
 from polhode.cli.terminal import in_options
 from polhode.errors import FileFormatError, InvalidInertiaError, PolhodeError
 from polhode.io import load
-from polhode.io.content import EXPECTED_CONTENT
 from polhode.io.budget import words_of
+from polhode.io.content import EXPECTED_CONTENT
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -108,6 +108,7 @@ for name in FILES_OF_ROWS:
 """
 
 
+@pytest.mark.long
 def test_all_rows_can_be_made(harness: Any) -> None:
     """In a process of its own: the files of rows set threads, and their names are plain words."""
     command = [sys.executable, "-c", ROWS, str(Path(harness.__file__).parent)]

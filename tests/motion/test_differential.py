@@ -176,13 +176,14 @@ def compare(n: int, seed: int) -> dict[str, float]:
     return worst
 
 
-def test_twenty_random_feedbacks_and_schedules() -> None:
-    assert set(compare(20, 1)) == {"taylor", "dop853", "radau", "splitting"}
+def test_random_feedbacks_and_schedules() -> None:
+    assert set(compare(8, 1)) == {"taylor", "dop853", "radau", "splitting"}
 
 
 @pytest.mark.long
 @pytest.mark.timeout(7200)
 def test_two_thousand_random_feedbacks_and_schedules() -> None:
+    print(compare(20, 1))
     for seed in range(10):
         print(seed, compare(200, 100 + seed))
 
