@@ -74,12 +74,12 @@ pub(super) fn integrate<M: Matter<Moments = SecondMoment>>(
 /// The sums of matter that sums to `first` in body axes; with at most so many `passes` in own axes.
 pub(super) fn integrate_sums<M: Matter<Moments = Sums>>(
     matter: &M,
-    first: Sums,
+    first: &Sums,
     passes: usize,
     watch: &mut Watch<'_>,
 ) -> Result<(Sums, MomentsFrom), Error> {
-    if !first.content.is_finite() || is_stout(&first) {
-        return Ok((first, MomentsFrom::SecondMoment));
+    if !first.content.is_finite() || is_stout(first) {
+        return Ok((*first, MomentsFrom::SecondMoment));
     }
     let again = |frame: &LocalFrame| matter.moments(frame, watch);
     let sums = sums_in_own_axes(first.own_frame(), passes, again, is_settled)?;

@@ -14,6 +14,7 @@ use std::marker::PhantomData;
 use nalgebra::{Matrix3, Vector3};
 
 use super::error_bound::UNIT;
+use crate::error::Error;
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::double_double::two_sum;
 use crate::numerics::lane::{Double, Lane};
@@ -105,12 +106,15 @@ impl Sums {
     }
 }
 
-/// Sums over all simplices, on several threads when there are many; `None` where `watch` said stop.
+/// Sums over all simplices, on several threads when there are many.
+///
+/// # Errors
+/// [`Error::Stopped`] where `watch` said so.
 pub(super) fn sums<C: Corners<N>, K: Kind<N>, const N: usize>(
     corners: &C,
     frame: &LocalFrame,
     watch: &mut Watch<'_>,
-) -> Option<Sums> {
+) -> Result<Sums, Error> {
     let count = corners.count();
     let mut blocks = vec![[0.0; TERMS]; count.div_ceil(BLOCK)];
     fill_blocks(&mut blocks, 1, watch, |block, out| {
@@ -121,9 +125,8 @@ pub(super) fn sums<C: Corners<N>, K: Kind<N>, const N: usize>(
             frame,
         );
         Ok::<(), Infallible>(())
-    })
-    .ok()?;
-    Some(Sums::new::<K, N>(&merge(&blocks), count, frame))
+    })?;
+    Ok(Sums::new::<K, N>(&merge(&blocks), count, frame))
 }
 
 // What the content of a simplex is: a length, an area or a volume.

@@ -106,8 +106,7 @@ pub fn area<I: Index>(
         return Err(MeshFault::NoFaces.into());
     }
     let frame = mesh.frame();
-    let found = sums::<_, Shell, 3>(&mesh, &frame, watch);
-    let area = found.ok_or(Error::Stopped)?.content;
+    let area = sums::<_, Shell, 3>(&mesh, &frame, watch)?.content;
     if !area.is_finite()
         && let Some(fault) = mesh.find_unusable()
     {
@@ -132,7 +131,7 @@ pub(super) fn thin<C: Corners<N>, K: Kind<N>, const N: usize>(
     if !is_near(&found) {
         found = simplices.moments(&used(), watch)?;
     }
-    integrate_sums(&simplices, found, 3, watch)
+    integrate_sums(&simplices, &found, 3, watch)
 }
 
 /// Simplices of one kind.
@@ -142,7 +141,7 @@ impl<C: Corners<N>, K: Kind<N>, const N: usize> Matter for Simplices<'_, C, K, N
     type Moments = Sums;
 
     fn moments(&self, frame: &LocalFrame, watch: &mut Watch<'_>) -> Result<Sums, Error> {
-        sums::<C, K, N>(self.0, frame, watch).ok_or(Error::Stopped)
+        sums::<C, K, N>(self.0, frame, watch)
     }
 }
 

@@ -97,7 +97,7 @@ pub fn thick_shell<I: Index>(
         vertices,
         thickness,
     };
-    let (sums, moments) = integrate_sums(&shell, shell.moments(&frame, watch)?, 4, watch)?;
+    let (sums, moments) = integrate_sums(&shell, &shell.moments(&frame, watch)?, 4, watch)?;
     let error = 2.0 * (sums.scale.x + sums.roundings() * sums.content);
     let checks = Checks::INDICES
         .and(Checks::FINITE)
@@ -128,7 +128,44 @@ impl Matter for Swept<'_> {
     type Moments = Sums;
 
     fn moments(&self, frame: &LocalFrame, watch: &mut Watch<'_>) -> Result<Sums, Error> {
-        Placed::new(self.offset, self.vertices, self.thickness, frame).sums(frame, watch)
+        let corners: Vec<Vector3<f64>> = self.vertices.iter().map(|r| frame.place(r)).collect();
+        let directions: Vec<Vector3<f64>> = match &frame.axes {
+            None => self.offset.directions.clone(),
+            Some(axes) => self
+                .offset
+                .directions
+                .iter()
+                .map(|d| axes.tr_mul(d))
+                .collect(),
+        };
+        let half = 0.5 * self.thickness / frame.unit;
+        let mut extent = Vector3::zeros();
+        for &k in self.offset.faces.iter().flatten() {
+            extent = extent.sup(&(corners[k].abs() + directions[k].abs() * half));
+        }
+        let placed = Placed {
+            offset: self.offset,
+            corners,
+            directions,
+            half,
+            weight: 0.5 * times_power_of_two(self.thickness, -exponent(self.thickness)),
+            extent,
+        };
+        let count = self.offset.faces.len();
+        let [w, x, y, z, xx, xy, xz, yy, yz, zz, slack] = sum_blocks(count, watch, |range| {
+            block_sum(range.start, range.end, &|face| placed.terms(face))
+        })?;
+        Ok(Sums {
+            frame: *frame,
+            count,
+            content: w,
+            magnitude: w,
+            first: Vector3::new(x, y, z),
+            second: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
+            // What the roundings of all faces have done to the volume.
+            scale: Vector3::new(slack, 0.0, 0.0),
+            extent,
+        })
     }
 }
 
@@ -146,47 +183,7 @@ struct Placed<'a> {
 /// Volume, first moment (3), second moment (6), what rounding can have done to the volume.
 const TERMS: usize = 11;
 
-impl<'a> Placed<'a> {
-    fn new(offset: &'a Offset, vertices: &[[f64; 3]], thickness: f64, frame: &LocalFrame) -> Self {
-        let corners: Vec<Vector3<f64>> = vertices.iter().map(|r| frame.place(r)).collect();
-        let directions: Vec<Vector3<f64>> = match &frame.axes {
-            None => offset.directions.clone(),
-            Some(axes) => offset.directions.iter().map(|d| axes.tr_mul(d)).collect(),
-        };
-        let half = 0.5 * thickness / frame.unit;
-        let mut extent = Vector3::zeros();
-        for &k in offset.faces.iter().flatten() {
-            extent = extent.sup(&(corners[k].abs() + directions[k].abs() * half));
-        }
-        Self {
-            offset,
-            corners,
-            directions,
-            half,
-            weight: 0.5 * times_power_of_two(thickness, -exponent(thickness)),
-            extent,
-        }
-    }
-
-    /// The integrals over the shell.
-    fn sums(&self, frame: &LocalFrame, watch: &mut Watch<'_>) -> Result<Sums, Error> {
-        let count = self.offset.faces.len();
-        let [w, x, y, z, xx, xy, xz, yy, yz, zz, slack] = sum_blocks(count, watch, |range| {
-            block_sum(range.start, range.end, &|face| self.terms(face))
-        })?;
-        Ok(Sums {
-            frame: *frame,
-            count,
-            content: w,
-            magnitude: w,
-            first: Vector3::new(x, y, z),
-            second: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
-            // What the roundings of all faces have done to the volume.
-            scale: Vector3::new(slack, 0.0, 0.0),
-            extent: self.extent,
-        })
-    }
-
+impl Placed<'_> {
     /// What one face sweeps.
     #[inline]
     fn terms(&self, face: usize) -> [f64; TERMS] {

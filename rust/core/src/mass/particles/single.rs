@@ -47,9 +47,7 @@ impl<'a> Particles<'a> {
 
 /// The first particle that cannot be, where there is one.
 pub(in crate::mass) fn check(particles: Particles<'_>) -> Result<(), Error> {
-    let Particles {
-        masses, positions, ..
-    } = particles;
+    let (masses, positions) = (particles.masses, particles.positions);
     for (index, (&mass, position)) in masses.iter().zip(positions).enumerate() {
         finite_of_body("masses", mass)?;
         if mass < 0.0 {
@@ -113,13 +111,8 @@ const LIGHT: f64 = 256.0;
 /// Mass and centre of mass of every `stride`-th particle, by distances from the one with the index `base`; its own place
 /// where they are beyond all numbers.
 #[inline]
-fn center_from(
-    Particles {
-        masses, positions, ..
-    }: Particles<'_>,
-    base: usize,
-    stride: usize,
-) -> (f64, Vector3<f64>) {
+fn center_from(particles: Particles<'_>, base: usize, stride: usize) -> (f64, Vector3<f64>) {
+    let (masses, positions) = (particles.masses, particles.positions);
     let base = Vector3::from(positions[base]);
     let (mut mass, mut first) = (0.0, Vector3::zeros());
     let mut i = 0;
@@ -218,9 +211,7 @@ fn sum(
     addend: impl Addend<MOMENTS>,
     watch: &mut Watch<'_>,
 ) -> Result<[f64; MOMENTS], Error> {
-    let Particles {
-        masses, positions, ..
-    } = particles;
+    let (masses, positions) = (particles.masses, particles.positions);
     Ok(sum_blocks(masses.len(), watch, |block| {
         block_sums(&masses[block.clone()], &positions[block], addend)
     })?)
@@ -296,9 +287,7 @@ pub(super) fn in_units(
     watch: &mut Watch<'_>,
 ) -> Result<RigidBody, Error> {
     check(particles)?;
-    let Particles {
-        masses, positions, ..
-    } = particles;
+    let (masses, positions) = (particles.masses, particles.positions);
     let heavy = || (masses.iter().zip(positions)).filter(|(mass, _)| **mass > 0.0);
     let heaviest = heavy().fold(0.0_f64, |most, (&mass, _)| most.max(mass));
     let at = || heavy().map(|(_, &r)| Vector3::from(r));

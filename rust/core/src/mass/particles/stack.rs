@@ -77,11 +77,9 @@ pub fn particle_stack<'a>(
     };
     let before = fault.as_ref().map_or(count, |(index, _)| *index);
     for index in (0..before).filter(|&index| !is_small(index)) {
-        let Particles {
-            masses, positions, ..
-        } = row(index);
-        bodies[index] =
-            particles_watched(masses, positions, watch).map_err(|error| (index, error))?;
+        let row = row(index);
+        let body = particles_watched(row.masses, row.positions, watch);
+        bodies[index] = body.map_err(|error| (index, error))?;
     }
     fault.map_or(Ok(bodies), Err)
 }

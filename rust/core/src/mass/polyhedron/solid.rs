@@ -60,7 +60,7 @@ pub(super) struct Checked {
     pub(super) marks: Marks,
 }
 
-/// The solid inside some triangles, and its volume.
+/// The solid inside some triangles, and its volume: negative where it was turned as a whole.
 pub(super) fn solid<T: Triangles>(
     triangles: &mut T,
     amount: Amount,
@@ -173,7 +173,7 @@ fn volume_error(sums: &Sums) -> f64 {
         + 64.0 * QUANTUM * sums.count as f64
 }
 
-/// The body of uniform density with these sums, and its volume.
+/// The body of uniform density with these sums, and its signed volume.
 fn body(sums: &Sums, amount: Amount, orient: bool) -> Result<(RigidBody, f64), Error> {
     let unit = sums.frame.unit;
     let volume = sums.content * unit * unit * unit;
@@ -194,7 +194,7 @@ fn body(sums: &Sums, amount: Amount, orient: bool) -> Result<(RigidBody, f64), E
         },
         ..ErrorBound::default()
     };
-    Ok((matter(sums, mass, relative, bound, units)?, volume.abs()))
+    Ok((matter(sums, mass, relative, bound, units)?, volume))
 }
 
 // The body of what was summed over simplices: solids, shells and wires.
@@ -227,11 +227,8 @@ pub(in crate::mass) fn matter(
     bound: ErrorBound,
     units: Units,
 ) -> Result<RigidBody, Error> {
-    let LocalFrame {
-        reference, unit, ..
-    } = sums.frame;
-    let axes = sums.frame.rotation();
-    let center_of_mass = reference + axes * sums.center() * unit;
+    let (unit, axes) = (sums.frame.unit, sums.frame.rotation());
+    let center_of_mass = sums.frame.reference + axes * sums.center() * unit;
     let central = sums.central() * mass;
     // First and second moments are off by as much as the content, times the extent once and twice.
     let extent = sums.extent.norm();
