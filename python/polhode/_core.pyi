@@ -412,6 +412,17 @@ class RigidBody:
         numbers: ArrayLike, doubts: dict[str, Any] | None = None, figures: list[Any] | None = None
     ) -> RigidBody: ...
     def _figures(self) -> list[Any] | None: ...
+    @staticmethod
+    def _from_mesh(
+        vertices: ArrayLike,
+        faces: ArrayLike,
+        *,
+        density: _Number | None = None,
+        mass: _Number | None = None,
+        closure: Literal["caps", "hull"] | None = None,
+        orient: bool = False,
+        check: bool = True,
+    ) -> tuple[RigidBody, float]: ...
     def _doubts(self) -> dict[str, Any] | None: ...
     def _probes(self) -> _Floats: ...
     def with_sigma(

@@ -6,6 +6,7 @@ import gzip
 import json
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,9 +15,9 @@ from command_line import one_line, run
 from foreign_files import LIB3MF_INCH, MESHIO_VTU, PYCOLLADA, VTK_ASCII
 from mesh_files import ascii_stl, binary_stl, dae, glb, gltf, numbered_plates, three_mf
 from oracles.meshes import cube
-from polhode import RigidBody, robots
+from polhode import RigidBody, _core, robots
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.io import load, read_mesh, solid_from_file, unpacked
+from polhode.io import load, mesh_solid, read_mesh, solid_from_file, unpacked
 from polhode.io.budget import LIMITS, Limit
 
 CUBE = cube(2.0)
@@ -332,6 +333,33 @@ class TestPacked:
         refused(written(tmp_path / "d.stl.gz", gzip.compress(b"dear reader")), "d.stl.gz")
         refused(written(tmp_path / "e.tar.gz", gzip.compress(b"x")), "use one of")
         refused(written(tmp_path / "f.stl", gzip.compress(ascii_stl(*CUBE))), "packed with gzip; rename it")
+
+
+class TestOneSolve:
+    """A mesh is summed once, whatever is asked of it: with `mass` its volume is not that of a second body."""
+
+    @pytest.mark.parametrize("amount", [{"mass": 3.0}, {"density": 4.0}])
+    @pytest.mark.parametrize("option", [{}, {"orient": True}, {"closure": "caps"}, {"repair": True}])
+    def test_with_mass_as_with_density(
+        self, amount: Any, option: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        vertices, faces = CUBE
+        path = written(tmp_path / "cube.tab", numbered_plates(vertices / 3.0, faces))
+        solves: list[str] = []
+
+        def counting(name: str) -> Any:
+            summed = getattr(RigidBody, name)
+            return lambda *arguments, **options: solves.append(name) or summed(*arguments, **options)
+
+        names = ("from_mesh", "_from_mesh")
+        body = SimpleNamespace(**{name: counting(name) for name in names})
+        monkeypatch.setattr(mesh_solid, "_core", SimpleNamespace(**{**vars(_core), "RigidBody": body}))
+        solid = solid_from_file(path, **amount, **option)
+        assert solves == ["_from_mesh"]
+        monkeypatch.undo()
+        mesh = read_mesh(path)
+        assert solid.volume == RigidBody.from_mesh(mesh.vertices, mesh.faces, density=1.0).mass
+        assert solid.body == RigidBody.from_mesh(mesh.vertices, mesh.faces, **amount)
 
 
 class TestNumberedPlates:

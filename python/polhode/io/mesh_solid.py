@@ -136,15 +136,11 @@ def solid_of(
     with np.errstate(over="ignore"):  # what is beyond float64 is refused as infinite, with its number
         vertices = mesh.vertices * scale
 
-    def solid(density: Number | None, mass: Number | None = None) -> _core.RigidBody:
-        return _core.RigidBody.from_mesh(
-            vertices, mesh.faces, density=density, mass=mass, closure=closure, orient=orient
-        )
-
     try:
         with naming_file(file):
-            body = solid(density, mass)
-            volume = float(body.mass) / _value(density) if density is not None else float(solid(1.0).mass)
+            body, volume = _core.RigidBody._from_mesh(
+                vertices, mesh.faces, density=density, mass=mass, closure=closure, orient=orient
+            )
             area = _core.surface_area(vertices, mesh.faces)
     except MeshError as error:
         is_welded = _offer_weld(error, mesh)
@@ -191,13 +187,6 @@ def _cad_solid(
     return MeshSolid(body, loaded.format, None, faces, volume, area, 0, parts=parts)
 
 
-def _value(number: Number) -> float:
-    """Return the value of a number that may have a sigma."""
-    if isinstance(number, _core.Uncertain):
-        return float(number.value)
-    return float(number) if isinstance(number, float | int) else float(number.nominal_value)
-
-
 @contextmanager
 def naming_file(path: str | os.PathLike[str]) -> Iterator[None]:
     """Put the name of the file before the text of an error."""
@@ -218,8 +207,7 @@ def _repaired_solid(
     before, faces = spanned_volume(mesh), len(mesh.faces)
     mended, done, welded, filled = repair_mesh(mesh, weld)
     vertices = mended.vertices * scale
-    body = _core.RigidBody.from_mesh(vertices, mended.faces, density=density, mass=mass, orient=True)
-    volume = float(_core.RigidBody.from_mesh(vertices, mended.faces, density=1.0, orient=True).mass)
+    body, volume = _core.RigidBody._from_mesh(vertices, mended.faces, density=density, mass=mass, orient=True)
     last, steps = before, []
     for name, what, after in done:
         steps.append(RepairStep(name, what, 100.0 * (after - last) * scale**3 / volume))

@@ -172,13 +172,19 @@ fn of_mesh(draw: &mut Draw<'_>) -> Result<Option<RigidBody>> {
     let kind = draw.up_to(5)?;
     let body = match kind {
         0 => surface(vertices, faces, amount, watch).ok(),
-        1 => close_with_caps(vertices, faces, amount, options, watch).ok(),
+        1 => close_with_caps(vertices, faces, amount, options, watch)
+            .map(|solid| solid.body)
+            .ok(),
         2 => {
             let hull = mesh.faces.iter().rev().copied().collect::<Vec<_>>();
-            close_with_hull(vertices, faces, &hull, amount, watch).ok()
+            close_with_hull(vertices, faces, &hull, amount, watch)
+                .map(|solid| solid.body)
+                .ok()
         }
         3 => thick_shell(vertices, faces, draw.positive()?, amount, watch).ok(),
-        _ => polyhedron_watched(vertices, faces, amount, options, watch).ok(),
+        _ => polyhedron_watched(vertices, faces, amount, options, watch)
+            .map(|solid| solid.body)
+            .ok(),
     };
     // What nobody checked may be no body.
     if !check && !matches!(kind, 0 | 2 | 3) {

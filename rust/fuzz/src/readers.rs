@@ -114,7 +114,8 @@ fn both_ways(stream: &mut dyn TriangleStream, mesh: &TriangleMesh) {
     };
     let of_stream = stream_solid(stream, 1.0, amount, options, &mut patience(1000));
     let (vertices, faces) = (&mesh.vertices, &mesh.faces);
-    let in_memory = polyhedron_watched(vertices, faces, amount, options, &mut patience(1000));
+    let in_memory = polyhedron_watched(vertices, faces, amount, options, &mut patience(1000))
+        .map(|solid| solid.body);
     assert_eq!(
         of_stream.is_ok(),
         in_memory.is_ok(),

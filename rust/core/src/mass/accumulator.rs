@@ -468,7 +468,7 @@ impl Moments {
     }
 
     fn about(particles: Particles<'_>, reference: Vector3<f64>) -> Result<Self, Error> {
-        let Particles { masses, positions } = particles;
+        let (masses, positions) = (particles.masses, particles.positions);
         let sums = block_sums(masses, positions, Precise { reference });
         if !(sums[BELOW] == 0.0 && sums.iter().all(|sum| sum.is_finite())) {
             check(particles)?;

@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::body::RigidBody;
 use super::error_bound::{ErrorBound, UNIT, faint};
+use super::integrator::is_thin;
 use super::parallel_axis::point_inertia;
 use super::provenance::Provenance;
 use super::validity::{ROUNDING, check_mass, trace};
@@ -128,13 +129,6 @@ impl RigidBody {
         principal.moments = principal.moments.map(|moment| moment.max(0.0));
         Ok(rest.body(principal).with_provenance(provenance))
     }
-}
-
-/// Below this ratio of smallest to largest moment the smallest would lose digits in the tensor's own axes.
-const THIN: f64 = 0.05;
-
-fn is_thin(principal: &PrincipalAxes) -> bool {
-    principal.moments[0] < THIN * principal.moments[2]
 }
 
 /// Bodies with signs: what they are together about their common centre of mass.

@@ -69,8 +69,7 @@ pub fn curve(
         });
     }
     let frame = LocalFrame::of_box(&Vector3::from(low), &Vector3::from(high));
-    let found = thin::<_, Wire, 2>(&line, &frame, || frame, watch);
-    let (sums, moments) = found.ok_or(Error::Stopped)?;
+    let (sums, moments) = thin::<_, Wire, 2>(&line, &frame, || frame, watch)?;
     // Each end of a segment is off by a unit of rounding of the extent, its length by four.
     let error =
         sums.roundings() * sums.content + 8.0 * UNIT * sums.extent.norm() * sums.count as f64;

@@ -13,6 +13,7 @@
 //! | where the numbers come from | [`provenance`] |
 //! | second moment ∫ r rᵀ dm, from which every tensor comes | [`second_moment`] |
 //! | principal moments and axes to twice the precision | [`refined`] |
+//! | matter summed once, and again in its own axes where it is thin | `integrator` |
 //! | parallel-axis (Steiner, Huygens) theorem | [`parallel_axis`] |
 //! | particles, stacks of them, particles with labels | [`particles`] |
 //! | particles in chunks, more than fit into memory | [`accumulator`] |
@@ -87,6 +88,7 @@ pub mod equimomental;
 pub mod error_bound;
 pub mod forms;
 pub mod inertial_parameters;
+mod integrator;
 pub mod laminae;
 pub mod parallel_axis;
 pub mod particles;

@@ -171,7 +171,7 @@ impl Region {
             })
             .collect();
         let apexes = match &found {
-            None => vec![solid.center_of_mass()],
+            None => vec![solid.body.center_of_mass()],
             Some((_, count)) => middles(&faces, *count),
         };
         Ok(Self(Kind::Mesh { apexes, faces }))

@@ -14,11 +14,15 @@ use std::marker::PhantomData;
 use nalgebra::{Matrix3, Vector3};
 
 use super::error_bound::UNIT;
+use crate::error::Error;
 use crate::numerics::dispatch::{Kernel, dispatch};
+use crate::numerics::double_double::two_sum;
 use crate::numerics::lane::{Double, Lane};
 use crate::numerics::reduce::{BLOCK, depth};
+use crate::numerics::split_vector::along_axes;
 use crate::numerics::structure_of_arrays::{ROWS, StructureOfArrays};
 use crate::numerics::threads::{Watch, fill_blocks};
+use crate::principal::principal_axes;
 
 // What the sums over simplices come to in a frame.
 
@@ -92,22 +96,25 @@ impl Sums {
     }
 
     /// The frame of the body's own axes and centre, as far as these sums know them.
-    pub(in crate::mass) fn own_frame(&self, axes: &Matrix3<f64>) -> LocalFrame {
-        let old = self.frame.axes.unwrap_or_else(Matrix3::identity);
+    pub(in crate::mass) fn own_frame(&self) -> LocalFrame {
+        let old = self.frame.rotation();
         LocalFrame {
             reference: self.frame.reference + old * self.center() * self.frame.unit,
             unit: self.frame.unit,
-            axes: Some(old * axes),
+            axes: Some(old * principal_axes(&self.central()).axes),
         }
     }
 }
 
-/// Sums over all simplices, on several threads when there are many; `None` where `watch` said stop.
+/// Sums over all simplices, on several threads when there are many.
+///
+/// # Errors
+/// [`Error::Stopped`] where `watch` said so.
 pub(super) fn sums<C: Corners<N>, K: Kind<N>, const N: usize>(
     corners: &C,
     frame: &LocalFrame,
     watch: &mut Watch<'_>,
-) -> Option<Sums> {
+) -> Result<Sums, Error> {
     let count = corners.count();
     let mut blocks = vec![[0.0; TERMS]; count.div_ceil(BLOCK)];
     fill_blocks(&mut blocks, 1, watch, |block, out| {
@@ -118,9 +125,8 @@ pub(super) fn sums<C: Corners<N>, K: Kind<N>, const N: usize>(
             frame,
         );
         Ok::<(), Infallible>(())
-    })
-    .ok()?;
-    Some(Sums::new::<K, N>(&merge(&blocks), count, frame))
+    })?;
+    Ok(Sums::new::<K, N>(&merge(&blocks), count, frame))
 }
 
 // What the content of a simplex is: a length, an area or a volume.
@@ -245,6 +251,22 @@ impl LocalFrame {
         }
     }
 
+    /// About a point, in body axes.
+    #[inline]
+    pub(in crate::mass) fn about(reference: Vector3<f64>) -> Self {
+        Self {
+            reference,
+            unit: 1.0,
+            axes: None,
+        }
+    }
+
+    /// V.
+    #[inline]
+    pub(in crate::mass) fn rotation(&self) -> Matrix3<f64> {
+        self.axes.unwrap_or_else(Matrix3::identity)
+    }
+
     /// One point in it.
     pub(in crate::mass) fn place(&self, point: &[f64; 3]) -> Vector3<f64> {
         let r = point.map(Double::<false>::new);
@@ -314,48 +336,13 @@ impl CoordinateMap for RotatedFrame {
     fn place<L: Lane>(&self, r: [L; 3]) -> [L; 3] {
         let inverse = L::new(self.inverse);
         let [x, y, z] = self.reference;
-        let ((x, x_low), (y, y_low), (z, z_low)) = (
+        let from = [
             two_sum(r[0] * inverse, L::new(-x * self.inverse)),
             two_sum(r[1] * inverse, L::new(-y * self.inverse)),
             two_sum(r[2] * inverse, L::new(-z * self.inverse)),
-        );
-        // No `map`: its closure would be compiled without the instructions of the level.
-        let mut placed = r;
-        for (coordinate, [a, b, c]) in placed.iter_mut().zip(self.axes) {
-            let (a, b, c) = (L::new(a), L::new(b), L::new(c));
-            let ((p, e), (q, f), (r, g)) =
-                (two_product(x, a), two_product(y, b), two_product(z, c));
-            let (partial, h) = two_sum(p, q);
-            let (sum, i) = two_sum(partial, r);
-            let low = dot([x_low, y_low, z_low], [a, b, c]);
-            *coordinate = sum + (low + (e + f + g) + (h + i));
-        }
-        placed
+        ];
+        along_axes(from, &self.axes)
     }
-}
-
-#[inline(always)]
-fn two_sum<L: Lane>(a: L, b: L) -> (L, L) {
-    let s = a + b;
-    let t = s - a;
-    (s, (a - (s - t)) + (b - t))
-}
-
-#[inline(always)]
-fn two_product<L: Lane>(a: L, b: L) -> (L, L) {
-    let p = a * b;
-    let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
-    // Each of these products is exact, fused or not.
-    let rest = a_low * b_high;
-    let rest = ((a_high * b_high - p) + a_high * b_low) + rest;
-    (p, rest + a_low * b_low)
-}
-
-#[inline(always)]
-fn split<L: Lane>(a: L) -> (L, L) {
-    let scaled = L::new(134_217_729.0) * a; // 2^27 + 1
-    let high = scaled - (scaled - a);
-    (high, a - high)
 }
 
 // The sums over a block of simplices, eight side by side, and blocks merged in a fixed tree.

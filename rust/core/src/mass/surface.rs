@@ -1,8 +1,11 @@
 //! Thin shells: triangles, open or closed, with a mass per area.
 
+use std::marker::PhantomData;
+
 use super::body::RigidBody;
 use super::error_bound::{ErrorBound, UNIT};
-use super::polyhedron::{Index, View, in_units, is_settled, matter};
+use super::integrator::{Matter, integrate_sums};
+use super::polyhedron::{Index, View, in_units, matter};
 use super::provenance::{BodySource, Checks, MomentsFrom, Provenance};
 use super::simplex::{Corners, FaintShell, Kind, LocalFrame, Shell, Sums, sums};
 use super::solids::Amount;
@@ -10,7 +13,6 @@ use super::units::QUANTUM;
 use crate::error::{Error, MeshFault};
 use crate::numerics::power_of_two::exponent;
 use crate::numerics::threads::{Halt, Watch};
-use crate::principal::principal_axes;
 
 /// A thin shell of uniform mass per area: `∫ r rᵀ dm = σ A (a aᵀ + b bᵀ + c cᵀ + s sᵀ)/12` for a triangle (a, b, c) of
 /// area A, `s = a + b + c`.
@@ -45,12 +47,12 @@ pub fn surface<I: Index>(
     if faces.is_empty() {
         return Err(failed(MeshFault::NoFaces));
     }
-    let found = thin::<_, Shell, 3>(&mesh, &mesh.frame(), || mesh.used_frame(), watch);
-    let (mut sums, mut moments) = found.ok_or(Halt::Stopped)?;
+    let (mut sums, mut moments) =
+        thin::<_, Shell, 3>(&mesh, &mesh.frame(), || mesh.used_frame(), watch)?;
     // A normal below 2⁻⁵³⁷ vanishes in its square: then most of this area may have.
     if sums.content < faces.len() as f64 * 2.0_f64.powi(-470) {
-        let again = thin::<_, FaintShell, 3>(&mesh, &mesh.frame(), || mesh.used_frame(), watch);
-        (sums, moments) = again.ok_or(Halt::Stopped)?;
+        (sums, moments) =
+            thin::<_, FaintShell, 3>(&mesh, &mesh.frame(), || mesh.used_frame(), watch)?;
     }
     if !sums.magnitude.is_finite()
         && let Some(fault) = mesh.find_unusable()
@@ -104,8 +106,7 @@ pub fn area<I: Index>(
         return Err(MeshFault::NoFaces.into());
     }
     let frame = mesh.frame();
-    let found = sums::<_, Shell, 3>(&mesh, &frame, watch);
-    let area = found.ok_or(Error::Stopped)?.content;
+    let area = sums::<_, Shell, 3>(&mesh, &frame, watch)?.content;
     if !area.is_finite()
         && let Some(fault) = mesh.find_unusable()
     {
@@ -120,29 +121,28 @@ pub(super) fn thin<C: Corners<N>, K: Kind<N>, const N: usize>(
     first: &LocalFrame,
     used: impl FnOnce() -> LocalFrame,
     watch: &mut Watch<'_>,
-) -> Option<(Sums, MomentsFrom)> {
-    let mut found = sums::<C, K, N>(corners, first, watch)?;
+) -> Result<(Sums, MomentsFrom), Error> {
+    let simplices = Simplices::<C, K, N>(corners, PhantomData);
+    let mut found = simplices.moments(first, watch)?;
     let is_near = |sums: &Sums| {
         let size = sums.central().trace();
         size.is_finite() && sums.center().norm_squared() <= 16.0 * size && size > 1e-6
     };
     if !is_near(&found) {
-        found = sums::<C, K, N>(corners, &used(), watch)?;
+        found = simplices.moments(&used(), watch)?;
     }
-    let central = principal_axes(&found.central());
-    let [thinnest, middle, longest] = central.moments;
-    if !found.content.is_finite() || thinnest + middle > 0.05 * longest {
-        return Some((found, MomentsFrom::SecondMoment));
+    integrate_sums(&simplices, &found, 3, watch)
+}
+
+/// Simplices of one kind.
+struct Simplices<'a, C, K, const N: usize>(&'a C, PhantomData<K>);
+
+impl<C: Corners<N>, K: Kind<N>, const N: usize> Matter for Simplices<'_, C, K, N> {
+    type Moments = Sums;
+
+    fn moments(&self, frame: &LocalFrame, watch: &mut Watch<'_>) -> Result<Sums, Error> {
+        sums::<C, K, N>(self.0, frame, watch)
     }
-    let mut frame = found.own_frame(&central.axes);
-    for _ in 0..3 {
-        found = sums::<C, K, N>(corners, &frame, watch)?;
-        if is_settled(&found) {
-            break;
-        }
-        frame = found.own_frame(&principal_axes(&found.central()).axes);
-    }
-    Some((found, MomentsFrom::OwnAxes))
 }
 
 /// The body of these sums, whose content, a length, area or volume by its `dimension`, is off by `error` in the unit of the

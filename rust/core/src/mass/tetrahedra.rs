@@ -7,6 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::body::RigidBody;
 use super::error_bound::{ErrorBound, UNIT};
+use super::integrator::{Matter, integrate};
 use super::provenance::{BodySource, Checks, Provenance};
 use super::second_moment::SecondMoment;
 use super::simplex::LocalFrame;
@@ -77,9 +78,6 @@ fn check(nodes: &[[f64; 3]], cells: &[[usize; 4]], density: CellDensity<'_>) -> 
 
 // The body of cells: their integrals, again about the centre of mass and, of a thin body, in its own axes.
 
-/// Below this ratio of smallest to largest principal moment the sums are taken in the body's own axes.
-const THIN: f64 = 0.05;
-
 /// Sums about the centre of mass are repeated at most this often, where the first centre was a body's width off.
 const AGAIN: usize = 4;
 
@@ -122,43 +120,44 @@ pub fn tetrahedra(
     } else {
         (None, 0)
     };
-    let cells = Cells::new(
+    let mut cells = Cells::new(
         nearer.as_deref().unwrap_or(nodes),
         cells,
         density,
         place,
         watch,
     )?;
-    let middle = cells.frame.reference;
-    let first = cells.sums(&middle, &Matrix3::identity(), watch)?;
+    let body_axes = Matrix3::identity();
+    let mut sums = cells.sums(&body_axes, watch)?;
     // About the centre of mass, which the cells' bounding box may be far from when their densities differ much.
-    let mut center = cells.place(&middle, &first);
-    let mut sums = cells.sums(&center, &Matrix3::identity(), watch)?;
-    for _ in 1..AGAIN {
+    for _ in 0..AGAIN {
+        cells.frame.reference += sums.moment / sums.mass * cells.frame.unit;
+        sums = cells.sums(&body_axes, watch)?;
         if sums.is_central() {
             break;
         }
-        center = cells.place(&center, &sums);
-        sums = cells.sums(&center, &Matrix3::identity(), watch)?;
     }
-    let matter = cells.matter(&sums, &center);
     let provenance = Provenance::of_matter(
         BodySource::Tetrahedra,
         cells.count(),
         Checks::INDICES.and(Checks::FINITE).and(Checks::MASSES),
     );
-    let body = RigidBody::from_second_moment(&matter)?.with_provenance(provenance);
-    let principal = body.principal();
-    if principal.moments[0] >= THIN * principal.moments[2] {
-        return cells.units.in_user_units(&body);
+    let body = integrate(&cells, &cells.matter(&sums), provenance, watch)?;
+    cells.units.in_user_units(&body)
+}
+
+impl Matter for Cells<'_> {
+    type Moments = SecondMoment;
+
+    /// About the point of the first pass: its centre of mass is good to all digits.
+    fn moments(&self, frame: &LocalFrame, watch: &mut Watch<'_>) -> Result<SecondMoment, Error> {
+        let axes = frame.rotation();
+        Ok(SecondMoment {
+            axes,
+            center_of_mass: frame.reference,
+            ..self.matter(&self.sums(&axes, watch)?)
+        })
     }
-    let mut thin = cells.matter(&cells.sums(&center, &principal.axes, watch)?, &center);
-    thin.axes = principal.axes;
-    thin.center_of_mass = matter.center_of_mass;
-    let body = RigidBody::from_second_moment(&thin)?;
-    cells
-        .units
-        .in_user_units(&body.with_provenance(provenance.in_own_axes()))
 }
 
 // The integrals of all cells, in units of the body's own size and mass.
@@ -192,6 +191,7 @@ struct Cells<'a> {
     weights: Vec<Weight>,
     /// What underflow may have taken from the mass.
     lost: f64,
+    /// The middle of the box, then the centre of mass; in units of the box.
     frame: LocalFrame,
     units: Units,
 }
@@ -278,20 +278,10 @@ impl<'a> Cells<'a> {
         self.corners.len()
     }
 
-    /// The centre of mass of sums about a reference.
-    fn place(&self, reference: &Vector3<f64>, sums: &CellSums) -> Vector3<f64> {
-        reference + sums.moment / sums.mass * self.frame.unit
-    }
-
-    /// The sums about a point in the given axes.
-    fn sums(
-        &self,
-        reference: &Vector3<f64>,
-        axes: &Matrix3<f64>,
-        watch: &mut Watch<'_>,
-    ) -> Result<CellSums, Error> {
+    /// The sums about the reference in the given axes.
+    fn sums(&self, axes: &Matrix3<f64>, watch: &mut Watch<'_>) -> Result<CellSums, Error> {
         let [x, y, z] = &axes.data.0;
-        let origin: [f64; 3] = (*reference).into();
+        let origin: [f64; 3] = self.frame.reference.into();
         let inverse = 1.0 / self.frame.unit;
         let of_cell = |cell: usize| {
             let [i, j, k, l] = self.corners[cell];
@@ -342,12 +332,13 @@ impl<'a> Cells<'a> {
         })
     }
 
-    /// The matter about its own centre, which `center` is but for rounding.
+    /// The matter about its own centre, which the reference is but for rounding.
     ///
     /// With corners d about the centre a cell of mass m has `Σ d² ≤ 30 ∫ d² dm/m` along each axis, whatever its densities
     /// are, and so its own terms are no more than 5 of its first and 11 of its second moments: the roundings in a cell
     /// count so often, those of the sum once.
-    fn matter(&self, sums: &CellSums, center: &Vector3<f64>) -> SecondMoment {
+    fn matter(&self, sums: &CellSums) -> SecondMoment {
+        let center = self.frame.reference;
         let (mass, spread) = (sums.mass, sums.second.trace());
         let (additions, unit) = (depth(self.count()), self.frame.unit);
         // What underflow took stands nowhere farther than the far end of the box.

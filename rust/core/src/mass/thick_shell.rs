@@ -16,8 +16,9 @@ use nalgebra::{Matrix3, Vector3};
 use super::amount::Amount;
 use super::body::RigidBody;
 use super::error_bound::UNIT;
-use super::polyhedron::{Index, View, is_settled};
-use super::provenance::{BodySource, Checks, MomentsFrom, Provenance};
+use super::integrator::{Matter, integrate_sums};
+use super::polyhedron::{Index, View};
+use super::provenance::{BodySource, Checks, Provenance};
 use super::simplex::{LocalFrame, Sums};
 use super::surface::finish;
 use crate::error::{Corner, Count, Error, MeshFault};
@@ -91,7 +92,13 @@ pub fn thick_shell<I: Index>(
             limit: limit.thickness,
         }));
     }
-    let (sums, error, moments) = in_good_axes(&offset, vertices, thickness, frame, watch)?;
+    let shell = Swept {
+        offset: &offset,
+        vertices,
+        thickness,
+    };
+    let (sums, moments) = integrate_sums(&shell, &shell.moments(&frame, watch)?, 4, watch)?;
+    let error = 2.0 * (sums.scale.x + sums.roundings() * sums.content);
     let checks = Checks::INDICES
         .and(Checks::FINITE)
         .and(Checks::WINDING)
@@ -108,35 +115,59 @@ pub fn thick_shell<I: Index>(
         .map_err(Halt::Failed)
 }
 
-/// The sums, taken again in the body's own axes where it is thin, and what rounding can have done to the volume.
-fn in_good_axes(
-    offset: &Offset,
-    vertices: &[[f64; 3]],
+// The integrals over a shell in the coordinates of a frame: what its faces sweep.
+
+/// What the faces of a surface sweep.
+struct Swept<'a> {
+    offset: &'a Offset,
+    vertices: &'a [[f64; 3]],
     thickness: f64,
-    mut frame: LocalFrame,
-    watch: &mut Watch<'_>,
-) -> Result<(Sums, f64, MomentsFrom), Halt<Error>> {
-    let mut moments = MomentsFrom::SecondMoment;
-    for _ in 0..4 {
-        let shell = Placed::new(offset, vertices, thickness, &frame);
-        let (sums, error) = shell.sums(frame, watch)?;
-        let central = principal_axes(&sums.central());
-        let [thinnest, middle, longest] = central.moments;
-        if thinnest + middle > 0.05 * longest
-            || !sums.content.is_finite()
-            || (moments == MomentsFrom::OwnAxes && is_settled(&sums))
-        {
-            return Ok((sums, error, moments));
-        }
-        moments = MomentsFrom::OwnAxes;
-        frame = sums.own_frame(&central.axes);
-    }
-    let shell = Placed::new(offset, vertices, thickness, &frame);
-    let (sums, error) = shell.sums(frame, watch)?;
-    Ok((sums, error, moments))
 }
 
-// The integrals over a shell in the coordinates of a frame: what its faces sweep.
+impl Matter for Swept<'_> {
+    type Moments = Sums;
+
+    fn moments(&self, frame: &LocalFrame, watch: &mut Watch<'_>) -> Result<Sums, Error> {
+        let corners: Vec<Vector3<f64>> = self.vertices.iter().map(|r| frame.place(r)).collect();
+        let directions: Vec<Vector3<f64>> = match &frame.axes {
+            None => self.offset.directions.clone(),
+            Some(axes) => self
+                .offset
+                .directions
+                .iter()
+                .map(|d| axes.tr_mul(d))
+                .collect(),
+        };
+        let half = 0.5 * self.thickness / frame.unit;
+        let mut extent = Vector3::zeros();
+        for &k in self.offset.faces.iter().flatten() {
+            extent = extent.sup(&(corners[k].abs() + directions[k].abs() * half));
+        }
+        let placed = Placed {
+            offset: self.offset,
+            corners,
+            directions,
+            half,
+            weight: 0.5 * times_power_of_two(self.thickness, -exponent(self.thickness)),
+            extent,
+        };
+        let count = self.offset.faces.len();
+        let [w, x, y, z, xx, xy, xz, yy, yz, zz, slack] = sum_blocks(count, watch, |range| {
+            block_sum(range.start, range.end, &|face| placed.terms(face))
+        })?;
+        Ok(Sums {
+            frame: *frame,
+            count,
+            content: w,
+            magnitude: w,
+            first: Vector3::new(x, y, z),
+            second: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
+            // What the roundings of all faces have done to the volume.
+            scale: Vector3::new(slack, 0.0, 0.0),
+            extent,
+        })
+    }
+}
 
 /// A shell in the coordinates and the unit of a frame.
 struct Placed<'a> {
@@ -152,49 +183,7 @@ struct Placed<'a> {
 /// Volume, first moment (3), second moment (6), what rounding can have done to the volume.
 const TERMS: usize = 11;
 
-impl<'a> Placed<'a> {
-    fn new(offset: &'a Offset, vertices: &[[f64; 3]], thickness: f64, frame: &LocalFrame) -> Self {
-        let corners: Vec<Vector3<f64>> = vertices.iter().map(|r| frame.place(r)).collect();
-        let directions: Vec<Vector3<f64>> = match &frame.axes {
-            None => offset.directions.clone(),
-            Some(axes) => offset.directions.iter().map(|d| axes.tr_mul(d)).collect(),
-        };
-        let half = 0.5 * thickness / frame.unit;
-        let mut extent = Vector3::zeros();
-        for &k in offset.faces.iter().flatten() {
-            extent = extent.sup(&(corners[k].abs() + directions[k].abs() * half));
-        }
-        Self {
-            offset,
-            corners,
-            directions,
-            half,
-            weight: 0.5 * times_power_of_two(thickness, -exponent(thickness)),
-            extent,
-        }
-    }
-
-    /// The integrals over the shell, and what rounding can have done to the volume.
-    fn sums(&self, frame: LocalFrame, watch: &mut Watch<'_>) -> Result<(Sums, f64), Halt<Error>> {
-        let count = self.offset.faces.len();
-        let [w, x, y, z, xx, xy, xz, yy, yz, zz, slack] = sum_blocks(count, watch, |range| {
-            block_sum(range.start, range.end, &|face| self.terms(face))
-        })
-        .map_err(|_| Halt::Stopped)?;
-        let sums = Sums {
-            frame,
-            count,
-            content: w,
-            magnitude: w,
-            first: Vector3::new(x, y, z),
-            second: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
-            scale: Vector3::zeros(),
-            extent: self.extent,
-        };
-        let error = 2.0 * (slack + sums.roundings() * w);
-        Ok((sums, error))
-    }
-
+impl Placed<'_> {
     /// What one face sweeps.
     #[inline]
     fn terms(&self, face: usize) -> [f64; TERMS] {

@@ -25,10 +25,12 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::body::RigidBody;
 use super::error_bound::ErrorBound;
+use super::integrator::{Matter, integrate};
+use super::particles::Watch;
 use super::particles::sums::{CentralInAxes, block_sums};
-use super::particles::{Watch, is_thin};
 use super::provenance::{BodySource, Checks, Provenance};
 use super::second_moment::SecondMoment;
+use super::simplex::LocalFrame;
 use super::units::Units;
 use crate::error::{BodyFault, Error, all_finite, finite};
 use crate::numerics::dispatch::{Kernel, dispatch};
@@ -138,12 +140,7 @@ impl<T: Voxel> Grid<'_, T> {
             self.density.len(),
             Checks::FINITE.and(Checks::MASSES),
         );
-        let body = RigidBody::from_second_moment(found)?;
-        if is_thin(&body) {
-            let again = RigidBody::from_second_moment(&self.in_own_axes(&body, watch)?)?;
-            return Ok(again.with_provenance(provenance.in_own_axes()));
-        }
-        Ok(body.with_provenance(provenance))
+        integrate(self, found, provenance, watch)
     }
 
     /// The point at these indices, whole or not.
@@ -215,15 +212,40 @@ impl<T: Voxel> Grid<'_, T> {
         ))
     }
 
-    /// Second moment about the centre of mass in the principal axes of a first pass.
+    /// The first density that cannot be, where there is one.
+    fn check(&self) -> Result<(), Error> {
+        let [_, ny, nz] = self.shape;
+        for (cell, &density) in self.density.iter().enumerate() {
+            let density = finite("density", density.into())?;
+            if density < 0.0 {
+                let index = [cell / (ny * nz), cell / nz % ny, cell % nz];
+                return Err(BodyFault::NegativeDensity { index, density }.into());
+            }
+        }
+        if self.density.iter().all(|&density| density.into() == 0.0) {
+            let law = "positive in at least one cell";
+            return Err(Error::OutOfDomain {
+                what: "density",
+                law,
+                value: 0.0,
+            });
+        }
+        Ok(())
+    }
+}
+
+impl<T: Voxel> Matter for Grid<'_, T> {
+    type Moments = SecondMoment;
+
+    /// Second moment about the centre of mass in its own axes.
     ///
     /// The cells count as particles at their whole indices, and the edges are part of the axes: so the thin direction
     /// meets no rounding but that of the edges and axes themselves.
-    fn in_own_axes(&self, first: &RigidBody, watch: &mut Watch<'_>) -> Result<SecondMoment, Error> {
+    fn moments(&self, frame: &LocalFrame, watch: &mut Watch<'_>) -> Result<SecondMoment, Error> {
         let [_, ny, nz] = self.shape;
-        let axes = first.principal().axes;
+        let axes = frame.rotation();
         let edges = Vector3::from(self.spacing);
-        let from_origin = first.center_of_mass() - Vector3::from(self.origin);
+        let from_origin = frame.reference - Vector3::from(self.origin);
         let addend = CentralInAxes {
             reference: from_origin.component_div(&edges),
             axes: Matrix3::from_fn(|i, j| edges[i] * axes[(i, j)]),
@@ -252,27 +274,6 @@ impl<T: Voxel> Grid<'_, T> {
             axes,
             ..about
         })
-    }
-
-    /// The first density that cannot be, where there is one.
-    fn check(&self) -> Result<(), Error> {
-        let [_, ny, nz] = self.shape;
-        for (cell, &density) in self.density.iter().enumerate() {
-            let density = finite("density", density.into())?;
-            if density < 0.0 {
-                let index = [cell / (ny * nz), cell / nz % ny, cell % nz];
-                return Err(BodyFault::NegativeDensity { index, density }.into());
-            }
-        }
-        if self.density.iter().all(|&density| density.into() == 0.0) {
-            let law = "positive in at least one cell";
-            return Err(Error::OutOfDomain {
-                what: "density",
-                law,
-                value: 0.0,
-            });
-        }
-        Ok(())
     }
 }
 

@@ -1,6 +1,7 @@
 //! Differences of coordinates without rounding, and what is made of them with one rounding.
 
 use super::double_double::{two_product, two_sum};
+use super::lane::Lane;
 
 /// A vector as rounded components and what rounding left of each.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +47,24 @@ impl<const N: usize> SplitVector<N> {
         }
         sum + rest
     }
+}
+
+/// The scalar products of a vector, rounded components and what rounding left of each, with three axes: the errors of the
+/// products are carried along, so that what is left where large terms cancel is that of the vector.
+#[inline(always)]
+pub(crate) fn along_axes<L: Lane>(vector: [(L, L); 3], axes: &[[f64; 3]; 3]) -> [L; 3] {
+    let [(x, x_low), (y, y_low), (z, z_low)] = vector;
+    // No `map`: its closure would be compiled without the instructions of the level.
+    let mut along = [x; 3];
+    for (along, [a, b, c]) in along.iter_mut().zip(*axes) {
+        let (a, b, c) = (L::new(a), L::new(b), L::new(c));
+        let ((p, e), (q, f), (r, g)) = (x.two_product(a), y.two_product(b), z.two_product(c));
+        let (partial, h) = two_sum(p, q);
+        let (sum, i) = two_sum(partial, r);
+        let low = x_low.mul_add(a, y_low.mul_add(b, z_low * c));
+        *along = sum + (low + (e + f + g) + (h + i));
+    }
+    along
 }
 
 /// `a × b` of two vectors of the plane, rounded about once.

@@ -8,7 +8,7 @@ use polhode::error::{BodyFault, CellFault};
 use polhode::mass::density::{Effort, Estimate, from_density, from_radial_density};
 use polhode::mass::inertial_parameters::InertialParameters;
 use polhode::mass::particles::{labelled_particles, particle_stack, particles_watched};
-use polhode::mass::polyhedron::{Index, Options, closure, outward, polyhedron_watched};
+use polhode::mass::polyhedron::{Index, MeshSolid, Options, closure, polyhedron_watched};
 use polhode::mass::regions::Region;
 use polhode::mass::tetrahedra::{CellDensity, tetrahedra};
 use polhode::mass::voxels::{Grid, Voxel, voxels};
@@ -385,20 +385,17 @@ impl Closed {
         &self,
         vertices: &[[f64; 3]],
         faces: &[[I; 3]],
-        orient: bool,
+        solid: &MeshSolid,
     ) -> Option<Outline> {
         if faces.len() > MOST_FACES {
             return None;
         }
         match self {
-            Self::AsGiven if orient => {
-                Outline::of_mesh("mesh", vertices, &outward(vertices, faces))
-            }
-            Self::AsGiven => Outline::of_mesh("mesh", vertices, faces),
-            Self::ByHull(hull) => Outline::of_mesh("mesh", vertices, &outward(vertices, hull)),
+            Self::AsGiven => Outline::of_mesh("mesh", vertices, &solid.outward(faces)),
+            Self::ByHull(hull) => Outline::of_mesh("mesh", vertices, &solid.outward(hull)),
             Self::ByCaps => {
                 let (vertices, faces) = closure::with_caps(vertices, faces).ok()?;
-                Outline::of_mesh("mesh", &vertices, &outward(&vertices, &faces))
+                Outline::of_mesh("mesh", &vertices, &solid.outward(&faces))
             }
         }
     }
@@ -472,6 +469,27 @@ impl PyRigidBody {
         orient: bool,
         check: bool,
     ) -> PyResult<Self> {
+        Self::with_volume(py, vertices, faces, density, mass, closure, orient, check)
+            .map(|(body, _)| body)
+    }
+
+    /// As `from_mesh`, and the volume that the mesh encloses.
+    #[staticmethod]
+    #[pyo3(
+        name = "_from_mesh",
+        signature = (vertices, faces=None, *, density=None, mass=None, closure=None, orient=false, check=true)
+    )]
+    #[expect(clippy::too_many_arguments, reason = "one for each of Python's")]
+    fn with_volume(
+        py: Python<'_>,
+        vertices: &Bound<'_, PyAny>,
+        faces: Option<&Bound<'_, PyAny>>,
+        density: Option<Weight>,
+        mass: Option<Weight>,
+        #[pyo3(from_py_with = read_scalar)] closure: Option<&str>,
+        orient: bool,
+        check: bool,
+    ) -> PyResult<(Self, f64)> {
         let faces = faces.ok_or_else(|| no_faces(vertices))?;
         let amount = amount(number(mass.as_ref()), number(density.as_ref()))?;
         let (vertices, uncertain) = &value_of(vertices)?;
@@ -513,26 +531,27 @@ impl PyRigidBody {
                 )));
             }
         };
-        let body = finish(py, interrupt, outcome)?;
+        let solid = finish(py, interrupt, outcome)?;
         let mut uncertainties = None;
         if let Some(uncertain) = uncertain {
-            let (solid, forms) = (InertialParameters::of(&body), uncertain.get().forms());
+            let (body, forms) = (InertialParameters::of(&solid.body), uncertain.get().forms());
             let is_of_mass = mass.is_some();
             let interrupt = Interrupt::new(None);
             let watch = &mut |_| interrupt.poll(None);
             let found = with_mesh!(mesh, |vertices, faces| {
-                py.detach(|| of_mesh(&solid, vertices, faces, forms, is_of_mass, watch))
+                py.detach(|| of_mesh(&body, vertices, faces, forms, is_of_mass, watch))
             });
             interrupt.finish(py, found.is_ok())?;
             let uncertainty = found.map_err(|error| to_py(py, &error))?;
             uncertainties = Some(Arc::new(vec![uncertainty]));
         }
         let outline = with_mesh!(mesh, |vertices, faces| {
-            py.detach(|| closed_by.outline(vertices, faces, orient))
+            py.detach(|| closed_by.outline(vertices, faces, &solid))
         });
-        Self::with_uncertainty(Stack::one(body), uncertainties)
+        let body = Self::with_uncertainty(Stack::one(solid.body), uncertainties)
             .with_shapes(alone(outline))
-            .weigh([density, mass, None])
+            .weigh([density, mass, None])?;
+        Ok((body, solid.volume))
     }
 
     /// Shell along an open or closed triangle mesh, thin or of finite thickness.

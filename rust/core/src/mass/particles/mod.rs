@@ -13,7 +13,7 @@ mod single;
 mod stack;
 pub(crate) mod sums;
 
-pub(super) use single::{ORDINARY, check, is_thin, sample_center};
+pub(super) use single::{ORDINARY, check, sample_center};
 pub use single::{Particles, particles, particles_watched};
 pub use stack::{labelled_particles, particle_stack};
 

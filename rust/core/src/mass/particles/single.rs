@@ -8,6 +8,7 @@ use super::sums::{Addend, Central, CentralInAxes, MOMENTS, block_sums};
 use crate::error::{BodyFault, Error, finite, finite_of_body};
 use crate::mass::body::RigidBody;
 use crate::mass::error_bound::ErrorBound;
+use crate::mass::integrator::{Matter, integrate};
 use crate::mass::provenance::Provenance;
 use crate::mass::second_moment::SecondMoment;
 use crate::mass::simplex::LocalFrame;
@@ -24,6 +25,8 @@ const SAMPLE: usize = 16;
 pub struct Particles<'a> {
     pub(crate) masses: &'a [f64],
     pub(crate) positions: &'a [[f64; 3]],
+    /// What underflow may have taken, in units of the heaviest and farthest; zero where nothing is so light or so near.
+    faint: f64,
 }
 
 impl<'a> Particles<'a> {
@@ -34,12 +37,17 @@ impl<'a> Particles<'a> {
     #[must_use]
     pub fn new(masses: &'a [f64], positions: &'a [[f64; 3]]) -> Self {
         assert_eq!(masses.len(), positions.len(), "one position for each mass");
-        Self { masses, positions }
+        Self {
+            masses,
+            positions,
+            faint: 0.0,
+        }
     }
 }
 
 /// The first particle that cannot be, where there is one.
-pub(in crate::mass) fn check(Particles { masses, positions }: Particles<'_>) -> Result<(), Error> {
+pub(in crate::mass) fn check(particles: Particles<'_>) -> Result<(), Error> {
+    let (masses, positions) = (particles.masses, particles.positions);
     for (index, (&mass, position)) in masses.iter().zip(positions).enumerate() {
         finite_of_body("masses", mass)?;
         if mass < 0.0 {
@@ -103,11 +111,8 @@ const LIGHT: f64 = 256.0;
 /// Mass and centre of mass of every `stride`-th particle, by distances from the one with the index `base`; its own place
 /// where they are beyond all numbers.
 #[inline]
-fn center_from(
-    Particles { masses, positions }: Particles<'_>,
-    base: usize,
-    stride: usize,
-) -> (f64, Vector3<f64>) {
+fn center_from(particles: Particles<'_>, base: usize, stride: usize) -> (f64, Vector3<f64>) {
+    let (masses, positions) = (particles.masses, particles.positions);
     let base = Vector3::from(positions[base]);
     let (mut mass, mut first) = (0.0, Vector3::zeros());
     let mut i = 0;
@@ -125,15 +130,6 @@ fn center_from(
 }
 
 // The second moment of particles about their centre of mass, and whether one pass was enough for it.
-
-/// Below this ratio of smallest to largest principal moment a body is thin: the smallest would lose digits in one pass.
-const THIN: f64 = 0.05;
-
-/// Whether one pass cost the smallest moment digits: its error is relative to the largest.
-pub(in crate::mass) fn is_thin(body: &RigidBody) -> bool {
-    let [smallest, _, largest] = body.principal().moments;
-    smallest < THIN * largest
-}
 
 /// From 2⁻⁸⁰⁰ to 2¹⁰⁰⁰.
 pub(in crate::mass) const ORDINARY: std::ops::Range<f64> =
@@ -169,52 +165,44 @@ pub(super) fn about_center(
     watch: &mut Watch<'_>,
 ) -> Result<SecondMoment, Error> {
     let reference = sample_center(particles);
-    let found = second_moment(particles, reference, None, watch)?;
+    let found = particles.moments(&LocalFrame::about(reference), watch)?;
     let d = found.center_of_mass - reference;
     if found.mass * d.norm_squared() <= found.central.trace() {
         return Ok(found);
     }
     // The sample stood outside of the body, and what its distance added has cost digits to take away.
-    second_moment(particles, found.center_of_mass, None, watch)
+    particles.moments(&LocalFrame::about(found.center_of_mass), watch)
 }
 
-/// Second moment about the centre of mass in the principal axes of a first pass.
-pub(super) fn in_own_axes(
-    particles: Particles<'_>,
-    first: &RigidBody,
-    watch: &mut Watch<'_>,
-) -> Result<SecondMoment, Error> {
-    let axes = first.principal().axes;
-    second_moment(particles, first.center_of_mass(), Some(axes), watch)
-}
+impl Matter for Particles<'_> {
+    type Moments = SecondMoment;
 
-/// Second moment about the centre of mass from sums about the reference point, in the given axes or in those of the body.
-#[inline]
-fn second_moment(
-    particles: Particles<'_>,
-    reference: Vector3<f64>,
-    axes: Option<Matrix3<f64>>,
-    watch: &mut Watch<'_>,
-) -> Result<SecondMoment, Error> {
-    let sums = match axes {
-        None => sum(particles, Central { reference }, watch)?,
-        Some(axes) => sum(particles, CentralInAxes { reference, axes }, watch)?,
-    };
-    let [mass, x, y, z, xx, xy, xz, yy, yz, zz, below] = sums;
-    if !(mass > 0.0 && below == 0.0 && sums.iter().all(|sum| sum.is_finite())) {
-        check(particles)?;
+    /// Second moment about the centre of mass from sums about the reference point.
+    #[inline]
+    fn moments(&self, frame: &LocalFrame, watch: &mut Watch<'_>) -> Result<SecondMoment, Error> {
+        let reference = frame.reference;
+        let sums = match frame.axes {
+            None => sum(*self, Central { reference }, watch)?,
+            Some(axes) => sum(*self, CentralInAxes { reference, axes }, watch)?,
+        };
+        let [mass, x, y, z, xx, xy, xz, yy, yz, zz, below] = sums;
+        if !(mass > 0.0 && below == 0.0 && sums.iter().all(|sum| sum.is_finite())) {
+            check(*self)?;
+        }
+        let first = Vector3::new(x, y, z);
+        let second = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+        let mut bound = ErrorBound::of_sums(self.masses.len(), mass, &reference, second.trace());
+        bound.mass += self.faint;
+        bound.center_of_mass += 8.0 * self.faint;
+        bound.inertia += 32.0 * self.faint;
+        let about = SecondMoment::about_reference(&Vector3::zeros(), mass, &first, &second, bound);
+        let axes = frame.rotation();
+        Ok(SecondMoment {
+            center_of_mass: reference + axes * about.center_of_mass,
+            axes,
+            ..about
+        })
     }
-    let first = Vector3::new(x, y, z);
-    let second = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-    let count = particles.masses.len();
-    let bound = ErrorBound::of_sums(count, mass, &reference, second.trace());
-    let about = SecondMoment::about_reference(&Vector3::zeros(), mass, &first, &second, bound);
-    let axes = axes.unwrap_or_else(Matrix3::identity);
-    Ok(SecondMoment {
-        center_of_mass: reference + axes * about.center_of_mass,
-        axes,
-        ..about
-    })
 }
 
 #[inline]
@@ -223,7 +211,7 @@ fn sum(
     addend: impl Addend<MOMENTS>,
     watch: &mut Watch<'_>,
 ) -> Result<[f64; MOMENTS], Error> {
-    let Particles { masses, positions } = particles;
+    let (masses, positions) = (particles.masses, particles.positions);
     Ok(sum_blocks(masses.len(), watch, |block| {
         block_sums(&masses[block.clone()], &positions[block], addend)
     })?)
@@ -286,12 +274,7 @@ pub fn particles_watched(
     if !is_ordinary(&matter, particles) {
         return in_units(particles, watch);
     }
-    let body = RigidBody::from_second_moment(&matter)?;
-    if is_thin(&body) {
-        let again = RigidBody::from_second_moment(&in_own_axes(particles, &body, watch)?)?;
-        return Ok(again.with_provenance(provenance.in_own_axes()));
-    }
-    Ok(body.with_provenance(provenance))
+    integrate(&particles, &matter, provenance, watch)
 }
 
 // Particles whose moments leave the range of float64 on their way: in units of their own size and mass.
@@ -304,7 +287,7 @@ pub(super) fn in_units(
     watch: &mut Watch<'_>,
 ) -> Result<RigidBody, Error> {
     check(particles)?;
-    let Particles { masses, positions } = particles;
+    let (masses, positions) = (particles.masses, particles.positions);
     let heavy = || (masses.iter().zip(positions)).filter(|(mass, _)| **mass > 0.0);
     let heaviest = heavy().fold(0.0_f64, |most, (&mass, _)| most.max(mass));
     let at = || heavy().map(|(_, &r)| Vector3::from(r));
@@ -322,27 +305,13 @@ pub(super) fn in_units(
     let own_positions: Vec<[f64; 3]> = heavy()
         .map(|(_, r)| r.map(|x| times_power_of_two(x, -length)))
         .collect();
-    let scaled = Particles::new(&own_masses, &own_positions);
-    let provenance = Provenance::of_particles(masses.len());
-    let count = masses.len() as f64;
-    // What underflows of the lightest and nearest ones, in units of the heaviest and farthest.
-    let faint = |matter: SecondMoment| {
-        let mut bound = matter.error_bound;
-        bound.mass += QUANTUM * count;
-        bound.center_of_mass += 8.0 * QUANTUM * count;
-        bound.inertia += 32.0 * QUANTUM * count;
-        SecondMoment {
-            error_bound: bound,
-            ..matter
-        }
+    let scaled = Particles {
+        faint: QUANTUM * masses.len() as f64,
+        ..Particles::new(&own_masses, &own_positions)
     };
-    let body = RigidBody::from_second_moment(&faint(about_center(scaled, watch)?))?;
-    if is_thin(&body) {
-        let matter = faint(in_own_axes(scaled, &body, watch)?);
-        let again = RigidBody::from_second_moment(&matter)?;
-        return units.in_user_units(&again.with_provenance(provenance.in_own_axes()));
-    }
-    units.in_user_units(&body.with_provenance(provenance))
+    let provenance = Provenance::of_particles(masses.len());
+    let matter = about_center(scaled, watch)?;
+    units.in_user_units(&integrate(&scaled, &matter, provenance, watch)?)
 }
 
 #[cfg(test)]

@@ -4,11 +4,10 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::single::{
-    Particles, about_center, in_own_axes, in_units, is_ordinary, is_thin, particles_watched,
-};
+use super::single::{Particles, about_center, in_units, is_ordinary, particles_watched};
 use crate::error::{BodyFault, Error};
 use crate::mass::body::RigidBody;
+use crate::mass::integrator::{Matter, is_thin, own_frame};
 use crate::mass::provenance::Provenance;
 use crate::mass::second_moment::SecondMoment;
 use crate::numerics::eigen3::{Eigen3, eigen3_many};
@@ -78,9 +77,9 @@ pub fn particle_stack<'a>(
     };
     let before = fault.as_ref().map_or(count, |(index, _)| *index);
     for index in (0..before).filter(|&index| !is_small(index)) {
-        let Particles { masses, positions } = row(index);
-        bodies[index] =
-            particles_watched(masses, positions, watch).map_err(|error| (index, error))?;
+        let row = row(index);
+        let body = particles_watched(row.masses, row.positions, watch);
+        bodies[index] = body.map_err(|error| (index, error))?;
     }
     fault.map_or(Ok(bodies), Err)
 }
@@ -108,14 +107,15 @@ fn batch<'a>(
         }
     }
     decompose(&particles, &moments, |provenance| provenance, bodies)?;
-    let is_thin = |&(k, _): &(usize, Particles<'_>)| is_thin(&bodies[k]);
+    let is_thin = |&(k, _): &(usize, Particles<'_>)| is_thin(&bodies[k].principal());
     let thin: Vec<_> = particles.into_iter().filter(is_thin).collect();
     if thin.is_empty() {
         return Ok(());
     }
     moments.clear();
     for &(k, row) in &thin {
-        moments.push(in_own_axes(row, &bodies[k], watch).map_err(|error| (k, error))?);
+        let again = row.moments(&own_frame(&bodies[k]), watch);
+        moments.push(again.map_err(|error| (k, error))?);
     }
     decompose(&thin, &moments, Provenance::in_own_axes, bodies)
 }

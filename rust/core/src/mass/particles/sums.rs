@@ -8,6 +8,7 @@ use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::double_double::two_sum;
 use crate::numerics::lane::Lane;
 use crate::numerics::reduce::{LANES, merge_lanes};
+use crate::numerics::split_vector::along_axes;
 
 /// What one particle adds to `K` sums.
 pub(crate) trait Addend<const K: usize>: Copy + Sync {
@@ -129,27 +130,12 @@ impl Addend<MOMENTS> for CentralInAxes {
     #[inline(always)]
     fn add<L: Lane>(&self, mass: L, r: [L; 3], sums: [L; MOMENTS]) -> [L; MOMENTS] {
         let c = &self.reference;
-        let (d0, low0) = two_sum(r[0], L::new(-c.x));
-        let (d1, low1) = two_sum(r[1], L::new(-c.y));
-        let (d2, low2) = two_sum(r[2], L::new(-c.z));
-        let mut y = [mass; 3];
-        let mut k = 0;
-        while k < 3 {
-            let axis = [
-                L::new(self.axes[(0, k)]),
-                L::new(self.axes[(1, k)]),
-                L::new(self.axes[(2, k)]),
-            ];
-            let (p0, e0) = d0.two_product(axis[0]);
-            let (p1, e1) = d1.two_product(axis[1]);
-            let (p2, e2) = d2.two_product(axis[2]);
-            let (partial, f0) = two_sum(p0, p1);
-            let (sum, f1) = two_sum(partial, p2);
-            let low = low0.mul_add(axis[0], low1.mul_add(axis[1], low2 * axis[2]));
-            y[k] = sum + (low + (e0 + e1 + e2) + (f0 + f1));
-            k += 1;
-        }
-        moments(mass, y, sums)
+        let from = [
+            two_sum(r[0], L::new(-c.x)),
+            two_sum(r[1], L::new(-c.y)),
+            two_sum(r[2], L::new(-c.z)),
+        ];
+        moments(mass, along_axes(from, &self.axes.data.0), sums)
     }
 }
 

@@ -8,11 +8,10 @@ use std::collections::HashMap;
 
 use nalgebra::Vector3;
 
-use super::in_memory::polyhedron_watched;
+use super::in_memory::{MeshSolid, polyhedron_watched};
 use super::solid::Options;
 use super::view::{Index, View};
 use crate::error::{Corner, Count, Error, MeshFault};
-use crate::mass::body::RigidBody;
 use crate::mass::provenance::{Closure, Provenance};
 use crate::mass::simplex::{Solid, sums};
 use crate::mass::solids::Amount;
@@ -35,11 +34,11 @@ use crate::numerics::threads::{Halt, Watch};
 /// let open = [[0_usize, 2, 1], [0, 1, 3], [0, 3, 2]];
 /// let go_on = &mut |_| ControlFlow::Continue(());
 /// let amount = Amount::Density(6.0);
-/// let body = close_with_caps(&vertices, &open, amount, Options::default(), go_on)?;
+/// let body = close_with_caps(&vertices, &open, amount, Options::default(), go_on)?.body;
 /// assert!((body.mass() - 1.0).abs() < 1e-15);
 /// assert_eq!(body.provenance().closure, Some(Closure::Caps));
 /// let hull = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-/// let body = close_with_hull(&vertices, &open, &hull, amount, go_on)?;
+/// let body = close_with_hull(&vertices, &open, &hull, amount, go_on)?.body;
 /// assert_eq!(body.provenance().closure, Some(Closure::Hull));
 /// # Ok::<(), polhode::parallel::Halt<polhode::Error>>(())
 /// ```
@@ -52,7 +51,7 @@ pub fn close_with_caps<I: Index>(
     amount: Amount,
     options: Options,
     watch: &mut Watch<'_>,
-) -> Result<RigidBody, Halt<Error>> {
+) -> Result<MeshSolid, Halt<Error>> {
     let open = View { vertices, faces };
     let (vertices, closed) =
         with_caps(vertices, faces).map_err(|fault| Halt::Failed(fault.into()))?;
@@ -109,7 +108,7 @@ pub fn close_with_hull<I: Index>(
     hull: &[[i64; 3]],
     amount: Amount,
     watch: &mut Watch<'_>,
-) -> Result<RigidBody, Halt<Error>> {
+) -> Result<MeshSolid, Halt<Error>> {
     let open = View { vertices, faces };
     if let Some(fault) = open.find_unusable() {
         return Err(Halt::Failed(fault.into()));
@@ -136,8 +135,8 @@ fn instead<I: Index, J: Index>(
     closure: Closure,
     (amount, options): (Amount, Options),
     watch: &mut Watch<'_>,
-) -> Result<RigidBody, Halt<Error>> {
-    let body = polyhedron_watched(vertices, faces, amount, options, watch)?;
+) -> Result<MeshSolid, Halt<Error>> {
+    let mut solid = polyhedron_watched(vertices, faces, amount, options, watch)?;
     let before = spanned_volume(open, watch)?;
     let after = spanned_volume(&View { vertices, faces }, watch)?;
     let outward = if closure == Closure::Caps {
@@ -145,17 +144,18 @@ fn instead<I: Index, J: Index>(
     } else {
         before.signum()
     };
-    Ok(body.with_provenance(Provenance {
+    solid.body = solid.body.with_provenance(Provenance {
         closure: Some(closure),
         volume_change: after.abs() - outward * before,
-        ..body.provenance()
-    }))
+        ..solid.body.provenance()
+    });
+    Ok(solid)
 }
 
 /// What the faces span with the middle of their box: the volume where they are closed.
 fn spanned_volume<I: Index>(mesh: &View<'_, I>, watch: &mut Watch<'_>) -> Result<f64, Halt<Error>> {
     let frame = mesh.used_frame();
-    let sums = sums::<_, Solid, 3>(mesh, &frame, watch).ok_or(Halt::Stopped)?;
+    let sums = sums::<_, Solid, 3>(mesh, &frame, watch)?;
     Ok(sums.content * frame.unit * frame.unit * frame.unit)
 }
 
@@ -295,7 +295,8 @@ mod tests {
             let mut open = FACES.to_vec();
             open.remove(missing);
             let body = close_with_caps(&CORNERS, &open, amount, Options::default(), go_on)
-                .expect("capped");
+                .expect("capped")
+                .body;
             assert!((body.mass() - 1.0).abs() < 1e-15);
             let provenance = body.provenance();
             assert_eq!(provenance.closure, Some(Closure::Caps));
@@ -308,11 +309,14 @@ mod tests {
     fn a_closed_mesh_is_not_changed() {
         let go_on = &mut |_| ControlFlow::Continue(());
         let amount = Amount::Density(6.0);
-        let capped =
-            close_with_caps(&CORNERS, &FACES, amount, Options::default(), go_on).expect("closed");
+        let capped = close_with_caps(&CORNERS, &FACES, amount, Options::default(), go_on)
+            .expect("closed")
+            .body;
         assert_eq!(capped.provenance().volume_change, 0.0);
         assert_eq!(capped.provenance().elements, 4);
-        let hulled = close_with_hull(&CORNERS, &FACES[..3], &FACES, amount, go_on).expect("hull");
+        let hulled = close_with_hull(&CORNERS, &FACES[..3], &FACES, amount, go_on)
+            .expect("hull")
+            .body;
         assert_eq!(hulled.inertia(), capped.inertia());
         assert_eq!(hulled.provenance().closure, Some(Closure::Hull));
     }

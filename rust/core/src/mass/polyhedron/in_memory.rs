@@ -52,10 +52,10 @@ pub fn polyhedron<I: Index>(
         ..Options::default()
     };
     let go_on = &mut |_| ControlFlow::Continue(());
-    Ok(polyhedron_watched(vertices, faces, amount, options, go_on)?)
+    Ok(polyhedron_watched(vertices, faces, amount, options, go_on)?.body)
 }
 
-/// The same on several threads when the mesh is large, with `watch` asked about every 20 ms whether to go on.
+/// The same with its volume, on several threads when the mesh is large; `watch` is asked about every 20 ms whether to go on.
 ///
 /// # Examples
 ///
@@ -71,7 +71,7 @@ pub fn polyhedron<I: Index>(
 ///         println!("{:.0} %", 100.0 * done);
 ///         ControlFlow::Continue(())
 ///     };
-///     Ok(polyhedron_watched(vertices, faces, Amount::Density(6.0), options, watch)?)
+///     Ok(polyhedron_watched(vertices, faces, Amount::Density(6.0), options, watch)?.body)
 /// }
 ///
 /// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -88,66 +88,66 @@ pub fn polyhedron_watched<I: Index>(
     amount: Amount,
     options: Options,
     watch: &mut Watch<'_>,
-) -> Result<RigidBody, Halt<Error>> {
-    solid_of_faces(vertices, faces, amount, options, watch).map(|(body, _)| body)
-}
-
-/// The faces of a closed mesh, wound as they count where `orient` is asked for: counter-clockwise seen from outside.
-///
-/// # Examples
-///
-/// ```
-/// use polhode::mass::polyhedron::outward;
-///
-/// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-/// let inverted = [[0_u32, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]];
-/// assert_eq!(outward(&vertices, &inverted)[0], [0, 2, 1]);
-/// ```
-#[must_use]
-pub fn outward<I: Index>(vertices: &[[f64; 3]], faces: &[[I; 3]]) -> Vec<[I; 3]> {
-    let go_on = &mut |_| ControlFlow::Continue(());
-    let options = Options {
-        orient: true,
-        ..Options::default()
-    };
-    let mut mesh = Faces::new(vertices, faces, go_on);
-    // What is wrong with the mesh is not asked here.
-    let _outcome = solid(&mut mesh, Amount::Density(1.0), options);
-    let faces = match mesh.inside_out {
-        Some(found) => found.orient_faces(faces),
-        None => faces.to_vec(),
-    };
-    let is_outward = polyhedron_watched(
-        vertices,
-        &faces,
-        Amount::Density(1.0),
-        Options::default(),
-        go_on,
-    )
-    .is_ok();
-    if is_outward {
-        faces
-    } else {
-        faces.iter().map(|&[a, b, c]| [a, c, b]).collect()
-    }
-}
-
-/// The solid inside triangles in memory, components turned where that is asked for, and its volume.
-pub(super) fn solid_of_faces<I: Index>(
-    vertices: &[[f64; 3]],
-    faces: &[[I; 3]],
-    amount: Amount,
-    options: Options,
-    watch: &mut Watch<'_>,
-) -> Result<(RigidBody, f64), Halt<Error>> {
+) -> Result<MeshSolid, Halt<Error>> {
     let mut mesh = Faces::new(vertices, faces, watch);
-    let outcome = solid(&mut mesh, amount, options);
-    match mesh.inside_out {
-        Some(found) if options.orient => {
-            let faces = found.orient_faces(faces);
-            solid(&mut Faces::new(vertices, &faces, watch), amount, options)
+    let mut outcome = solid(&mut mesh, amount, options);
+    let inside_out = mesh.inside_out.filter(|_| options.orient);
+    if let Some(found) = &inside_out {
+        let faces = found.orient_faces(faces);
+        outcome = solid(&mut Faces::new(vertices, &faces, watch), amount, options);
+    }
+    outcome.map(|(body, volume)| MeshSolid {
+        body,
+        volume: volume.abs(),
+        is_inverted: volume.is_sign_negative(),
+        inside_out,
+    })
+}
+
+/// A solid from a mesh in memory, and what else its sums have shown.
+#[derive(Clone, Debug)]
+pub struct MeshSolid {
+    /// The solid.
+    pub body: RigidBody,
+    /// The volume that the faces enclose.
+    pub volume: f64,
+    /// Whether the whole mesh was turned.
+    is_inverted: bool,
+    /// The components that were turned before.
+    inside_out: Option<InsideOut>,
+}
+
+impl MeshSolid {
+    /// The faces that were summed, wound as they count: counter-clockwise seen from outside.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    /// use polhode::mass::Amount;
+    /// use polhode::mass::polyhedron::{Options, polyhedron_watched};
+    ///
+    /// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    /// let inverted = [[0_u32, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]];
+    /// let options = Options { orient: true, ..Options::default() };
+    /// let go_on = &mut |_| ControlFlow::Continue(());
+    /// let solid = polyhedron_watched(&vertices, &inverted, Amount::Mass(2.0), options, go_on)?;
+    /// assert_eq!(solid.outward(&inverted)[0], [0, 2, 1]);
+    /// assert!((solid.volume - 1.0 / 6.0).abs() < 1e-15);
+    /// # Ok::<(), polhode::parallel::Halt<polhode::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn outward<I: Index>(&self, faces: &[[I; 3]]) -> Vec<[I; 3]> {
+        let mut faces = match &self.inside_out {
+            Some(found) => found.orient_faces(faces),
+            None => faces.to_vec(),
+        };
+        if self.is_inverted {
+            for face in &mut faces {
+                face.swap(1, 2);
+            }
         }
-        _ => outcome,
+        faces
     }
 }
 
@@ -217,8 +217,7 @@ impl<I: Index> Triangles for Faces<'_, I> {
     ) -> Result<(Sums, Option<Checked>), Halt<Error>> {
         let mesh = self.mesh;
         if !check {
-            let sums = sums::<_, Solid, 3>(&mesh, frame, self.watch);
-            return sums.map(|sums| (sums, None)).ok_or(Halt::Stopped);
+            return Ok((sums::<_, Solid, 3>(&mesh, frame, self.watch)?, None));
         }
         let count = mesh.count();
         let mut marks = vec![0; count];
@@ -258,7 +257,7 @@ impl<I: Index> Triangles for Faces<'_, I> {
     }
 
     fn shell_sums(&mut self, frame: &LocalFrame) -> Result<Sums, Halt<Error>> {
-        sums::<_, Shell, 3>(&self.mesh, frame, self.watch).ok_or(Halt::Stopped)
+        Ok(sums::<_, Shell, 3>(&self.mesh, frame, self.watch)?)
     }
 
     fn find_unusable(&mut self) -> Result<Option<MeshFault>, Halt<Error>> {
@@ -349,6 +348,37 @@ mod tests {
             fault(&[[0, 1, 2], [0, 2, 1]]),
             MeshFault::NoVolume { .. }
         ));
+    }
+
+    /// A tetrahedron in a larger one, each with a sense of its own: outward is the larger one, inward its cavity.
+    #[test]
+    fn the_faces_that_were_summed_are_outward() {
+        let (corners, outside) = TETRAHEDRON;
+        let within = corners.map(|r| r.map(|x| 0.2 + 0.2 * x));
+        let vertices = [corners, within].concat();
+        let turn = |faces: [[usize; 3]; 4]| faces.map(|[a, b, c]| [a, c, b]);
+        let inside = outside.map(|face| face.map(|k| k + 4));
+        let (options, go_on) = (
+            Options {
+                orient: true,
+                check: true,
+            },
+            &mut |_| ControlFlow::Continue(()),
+        );
+        for faces in [
+            [outside, turn(inside)],
+            [turn(outside), turn(inside)],
+            [turn(outside), inside],
+        ] {
+            let faces = faces.concat();
+            let solid = polyhedron_watched(&vertices, &faces, Amount::Mass(3.0), options, go_on)
+                .expect("solid");
+            let found = solid.outward(&faces);
+            let again =
+                polyhedron(&vertices, &found, Amount::Density(1.0), false).expect("outward");
+            assert_eq!(again.mass(), solid.volume);
+            assert_eq!(found[0], outside[0]);
+        }
     }
 
     #[test]

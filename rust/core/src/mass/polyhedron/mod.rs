@@ -22,9 +22,9 @@ pub mod stream;
 pub mod streaming;
 mod view;
 
-pub use in_memory::{outward, polyhedron, polyhedron_watched};
+pub use in_memory::{MeshSolid, polyhedron, polyhedron_watched};
 pub(super) use nesting::find_components;
 pub use solid::Options;
-pub(super) use solid::{in_units, is_settled, matter};
+pub(super) use solid::{in_units, matter};
 pub use view::Index;
 pub(super) use view::{View, widen};

@@ -17,7 +17,7 @@ use crate::numerics::reduce::BLOCK;
 use crate::numerics::threads::{Halt, Watch, each_watched, fill_blocks};
 
 /// A part of a mesh that is connected by its corners.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Component {
     /// Its first face.
     face: usize,
@@ -30,6 +30,7 @@ struct Component {
 }
 
 /// The components of a mesh that are wound the wrong way.
+#[derive(Clone, Debug)]
 pub(super) struct InsideOut {
     components: Vec<Component>,
     /// Of each face.

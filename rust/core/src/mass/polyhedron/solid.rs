@@ -5,12 +5,12 @@ use crate::error::{Corner, Error, MeshFault};
 use crate::mass::amount::Amount;
 use crate::mass::body::RigidBody;
 use crate::mass::error_bound::{ErrorBound, UNIT};
+use crate::mass::integrator::{is_settled, is_stout, sums_in_own_axes};
 use crate::mass::provenance::{BodySource, Checks, MomentsFrom, Provenance};
 use crate::mass::second_moment::SecondMoment;
 use crate::mass::simplex::{LocalFrame, Sums};
 use crate::mass::units::{QUANTUM, Units};
 use crate::numerics::power_of_two::exponent;
-use crate::principal::principal_axes;
 
 /// What to make of a mesh that is not as it should be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,10 +60,7 @@ pub(super) struct Checked {
     pub(super) marks: Marks,
 }
 
-/// The sums again in the body's own axes are repeated at most this often; each time multiplies the accuracy of the axes.
-const AGAIN: usize = 4;
-
-/// The solid inside some triangles, and its volume.
+/// The solid inside some triangles, and its volume: negative where it was turned as a whole.
 pub(super) fn solid<T: Triangles>(
     triangles: &mut T,
     amount: Amount,
@@ -98,7 +95,7 @@ pub(super) fn solid<T: Triangles>(
     let mut moments = MomentsFrom::SecondMoment;
     if !is_ordinary(&sums) {
         moments = MomentsFrom::OwnAxes;
-        sums = sums_in_own_axes(triangles)?;
+        sums = sums_from_shell(triangles)?;
     }
     let provenance = Provenance {
         moments,
@@ -150,29 +147,19 @@ fn check_boundary<T: Triangles>(triangles: &mut T, checked: Checked) -> Result<C
 /// folds loses digits in them.
 fn is_ordinary(sums: &Sums) -> bool {
     let scale = sums.extent.dot(&sums.scale);
-    if !(sums.content.abs() > scale / 64.0 && scale.is_finite()) {
-        return false;
-    }
-    let moments = principal_axes(&sums.central()).moments; // of S: from the thinnest direction to the longest
-    moments[0] + moments[1] > 0.05 * moments[2]
+    sums.content.abs() > scale / 64.0 && scale.is_finite() && is_stout(sums)
 }
 
 /// The axes of the triangles as a shell, sums of positive numbers, are good even where the volume is lost to rounding.
-fn sums_in_own_axes<T: Triangles>(triangles: &mut T) -> Result<Sums, T::Error> {
+fn sums_from_shell<T: Triangles>(triangles: &mut T) -> Result<Sums, T::Error> {
     let frame = triangles.box_frame()?;
     let shell = triangles.shell_sums(&frame)?;
     if !(shell.content > 0.0 && shell.content.is_finite()) {
         return Ok(triangles.solid_sums(&frame, false)?.0);
     }
-    let mut frame = shell.own_frame(&principal_axes(&shell.central()).axes);
-    for _ in 1..AGAIN {
-        let sums = triangles.solid_sums(&frame, false)?.0;
-        if sums.content.abs() <= volume_error(&sums) || is_settled(&sums) {
-            return Ok(sums);
-        }
-        frame = sums.own_frame(&principal_axes(&sums.central()).axes);
-    }
-    Ok(triangles.solid_sums(&frame, false)?.0)
+    let again = |frame: &LocalFrame| Ok(triangles.solid_sums(frame, false)?.0);
+    let is_good = |sums: &Sums| sums.content.abs() <= volume_error(sums) || is_settled(sums);
+    sums_in_own_axes(shell.own_frame(), 4, again, is_good)
 }
 
 /// What rounding can have done to the volume, in units of the frame.
@@ -186,7 +173,7 @@ fn volume_error(sums: &Sums) -> f64 {
         + 64.0 * QUANTUM * sums.count as f64
 }
 
-/// The body of uniform density with these sums, and its volume.
+/// The body of uniform density with these sums, and its signed volume.
 fn body(sums: &Sums, amount: Amount, orient: bool) -> Result<(RigidBody, f64), Error> {
     let unit = sums.frame.unit;
     let volume = sums.content * unit * unit * unit;
@@ -207,19 +194,10 @@ fn body(sums: &Sums, amount: Amount, orient: bool) -> Result<(RigidBody, f64), E
         },
         ..ErrorBound::default()
     };
-    Ok((matter(sums, mass, relative, bound, units)?, volume.abs()))
+    Ok((matter(sums, mass, relative, bound, units)?, volume))
 }
 
 // The body of what was summed over simplices: solids, shells and wires.
-
-/// Whether the frame is the body's own to a tenth: another turn would save no digits.
-pub(in crate::mass) fn is_settled(sums: &Sums) -> bool {
-    let (s, c) = (sums.central(), sums.center());
-    [(0, 1), (0, 2), (1, 2)]
-        .iter()
-        .all(|&(i, j)| s[(i, j)].powi(2) <= 0.01 * s[(i, i)] * s[(j, j)])
-        && (0..3).all(|k| c[k].powi(2) <= s[(k, k)])
-}
 
 /// The mass of what has these sums, whose content is counted in `2^content`, and its units.
 pub(in crate::mass) fn in_units(
@@ -249,13 +227,8 @@ pub(in crate::mass) fn matter(
     bound: ErrorBound,
     units: Units,
 ) -> Result<RigidBody, Error> {
-    let LocalFrame {
-        reference,
-        unit,
-        axes,
-    } = sums.frame;
-    let axes_or = axes.unwrap_or_else(nalgebra::Matrix3::identity);
-    let center_of_mass = reference + axes_or * sums.center() * unit;
+    let (unit, axes) = (sums.frame.unit, sums.frame.rotation());
+    let center_of_mass = sums.frame.reference + axes * sums.center() * unit;
     let central = sums.central() * mass;
     // First and second moments are off by as much as the content, times the extent once and twice.
     let extent = sums.extent.norm();
@@ -270,7 +243,7 @@ pub(in crate::mass) fn matter(
         mass,
         center_of_mass,
         central,
-        axes: axes_or,
+        axes,
         error_bound,
     })?)
 }

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use nalgebra::Vector3;
 
 use super::boundary::{Boundary, Marks, ROOM, Replay, Triangle, find_repeats};
-use super::in_memory::solid_of_faces;
+use super::in_memory::polyhedron_watched;
 use super::nesting::{InsideOut, find_inside_out};
 use super::solid::{Checked, Options, Triangles, solid};
 use super::stream::{StreamError, TriangleStream};
@@ -66,7 +66,7 @@ pub fn stream_solid(
     Ok(StreamedSolid {
         body,
         triangles,
-        volume,
+        volume: volume.abs(),
         area,
     })
 }
@@ -113,12 +113,11 @@ impl Stream<'_> {
             check: true,
         };
         let watch = &mut |_| self.passes.ask();
-        solid_of_faces(&corners, &apart(&corners), amount, options, watch).map_err(
-            |halt| match halt {
-                Halt::Stopped => StreamError::Stopped,
-                Halt::Failed(error) => error.into(),
-            },
-        )
+        match polyhedron_watched(&corners, &apart(&corners), amount, options, watch) {
+            Ok(solid) => Ok((solid.body, solid.volume)),
+            Err(Halt::Stopped) => Err(StreamError::Stopped),
+            Err(Halt::Failed(error)) => Err(error.into()),
+        }
     }
 }
 
