@@ -11,6 +11,7 @@ import numpy as np
 from polhode import _core
 from polhode.ensembles.plan import is_each_alone, short_name
 from polhode.errors import PolhodeError
+from polhode.motion.trajectory import Origin
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -149,8 +150,8 @@ def select_rows(trajectory: Trajectory, rows: Rows) -> Trajectory:
     known["states"] = {name: part(value, 3) for name, value in trajectory.states.items()}
     shared = ("t", "events", "pivoted", "uncertain_start")
     known |= {name: getattr(trajectory, name) for name in shared} | {"failures": ()}
-    own = {one: trajectory.__dict__[one] for one in ("_was_loaded",) if one in trajectory.__dict__}
-    return type(trajectory)._of_run(known | own)
+    known["_origin"] = Origin(loaded=trajectory._origin.loaded)
+    return type(trajectory)._of_run(known)
 
 
 def find_runnable(inputs: Inputs) -> tuple[Rows, dict[int, PolhodeError]]:
