@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
@@ -11,7 +11,6 @@ import numpy as np
 from polhode import _core
 from polhode.ensembles.plan import is_each_alone, short_name
 from polhode.errors import PolhodeError
-from polhode.motion.trajectory import Origin
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -150,7 +149,7 @@ def select_rows(trajectory: Trajectory, rows: Rows) -> Trajectory:
     known["states"] = {name: part(value, 3) for name, value in trajectory.states.items()}
     shared = ("t", "events", "pivoted", "uncertain_start")
     known |= {name: getattr(trajectory, name) for name in shared} | {"failures": ()}
-    known["_origin"] = Origin(loaded=trajectory._origin.loaded)
+    known["_origin"] = replace(trajectory._origin, motion=None, states=(), start=None)
     return type(trajectory)._of_run(known)
 
 
