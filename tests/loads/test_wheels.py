@@ -443,6 +443,21 @@ class TestOneWheel:
         other = polhode.wheel(axis=(0, 0, 1), inertia=0.1, rate=2.0, mode="held")
         assert np.array_equal(runs[0][1], BODY.simulate([0, 1], OMEGA, load=other).omega)
 
+    def test_rows_of_a_stack_have_their_own_numbers(self) -> None:
+        control = loads.feedback([1.0 * np.eye(3), 2.0 * np.eye(3)], 0.5)
+        stack = loads.wheel((0, 0, 1), 0.1, [1.0, 2.0], friction=[[0.1], [0.2]], torque=control, limit=0.3)
+        assert stack.shape == (2, 2)
+        for one in (stack[1, 0], pickle.loads(pickle.dumps(stack[1, 0])), stack[1][0]):
+            assert (one.shape, one.rate, one.momentum, one.friction, one.limit) == ((), 1.0, 0.1, 0.2, 0.3)
+            assert one.motor.shape == ()
+            assert one.motor.potential(BODY, ATTITUDE) == control[0].potential(BODY, ATTITUDE)
+        table = loads.wheel((0, 0, 1), [0.1, 0.2], torque=[0.1, 0.2, 0.3], times=[0, 1, 2])[1]
+        assert (table.inertia, table.times.tolist(), table.motor.tolist()) == (
+            0.2,
+            [0, 1, 2],
+            [0.1, 0.2, 0.3],
+        )
+
     def test_without_moment_it_is_a_rotor(self) -> None:
         wheel = polhode.wheel(axis=(0, 3, 4), inertia=0.0, momentum=0.5)
         run = BODY.simulate([0, 1], OMEGA, load=wheel)

@@ -14,7 +14,7 @@ use super::load::{Acts, PyLoad};
 use super::pickle_recipe::{recipe, unfold};
 use super::registry::register;
 use crate::arrays::{
-    floats, list_floats, read, read_scalar, try_rows, write, write_numbers, write_of,
+    floats, list_floats, numpy, read, read_scalar, try_rows, write, write_numbers, write_of,
 };
 use crate::errors::to_py;
 use crate::indexing::{picked_by, to_index};
@@ -371,22 +371,40 @@ impl PyWheel {
     }
 }
 
-/// An argument of the function that made it.
+/// An argument of the function that made it; of a stack that was indexed, the rows that were picked.
 fn option(wheel: &Bound<'_, PyWheel>, name: &str) -> PyResult<Option<Py<PyAny>>> {
     let py = wheel.py();
     let Some(part) = wheel.as_super().get().parts.first() else {
         return Ok(None);
     };
-    let (_, arguments) = &unfold(part.recipe.bind(py))?[0];
+    let steps = unfold(part.recipe.bind(py))?;
+    let arguments = &steps[0].1;
     let last = arguments.get_item(arguments.len().saturating_sub(1))?;
     let Ok(options) = last.cast::<PyDict>() else {
         return Ok(None);
     };
-    let Some(value) = options.get_item(name)?.filter(|value| !value.is_none()) else {
+    let given = |name: &str| -> PyResult<Option<Bound<'_, PyAny>>> {
+        Ok(options.get_item(name)?.filter(|value| !value.is_none()))
+    };
+    let Some(mut value) = given(name)? else {
         return Ok(None);
     };
+    let is_table = given("times")?.is_some() && ["torque", "speed", "times"].contains(&name);
+    for (_, picked) in steps.iter().filter(|(step, _)| step == "_picked") {
+        let (shape, key) = (
+            picked.get_item(1)?.extract::<Vec<usize>>()?,
+            picked.get_item(2)?,
+        );
+        if let Ok(load) = value.cast::<PyLoad>() {
+            let load = load.get().map(|part| part.picked(py, &shape, &key))?;
+            value = load.into_pyobject(py)?.into_any();
+        } else if value.hasattr("dtype")? && !is_table {
+            let every = numpy(py)?.call_method1("broadcast_to", (value, shape))?;
+            value = every.get_item(key)?;
+        }
+    }
     if value.hasattr("dtype")? {
-        return Ok(Some(value.call_method0("copy")?.get_item(())?.unbind())); // which may be changed
+        value = numpy(py)?.call_method1("array", (value,))?.get_item(())?; // which may be changed
     }
     Ok(Some(value.unbind()))
 }
@@ -576,7 +594,7 @@ fn keep<'py>(given: Option<&Bound<'py, PyAny>>) -> PyResult<Option<Bound<'py, Py
             if given.is_instance_of::<PyLoad>() {
                 return Ok(given.clone());
             }
-            crate::arrays::numpy(given.py())?.call_method1("array", (given, "float64"))
+            numpy(given.py())?.call_method1("array", (given, "float64"))
         })
         .transpose()
 }
