@@ -26,7 +26,7 @@ def draw() -> Figure:
     motion = top()
     cone = motion.body
     low, high = np.rad2deg(motion.nutation_limits)
-    print(f"{motion.path}: nutates between {low:.4f}° and {high:.4f}° every {motion.nutation_period:.6f} s")
+    print(f"{motion.mode}: nutates between {low:.4f}° and {high:.4f}° every {motion.nutation_period:.6f} s")
     fast = cone.mass * 9.81 * 0.045 / (cone.inertia[2, 2] * 260.0)
     print(f"mean precession {motion.mean_precession:.4f} rad/s; mgl/(I_s ω_s) of a fast top {fast:.4f} rad/s")
 

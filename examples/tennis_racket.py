@@ -28,7 +28,7 @@ def draw() -> Figure:
     for time in simulated.events.t:
         left.axvline(time, color="0.6", linewidth=0.8)
     right = figure.add_subplot(1, 2, 2, projection="3d", computed_zorder=False)
-    plot.polhodes(racket, right, energy=float(motion.kinetic_energy))
+    plot.polhodes(racket, right, energy=float(motion.kinetic_energy().total))
     return figure
 
 

@@ -85,7 +85,7 @@ def curve(scene: Scene, gyrostat: Gyrostat, start: np.ndarray, color: str) -> No
     """The path of L, its part on the far side faint."""
     omega = np.linalg.solve(gyrostat.inertia, unit(start) - gyrostat.momentum)
     motion = gyrostat.free_motion(omega)
-    fine = motion.at(np.linspace(0.0, motion.period, 4001)).omega @ gyrostat.inertia + motion.rotor
+    fine = motion.at(np.linspace(0.0, motion.periods.rotation, 4001)).omega @ gyrostat.inertia + motion.rotor
     gone = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(fine, axis=0), axis=1))])
     count = max(16, int(gone[-1] / 0.06))
     path = np.stack(

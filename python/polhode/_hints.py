@@ -198,8 +198,21 @@ _OF_CLASSES: Final = {
         "evaluate": "at(t) is the motion at these times",
         "simulate": "at(t) is the motion at these times",
         "period": "periods has them",
-        "energy": "kinetic_energy is it",
+        "energy": "kinetic_energy() gives it, and its .total the sum",
         "t": "at(t) is the motion at these times; the start is 0",
+    },
+    "GyrostatMotion": {
+        "period": "periods.rotation is it",
+    },
+    "HeavyTop": {
+        "path": "mode is it",
+        "period": "nutation_period is it",
+        "periods": "nutation_period, mean_precession and mean_spin are its rhythms",
+        **dict.fromkeys(
+            ("energy", "kinetic_energy"),
+            "at(t).kinetic_energy() gives it, at(t).invariants().energy adds the potential",
+        ),
+        "angular_momentum": "at(t).angular_momentum() gives it",
     },
     "RigidBody": {
         "load": "RigidBody.from_file(path) reads every file that holds a body",
@@ -360,7 +373,9 @@ def no_name(module: str, name: str, known: Iterable[str]) -> AttributeError:
 
 def no_attribute(kind: str, name: str, known: Iterable[str], what: str | None = None) -> AttributeError:
     """Make the error for an attribute that a class does not have; the error proposes the right name."""
-    table = _OF_CLASSES.get("FreeMotion" if kind in ("HeavyTop", "GyrostatMotion") else kind, {})
+    table = _OF_CLASSES.get(kind, {})
+    if kind in ("HeavyTop", "GyrostatMotion"):
+        table = _OF_CLASSES["FreeMotion"] | table
     way_out = _or_nearest(table.get(name), name, known)
     return AttributeError(f"{what or f'{kind!r} object'} has no attribute {name!r}{way_out}", name=name)
 

@@ -346,7 +346,7 @@ def _tumble(body: RigidBody, drawn: Floats | None, omega: Floats, quaternion: Fl
     known: NDArray[np.bool_] = np.asarray(np.isfinite(omega).all(axis=-1))
     bodies = body if drawn is None else _bodies(body, drawn[known])
     motion = bodies.free_motion(omega[known], quaternion[known])
-    momentum = motion.angular_momentum
+    momentum = motion.angular_momentum().spin
     periods = motion.periods
 
     def expand(values: Any, fill: Any) -> Any:

@@ -7,7 +7,8 @@ that point is fixed in space.
 A :func:`rotor`, a :func:`wheel` and a :func:`slug` are carried by the body. They are loads too, since they
 act on the body. The angular momentum of the trajectory includes theirs. Its energy includes that of wheels
 and slugs, but not that of a rotor, whose speed is not known. :attr:`Trajectory.states <polhode.Trajectory>`
-has their states.
+has their states. A wheel that turns freely or at a constant rate, from :func:`polhode.wheel`, is a load as it
+is.
 """
 
 from typing import TYPE_CHECKING

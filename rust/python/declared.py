@@ -31,7 +31,8 @@ MODULES = {
 }
 #: Classes beside the functions.
 CLASSES = {"loads": ["Load"]}
-RETURNED = {"loads": "Load"}
+#: Classes that functions return, by their module, or by their own name where it differs.
+RETURNED = {"loads": "Load", "wheel": "Wheel"}
 
 #: A function as an item of Rust, or as the macro of shapes declares it.
 DECLARED = re.compile(
@@ -123,7 +124,7 @@ def stub(module: str, function: str) -> str:
             raise SystemExit(f"{function}: the docstring has no line for {parameter.name}")
         default = "" if parameter.default is parameter.empty else f" = {quoted(parameter.default)}"
         parts.append(f"{parameter.name}: {typed(module, function, parameter, words)}{default}")
-    returned = RETURNED.get(module, "RigidBody")
+    returned = RETURNED.get(function, RETURNED.get(module, "RigidBody"))
     line = f"def {function}({', '.join(parts)}) -> {returned}: ..."
     # A letter of the formula as the name of an argument needs a word to the linter.
     noted = [f"{part},{'  # noqa: N803' if part[0].isupper() else ''}" for part in parts]

@@ -174,7 +174,7 @@ class TestPages:
         motion = body.heavy_top((0.0, 0.0, 40.0), attitude, (0.0, 0.0, -9.81))
         check_page(motion, shown["t"])
         # With its pivot, and what its axis draws.
-        assert shown["top"]["path"] == str(motion.path)
+        assert shown["top"]["path"] == str(motion.mode)
         assert shown["top"]["limits"] == pytest.approx(list(motion.nutation_limits))
         assert shown["top"]["down"] == [0.0, 0.0, -1.0]
 

@@ -363,10 +363,10 @@ def drawn_lines(ax: Any) -> list[np.ndarray]:
 def check_plots(one: Motion) -> None:
     """What `polhode`, `poinsot` and `portrait` draw of a motion in closed form has its energy, and |L|."""
     shown = one.motion
-    energy, tensor = float(shown.kinetic_energy), one.tensor
+    energy, tensor = float(shown.kinetic_energy().rotational), one.tensor
     assert one.end is not None
     has_end = bool(shown.body.principal_moments[0] > 0.0)
-    size = float(np.linalg.norm(shown.angular_momentum))
+    size = float(np.linalg.norm(shown.angular_momentum().spin))
     if energy > 0.0 and has_end:
         ax: Any = plot.polhode(shown)
         paths = [line for line in drawn_lines(ax) if len(line) > 2]
@@ -398,7 +398,7 @@ def check_portrait(one: Motion, size: float) -> None:
         off = n / np.linalg.norm(n, axis=-1, keepdims=True) * size - h
         return 0.5 * np.einsum("...i,ij,...j", off, inverse, off)
 
-    found = one.motion.equilibria
+    found = one.motion.equilibria()
     ax: Any = plot.portrait(one.motion, levels=0)
     scale = float(level(found.direction).max())
     saddles = [
@@ -410,7 +410,9 @@ def check_portrait(one: Motion, size: float) -> None:
         if len(line) < 3:
             continue
         if made.get_color() == plot.MOMENTUM_COLOR:
-            np.testing.assert_allclose(level(line), float(one.motion.kinetic_energy), atol=1e-7 * scale)
+            np.testing.assert_allclose(
+                level(line), float(one.motion.kinetic_energy().rotational), atol=1e-7 * scale
+            )
         elif made.get_color() == plot.AXIS_COLORS[1]:
             off = np.abs(np.subtract.outer(level(line), saddles)).max(axis=0).min()
             assert off < 1e-9 * scale

@@ -288,7 +288,17 @@ def test_a_molecule_is_no_mesh(tmp_path: Path, option: dict[str, Any]) -> None:
             "'FreeMotion' object has no attribute 'omega_at'; at(t)",
         ),
         (lambda: BODY.free_motion((0, 0, 1)).modde, "'modde'; did you mean mode?"),
-        (lambda: TOP.heavy_top((0, 0, 1), gravity=(0, 0, -1)).energy, "'energy'; kinetic_energy is it"),
+        (
+            lambda: TOP.heavy_top((0, 0, 1), gravity=(0, 0, -1)).energy,
+            "'energy'; at(t).kinetic_energy() gives it",
+        ),
+        (lambda: TOP.heavy_top((0, 0, 1), gravity=(0, 0, -1)).path, "'path'; mode is it"),
+        (lambda: TOP.heavy_top((0, 0, 1), gravity=(0, 0, -1)).modde, "'modde'; did you mean mode?"),
+        (lambda: BODY.free_motion((0, 0, 1)).energy, "'energy'; kinetic_energy() gives it, and its .total"),
+        (
+            lambda: BODY.gyrostat((0, 0, 1)).free_motion((0, 1, 1)).period,
+            "'period'; periods.rotation is it",
+        ),
         (lambda: BODY.gyrostat((0, 0, 1)).equilibra, "'equilibra'; did you mean equilibria?"),
         (
             lambda: TRAJECTORY.load("m.npz"),

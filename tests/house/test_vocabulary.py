@@ -40,6 +40,17 @@ ALLOWED = {
     ("polhode.units.metres_per", "unit"),  # of any length
 }
 
+MOTIONS = (polhode.Trajectory, polhode.FreeMotion, polhode.HeavyTop, polhode.GyrostatMotion)
+"""The classes that hold a motion."""
+
+TIMES = {"t", "end"}
+"""What a closed form is asked for, and a trajectory has."""
+
+OF_ONE_MOTION = {
+    ("sensitivity", "method"),  # there is one way to derive a closed form
+}
+"""Parameters of one class of motion alone, by the name of the method."""
+
 
 def parameters() -> list[tuple[str, str]]:
     """Every parameter of a public function, method or class that is no record, by the name of its owner."""
@@ -86,3 +97,32 @@ def test_no_parameter_of_a_picture_says_unit_without_converting() -> None:
         if owner.startswith(("polhode.plot", "polhode.view", "polhode.animation")) and name.endswith("_unit")
     ]
     assert labels == []
+
+
+def words_of(kind: type, name: str) -> list[str] | None:
+    """Parameters of a method, but for the times; None for an attribute."""
+    if not callable(inspect.getattr_static(kind, name, None)):
+        return None
+    found = list(inspect.signature(getattr(kind, name)).parameters)[1:]
+    return [one for one in found if one not in TIMES and (name, one) not in OF_ONE_MOTION]
+
+
+def test_one_quantity_of_a_motion_is_one_method_or_one_attribute() -> None:
+    public = {
+        kind: {one for one in {*dir(kind), *getattr(kind, "__dataclass_fields__", ())} if one[0] != "_"}
+        for kind in MOTIONS
+    }
+    shared = sorted(set().union(*public.values()))
+    assert {"kinetic_energy", "angular_momentum", "mode", "periods"} <= set(shared)
+    faults = []
+    for name in shared:
+        ways = {kind.__name__: words_of(kind, name) for kind in MOTIONS if name in public[kind]}
+        if len({repr(words) for words in ways.values()}) > 1:
+            faults.append((name, ways))
+    assert faults == []
+
+
+@pytest.mark.parametrize("kind", MOTIONS, ids=lambda kind: kind.__name__)
+@pytest.mark.parametrize("name", ["kinetic_energy", "angular_momentum", "stability", "equilibria"])
+def test_what_is_computed_of_a_motion_is_a_method(kind: type, name: str) -> None:
+    assert not hasattr(kind, name) or callable(inspect.getattr_static(kind, name))

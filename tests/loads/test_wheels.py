@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
+import copy
 import math
 import pickle
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import polhode
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles.wheels import ATTITUDE, BODY, OMEGA, T, by_scipy, of_wheels, turning
 from polhode import RigidBody, Trajectory, loads
 from polhode.errors import InvalidInertiaError, PolhodeError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -35,8 +34,8 @@ J, RATES, FRICTION = np.array([0.2, 0.15]), np.array([3.0, -7.0]), np.array([0.0
 @pytest.mark.parametrize(("method", "rtol", "allowed"), METHODS)
 class TestAgainstBothBodies:
     def test_friction_and_a_motor(self, method: Any, rtol: float, allowed: float) -> None:
-        pair = loads.wheel(AXES[0], J[0], RATES[0], friction=FRICTION[0], torque=0.1)
-        pair = pair + loads.wheel(AXES[1], J[1], RATES[1], friction=FRICTION[1], name="second")
+        first = loads.wheel(AXES[0], J[0], RATES[0], friction=FRICTION[0], torque=0.1)
+        pair = first + loads.wheel(AXES[1], J[1], RATES[1], friction=FRICTION[1], name="second")
         run = BODY.simulate(T, OMEGA, ATTITUDE, load=pair, method=method, rtol=rtol)
         rates = of_wheels(UNIT, J, FRICTION, lambda *_: np.array([0.1, 0.0]))
         exact = by_scipy(rates, list(RATES), [0.0, 15.0])
@@ -406,3 +405,118 @@ class TestEnergyBalance:
         energy, work = run.kinetic_energy().total, run.states["work"][-1, 0]
         assert abs(work) > 1e-3 * energy[0]
         assert abs(energy[-1] - energy[0] - work) <= 1e-13 * energy[0]
+
+
+class TestOneWheel:
+    """A wheel is a record, which a gyrostat takes, and a load."""
+
+    AXIS = np.array([1.0, 2.0, 2.0]) / 3.0
+
+    @pytest.mark.parametrize("mode", ["free", "held"])
+    def test_it_serves_both_sides(self, mode: Any) -> None:
+        wheel = polhode.wheel(axis=3.0 * self.AXIS, inertia=0.2, rate=5.0, mode=mode)
+        given = {"rate": 5.0} if mode == "free" else {"speed": 5.0}
+        same = loads.wheel(3.0 * self.AXIS, 0.2, **given)  # type: ignore[arg-type]
+        assert wheel == same
+        assert (same.mode, same.inertia, same.rate, same.momentum) == (mode, 0.2, 5.0, 1.0)
+        times = [0.0, 2.0, 5.0]
+        exact = BODY.gyrostat(wheels=[same]).free_motion(OMEGA).at(times)
+        runs = [BODY.simulate(times, OMEGA, load=one, rtol=1e-14) for one in (wheel, same)]
+        assert np.array_equal(runs[0].omega, runs[1].omega)
+        np.testing.assert_allclose(runs[0].omega, exact.omega, atol=1e-12)
+
+    def test_it_acts_in_sums_and_stacks(self) -> None:
+        wheel = polhode.wheel(axis=(0, 0, 1), inertia=[0.2, 0.3], rate=5.0, name="z")
+        assert isinstance(wheel, loads.Load)
+        assert wheel.shape == (2,)
+        assert wheel[1] == polhode.wheel(axis=(0, 0, 1), inertia=0.3, rate=5.0, name="z")
+        total = sum([wheel, loads.constant_torque((0.1, 0, 0)), wheel])
+        run = BODY.simulate([0, 1], OMEGA, load=total)
+        assert list(run.states) == ["z", "z_2"]
+        assert run.torque().shape == (2, 2, 3)
+        one = BODY.simulate([0, 1], OMEGA, load=wheel[1] + loads.constant_torque((0.1, 0, 0)) + wheel[1])
+        assert np.array_equal(run.omega[1], one.omega)
+        held = polhode.wheel(axis=(0, 0, 1), inertia=0.1, rate=[1.0, 2.0], mode="held")
+        again = pickle.loads(pickle.dumps(held))
+        runs = [BODY.simulate([0, 1], OMEGA, load=wheel).omega for wheel in (held, again)]
+        assert np.array_equal(*runs)
+        other = polhode.wheel(axis=(0, 0, 1), inertia=0.1, rate=2.0, mode="held")
+        assert np.array_equal(runs[0][1], BODY.simulate([0, 1], OMEGA, load=other).omega)
+
+    def test_rows_of_a_stack_have_their_own_numbers(self) -> None:
+        control = loads.feedback([1.0 * np.eye(3), 2.0 * np.eye(3)], 0.5)
+        stack = loads.wheel((0, 0, 1), 0.1, [1.0, 2.0], friction=[[0.1], [0.2]], torque=control, limit=0.3)
+        assert stack.shape == (2, 2)
+        for one in (stack[1, 0], pickle.loads(pickle.dumps(stack[1, 0])), stack[1][0]):
+            assert (one.shape, one.rate, one.momentum, one.friction, one.limit) == ((), 1.0, 0.1, 0.2, 0.3)
+            assert one.motor.shape == ()
+            assert one.motor.potential(BODY, ATTITUDE) == control[0].potential(BODY, ATTITUDE)
+        table = loads.wheel((0, 0, 1), [0.1, 0.2], torque=[0.1, 0.2, 0.3], times=[0, 1, 2])[1]
+        assert (table.inertia, table.times.tolist(), table.motor.tolist()) == (
+            0.2,
+            [0, 1, 2],
+            [0.1, 0.2, 0.3],
+        )
+
+    def test_without_moment_it_is_a_rotor(self) -> None:
+        wheel = polhode.wheel(axis=(0, 3, 4), inertia=0.0, momentum=0.5)
+        run = BODY.simulate([0, 1], OMEGA, load=wheel)
+        assert np.array_equal(run.omega, BODY.simulate([0, 1], OMEGA, load=loads.rotor((0, 0.3, 0.4))).omega)
+        assert np.isnan(wheel.rate)
+        with pytest.raises(ValueError, match="1 of the 2 wheels of a stack have no moment"):
+            polhode.wheel(axis=(0, 0, 1), inertia=[0.0, 0.1], momentum=1.0)
+
+    @pytest.mark.parametrize(
+        "wheel",
+        [
+            polhode.wheel(axis=(0, 0, 1), inertia=0.1, momentum=0.7),
+            polhode.wheel(axis=(0, 0, 1), inertia=[0.1, 0.3], rate=7.0, name="fast"),
+            polhode.wheel(axis=(0, 0, 1), inertia=0.0, momentum=0.7, mode="held"),
+        ],
+        ids=repr,
+    )
+    def test_copies_are_equal(self, wheel: polhode.Wheel) -> None:
+        again = pickle.loads(pickle.dumps(wheel))
+        assert again == wheel == copy.deepcopy(wheel)
+        assert hash(again) == hash(wheel)
+        assert repr(again) == repr(wheel)
+        assert again.name == wheel.name
+        run, other = (BODY.simulate([0, 1], OMEGA, load=one) for one in (wheel, again))
+        assert np.array_equal(run.omega, other.omega)
+        assert list(run.states) == list(other.states)
+
+    def test_a_wheel_with_a_motor_survives_pickle(self) -> None:
+        wheel = loads.wheel((0, 0, 1), 0.1, 2.0, torque=[0.1, 0.2], times=[0, 1], friction=0.01, name="m")
+        again = pickle.loads(pickle.dumps(wheel))
+        assert (again.mode, again.name, again.friction) == ("driven", "m", 0.01)
+        assert again.motor.tolist() == [0.1, 0.2]
+        again.motor[0] = 9.0  # a copy
+        assert again.motor.tolist() == [0.1, 0.2]
+        assert (wheel == wheel, again == wheel) == (True, False)
+        with pytest.raises(ValueError, match=r"wheels\[0\]: it has a motor \(torque=\)"):
+            BODY.gyrostat(wheels=[again])
+
+    @pytest.mark.parametrize(
+        ("options", "words"),
+        [
+            ({"torque": 0.1}, r"a motor \(torque=\)"),
+            ({"torque": loads.feedback(1.0, 1.0), "limit": 0.1}, r"a motor \(torque=\)"),
+            ({"friction": 0.1}, r"friction in its bearing \(friction=\)"),
+            ({"dry_friction": 0.1}, r"friction in its bearing \(dry_friction=\)"),
+            ({"speed": [1.0, 2.0], "times": [0.0, 1.0]}, r"a speed that changes \(times=\)"),
+        ],
+    )
+    def test_what_a_closed_form_does_not_know(self, options: Any, words: str) -> None:
+        wheel = loads.wheel((0, 0, 1), 0.1, **options)
+        assert wheel.mode == "driven"
+        way_out = r"body\.simulate\(t, omega, load=wheel\)"
+        with pytest.raises(ValueError, match=rf"wheels\[1\]: it has {words}.*{way_out}"):
+            BODY.gyrostat(wheels=[polhode.wheel(axis=(0, 0, 1), inertia=0.1, rate=1.0), wheel])
+
+    @pytest.mark.parametrize("inertia", [0.1, 0.0])
+    def test_no_factor(self, inertia: float) -> None:
+        wheel = polhode.wheel(axis=(0, 0, 1), inertia=inertia, momentum=0.1)
+        scaled: list[Callable[[], loads.Load]] = [lambda: 2 * wheel, lambda: wheel * 0.5, lambda: -wheel]
+        for one in scaled:
+            with pytest.raises(PolhodeError, match="cannot be scaled"):
+                one()

@@ -45,7 +45,8 @@ class TestWrongInSilence:
         found = [
             ball.gyrostat(wheels=[polhode.wheel(axis=axis, inertia=0.1, rate=10.0)])
             .free_motion(np.array([0.3, 0.2, 1.1]))
-            .equilibria.bifurcations.meeting.tolist()
+            .equilibria()
+            .bifurcations.meeting.tolist()
             for axis in ((0, 0, 1), (1, 2, 2))
         ]
         assert found[0] == found[1]

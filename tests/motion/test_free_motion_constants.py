@@ -70,8 +70,8 @@ def test_constants_against_elliptic_integrals(body: Body, omega: np.ndarray) -> 
     assert periods.rotation == pytest.approx(want["rotation"], rel=1e-14)
     np.testing.assert_allclose(periods.rates, want["rates"], rtol=2e-14)
     assert periods.precession == pytest.approx(2 * np.pi / want["rates"][0], rel=2e-14)
-    assert motion.kinetic_energy == pytest.approx(0.5 * float(moments @ omega**2), rel=1e-15)
-    np.testing.assert_allclose(motion.angular_momentum, moments * omega, rtol=1e-14)
+    assert motion.kinetic_energy().total == pytest.approx(0.5 * float(moments @ omega**2), rel=1e-15)
+    np.testing.assert_allclose(motion.angular_momentum().spin, moments * omega, rtol=1e-14)
 
 
 @pytest.mark.parametrize("omega", [SHORT, LONG, (1e-3, 1.0, 1.1e-3), (-0.3, -0.2, -1.1)])
@@ -84,7 +84,7 @@ def test_periods_are_those_of_the_motion(omega: tuple[float, float, float]) -> N
     start, now, later, last = (motion.at(x) for x in (t, t + 3.0, t + 3.0 + half, t + periods.rotation))
     np.testing.assert_allclose(last.omega, start.omega, atol=1e-13)
     # The intermediate axis swings to the other side; it turns over where it is the nearest to L.
-    L = motion.angular_momentum / np.linalg.norm(motion.angular_momentum)
+    L = motion.angular_momentum().spin / np.linalg.norm(motion.angular_momentum().spin)
     lean = [state.rotation.apply((0.0, 1.0, 0.0)) @ L for state in (now, later)]
     np.testing.assert_allclose(lean[1], -lean[0], atol=1e-13)
     turns_over = np.abs(lean[0]).max() > np.sqrt(0.5)
@@ -146,9 +146,9 @@ def test_the_polhode_is_where_the_angular_velocity_runs(omega: tuple[float, floa
     assert curve.shape == (721, 3)
     assert curve[0].tolist() == curve[-1].tolist() == omega_B.tolist()
     energies = turned.kinetic_energy(curve).rotational
-    np.testing.assert_allclose(energies, motion.kinetic_energy, rtol=1e-14)
+    np.testing.assert_allclose(energies, motion.kinetic_energy().total, rtol=1e-14)
     sizes = np.linalg.norm(turned.angular_momentum(curve).total, axis=-1)
-    np.testing.assert_allclose(sizes, np.linalg.norm(motion.angular_momentum), rtol=1e-14)
+    np.testing.assert_allclose(sizes, np.linalg.norm(motion.angular_momentum().spin), rtol=1e-14)
     # In the sense of the motion: the first step is along the acceleration.
     assert (curve[1] - curve[0]) @ turned.angular_acceleration(omega_B) > 0
     # Every state lies between two neighbours of the curve.
@@ -165,12 +165,12 @@ def test_the_ellipsoid_rolls_on_the_invariable_plane() -> None:
     found = motion.poinsot(t)
     assert isinstance(found, Poinsot)
     state = motion.at(t)
-    L = np.linalg.norm(motion.angular_momentum)
-    np.testing.assert_allclose(found.normal, motion.angular_momentum / L, atol=1e-15)
+    L = np.linalg.norm(motion.angular_momentum().spin)
+    np.testing.assert_allclose(found.normal, motion.angular_momentum().spin / L, atol=1e-15)
     np.testing.assert_allclose(found.contact, state.rotation.apply(state.omega), atol=1e-14)
     np.testing.assert_allclose(found.contact, motion.herpolhode(t), atol=0)
     np.testing.assert_allclose(found.contact @ found.normal, found.distance, rtol=1e-14)
-    assert found.distance == pytest.approx(2 * motion.kinetic_energy / L, rel=1e-15)
+    assert found.distance == pytest.approx(2 * motion.kinetic_energy().total / L, rel=1e-15)
     # In the body the point lies on the ellipsoid, which has L for its normal there.
     inside = state.omega / found.semi_axes
     np.testing.assert_allclose(np.sum(inside**2, axis=-1), 1.0, rtol=1e-14)
@@ -198,14 +198,16 @@ def test_modes_come_in_their_order() -> None:
     assert stack.cones.axis.tolist() == [2, 0]
     assert stack.polhode(7).shape == (2, 7, 3)
     assert stack.herpolhode(np.zeros((4, 5))).shape == (2, 4, 5, 3)
-    assert stack.stability.shape == (2, 3)
+    assert stack.stability().shape == (2, 3)
 
 
 def test_limits() -> None:
     separatrix = RigidBody.from_principal(1.0, (2.0, 4.0, 4.5)).free_motion((0.75, 0.3, 1.0))
     assert (separatrix.modulus, separatrix.complementary_modulus) == (1.0, 0.0)
     assert separatrix.periods.rotation == separatrix.periods.flip == np.inf
-    np.testing.assert_allclose(separatrix.periods.rates, np.linalg.norm(separatrix.angular_momentum) / 4)
+    np.testing.assert_allclose(
+        separatrix.periods.rates, np.linalg.norm(separatrix.angular_momentum().spin) / 4
+    )
     np.testing.assert_allclose(separatrix.nutation[1], [0, np.pi], atol=1e-15)
     assert separatrix.energy_ratio == pytest.approx(4.5 / 4, rel=1e-15)
     curve = separatrix.polhode(91)
@@ -220,7 +222,7 @@ def test_limits() -> None:
     for unknown in (rest.nutation, rest.cones.space, rest.poinsot(0.0).normal, rest.periods.rates):
         assert np.isnan(unknown).all()
     assert np.isnan(rest.energy_ratio)
-    assert rest.kinetic_energy == 0.0
+    assert rest.kinetic_energy().total == 0.0
 
 
 @given(exponents=st.tuples(st.integers(-140, 140), st.integers(-140, 140)))
@@ -240,9 +242,9 @@ def test_any_scale(exponents: tuple[int, int]) -> None:
 
 def test_stability_is_that_of_spins_with_the_same_momentum() -> None:
     motion = BRICK.free_motion(SHORT)
-    L = np.linalg.norm(motion.angular_momentum)
+    L = np.linalg.norm(motion.angular_momentum().spin)
     want = [BRICK.stability(L / moment)[k] for k, moment in enumerate((1.0, 2.0, 2.5))]
-    np.testing.assert_allclose(motion.stability, want, rtol=1e-15)
+    np.testing.assert_allclose(motion.stability(), want, rtol=1e-15)
     rod = RigidBody.from_principal(1.0, (0.0, 1.0, 1.0)).free_motion((0.0, 1.0, 0.0))
-    assert np.isnan(rod.stability[0])
-    assert rod.stability[1:].tolist() == [0.0, 0.0]
+    assert np.isnan(rod.stability()[0])
+    assert rod.stability()[1:].tolist() == [0.0, 0.0]

@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 BODY = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
 
 
+OMEGA = (0.3, 0.2, 1.1)
+
+
 def skew(h: np.ndarray) -> np.ndarray:
     x, y, z = h
     return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
@@ -85,13 +88,13 @@ def test_random_gyrostats_keep_their_laws_and_agree_with_integration() -> None:
     late = motions.at([0.0, 5.0, 50.0, 1e6, 1e12])
     assert np.isfinite(late.omega).all()
     assert np.isfinite(late.quaternion).all()
-    size = np.linalg.norm(motions.angular_momentum, axis=-1)
+    size = np.linalg.norm(motions.angular_momentum().spin, axis=-1)
     spin = late.angular_momentum().spin
-    drift = np.linalg.norm(spin - motions.angular_momentum[:, None], axis=-1) / size[:, None]
+    drift = np.linalg.norm(spin - motions.angular_momentum().spin[:, None], axis=-1) / size[:, None]
     assert drift.max() <= 1e-14
     energy = late.kinetic_energy().total
     scale = np.abs(energy).max(1) + (h**2).sum(1)
-    assert (np.abs(energy - motions.kinetic_energy[:, None]).max(1) / scale).max() <= 1e-14
+    assert (np.abs(energy - motions.kinetic_energy().total[:, None]).max(1) / scale).max() <= 1e-14
     run = bodies.simulate([0.0, 5.0, 50.0], omega, load=loads.rotor(h), method="taylor", rtol=1e-22)
     largest = np.linalg.norm(run.omega, axis=-1).max(1)
     assert (np.abs(late.omega[:, :3] - run.omega).max((1, 2)) / largest).max() <= 3e-15
@@ -114,7 +117,7 @@ def test_random_gyrostats_over_hundreds_of_rotations() -> None:
 def test_after_its_period_omega_is_back() -> None:
     for h, omega in [((0.1, 0.2, 0.3), (1, 0.2, 0.3)), ((0.01, 0.02, 0.03), (0.02, 1, 0.03))]:
         motion = BODY.gyrostat(h).free_motion(omega)
-        assert np.abs(motion.at(motion.period).omega - motion.at(0.0).omega).max() < 1e-13
+        assert np.abs(motion.at(motion.periods.rotation).omega - motion.at(0.0).omega).max() < 1e-13
 
 
 def test_rotating_the_axes_and_scaling_change_nothing() -> None:
@@ -185,8 +188,8 @@ def test_a_start_on_the_separatrix_and_next_to_it(off: float, mode: str, *, is_t
             RigidBody.from_principal(1.0, (2.0, 3.0, 4.0)).gyrostat((3.0, 3.0, 6.0)).free_motion(3.0 * omega)
         )
     assert motion.mode == mode
-    assert np.isinf(motion.period) == (mode == "separatrix")
-    assert not np.isnan(motion.period)
+    assert np.isinf(motion.periods.rotation) == (mode == "separatrix")
+    assert not np.isnan(motion.periods.rotation)
 
 
 def test_a_steady_rotation_has_no_period() -> None:
@@ -198,13 +201,43 @@ def test_a_steady_rotation_has_no_period() -> None:
     ):
         motion = gyrostat.free_motion(omega)
         assert motion.mode == "steady"
-        assert np.isnan(motion.period)
+        assert np.isnan(motion.periods.rotation)
+        assert motion.periods.turn == pytest.approx(2 * np.pi, rel=1e-15)
+
+
+def test_the_wobble_of_a_steady_rotation_is_that_of_its_neighbours() -> None:
+    gyrostat = BODY.gyrostat((0.0, 3.0, 0.0))
+    steady = gyrostat.free_motion((0.0, 1.0, 0.0))
+    assert gyrostat.free_motion((1e-4, 1.0, 0.0)).periods.rotation == pytest.approx(
+        steady.periods.wobble, rel=1e-7
+    )
+    unstable = BODY.gyrostat((0.0, 0.3, 0.0)).free_motion((0.0, 1.0, 0.0))
+    assert np.isnan(unstable.periods.wobble)
+    moving = gyrostat.free_motion([(0.3, 1.0, 0.2), (0.0, 1.0, 0.0)]).periods
+    assert np.isnan(moving.turn).tolist() == [True, False]
+    assert np.isnan(moving.precession).all()
+    assert moving.sigma is None
+
+
+def test_momentum_in_the_body_is_that_at_the_start() -> None:
+    turned = np.array([0.5, -0.1, 0.7, 0.5])
+    for motion in (
+        BODY.free_motion(OMEGA, turned),
+        BODY.gyrostat((0.3, -0.1, 0.2)).free_motion(OMEGA, turned),
+    ):
+        start = motion.at([0.0])
+        for frame in ("space", "body"):
+            found, want = motion.angular_momentum(frame), start.angular_momentum(frame)
+            assert not np.any([found.orbital, found.mixed])
+            np.testing.assert_allclose(found.total, want.total[0], rtol=1e-14)
+        with pytest.raises(ValueError, match='frame: "earth" is not "space" or "body"'):
+            motion.angular_momentum("earth")  # type: ignore[arg-type]
 
 
 def test_a_start_next_to_the_middle_axis_turns_over_when_it_should() -> None:
     # The time to turn over grows by ln(10)/rate with each decade.
     gyrostat = BODY.gyrostat((0.0, 0.3, 0.0))
-    periods = [gyrostat.free_motion((10.0**-k, 1.0, 0.0)).period for k in (20, 21, 60, 61)]
+    periods = [gyrostat.free_motion((10.0**-k, 1.0, 0.0)).periods.rotation for k in (20, 21, 60, 61)]
     assert abs((periods[1] - periods[0]) - (periods[3] - periods[2])) < 1e-10
     late = gyrostat.free_motion((1e-60, 1.0, 0.0)).at(np.linspace(0, 3 * periods[2], 1000))
     assert np.isfinite(late.omega).all()
@@ -401,7 +434,7 @@ def test_next_to_a_separatrix_it_has_all_its_digits(
     with mp.workdps(80):
         exact = period(moments, momentum, start)
         for found, want in (
-            (body.gyrostat(momentum).free_motion(start).period, exact),
-            (turned(moments, momentum, start).period, exact / 3),
+            (body.gyrostat(momentum).free_motion(start).periods.rotation, exact),
+            (turned(moments, momentum, start).periods.rotation, exact / 3),
         ):
             assert abs(mpf(float(found)) / want - 1) <= 4e-16

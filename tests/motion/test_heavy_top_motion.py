@@ -277,14 +277,14 @@ class TestWhatItTells:
     def test_paths(self) -> None:
         def path(name: str) -> str:
             case = CASES[name]
-            return str(case.body.heavy_top(case.omega, case.attitude, (0, 0, -case.gravity)).path)
+            return str(case.body.heavy_top(case.omega, case.attitude, (0, 0, -case.gravity)).mode)
 
         assert [path(name) for name in ("cusp", "loop", "wave")] == ["cusp", "loop", "wave"]
         assert path("through the upper vertical") == path("through the lower vertical") == "crossing"
         assert path("plane pendulum") == path("plane pendulum, turning over") == "planar"
         assert path("separatrix, pendulum") == "asymptotic"
         upright = CASES["cusp"].body.heavy_top((0, 0, 5.0), None, G)
-        assert (upright.path, math.isnan(upright.nutation_period)) == ("steady", True)
+        assert (upright.mode, math.isnan(upright.nutation_period)) == ("steady", True)
         assert upright.mean_spin == 5.0
         assert np.array_equal(upright.at(1e9).omega, [0.0, 0.0, 5.0])
 
@@ -294,7 +294,7 @@ class TestWhatItTells:
         for theta in (1e-2, 1e-6, 1e-12):
             omega = euler_angles.angular_velocity((0, theta, 0), (rate, 0.0, 25.0 - rate))
             top = CASES["cusp"].body.heavy_top(omega, euler_angles.to_quaternion((0, theta, 0)), G)
-            assert top.path == path
+            assert top.mode == path
 
     def test_steady_precession_is_regular(self) -> None:
         body = CASES["cusp"].body
@@ -305,7 +305,7 @@ class TestWhatItTells:
                 top = body.heavy_top(omega, euler_angles.to_quaternion((0, theta, 0)), G)
                 assert np.ptp(top.nutation_limits) < 1e-7
                 # On either side of what is judged to be regular.
-                assert np.isnan(top.nutation_period) == (top.path == "regular")
+                assert np.isnan(top.nutation_period) == (top.mode == "regular")
                 assert top.mean_precession == pytest.approx(rate, rel=1e-9)
                 assert top.mean_spin == pytest.approx(rates[2], rel=1e-9)
 
@@ -358,7 +358,7 @@ class TestInterface:
         alone = stack[1].heavy_top(omega[1, 0], euler_angles.to_quaternion((0, 0.4, 0)), G).at(times[2, 3])
         assert np.array_equal(motion.quaternion[1, 1, 2, 3], alone.quaternion)
         assert np.array_equal(motion.omega[1, 1, 2, 3], alone.omega)
-        assert top.path.shape == (2, 3)
+        assert top.mode.shape == (2, 3)
         assert top.nutation_limits.shape == (2, 3, 2)
         assert top.at(0.0).quaternion.shape == (2, 3, 4)
         assert top.at([]).omega.shape == (2, 3, 0, 3)

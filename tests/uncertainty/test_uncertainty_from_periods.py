@@ -206,8 +206,8 @@ class TestFlybys:
         drawn = clones(8_000)
         exact = (
             2.0
-            * drawn.kinetic_energy
-            / np.linalg.norm(drawn.angular_momentum, axis=-1)
+            * drawn.kinetic_energy().total
+            / np.linalg.norm(drawn.angular_momentum().spin, axis=-1)
             * drawn.periods.precession
         )
         assert share.std() == pytest.approx(exact.std(), rel=0.06)

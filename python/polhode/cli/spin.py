@@ -474,17 +474,18 @@ class FreeKind:
     def constants(self, moment_unit: str) -> list[Field]:
         """Return what is conserved: the energy and the angular momentum."""
         motion, unit = self._motion, f"{moment_unit}/s"
-        momentum = motion.angular_momentum
+        momentum = motion.angular_momentum().spin
         size = float(lengths(momentum))
+        energy = motion.kinetic_energy().rotational
         return [
-            Field("kinetic_energy", "kinetic energy", motion.kinetic_energy, f"{moment_unit}/s^2"),
+            Field("kinetic_energy", "kinetic energy", energy, f"{moment_unit}/s^2"),
             Field("angular_momentum", "|L|", size, unit),
             Field("angular_momentum_vector", "L, in space", momentum, unit, scale=size),
         ]
 
     def stability(self) -> list[Field]:
         """Return whether steady spins with this angular momentum are stable."""
-        squares = self._motion.stability
+        squares = self._motion.stability()
         words = ["stable" if x > 0 else "unstable" if x < 0 else "neutral" for x in squares]
         words = ["undefined" if np.isnan(x) else word for x, word in zip(squares, words, strict=True)]
         return [
@@ -543,7 +544,7 @@ class TopKind:
             return period_fields("nutation_period", "nutation period", period, hint, {})
         fields = [Field("nutation_period", "nutation period", None, hint=why, cells=["none"])]
         speed = float(lengths(motion.omega))
-        if str(motion.path) != "steady" or speed == 0.0:
+        if str(motion.mode) != "steady" or speed == 0.0:
             return fields
         return [*period_fields("turn_period", "one turn", 2.0 * np.pi / speed, "about the axis", {}), *fields]
 
@@ -693,39 +694,30 @@ class GyrostatKind:
 
     def _periods(self) -> list[Field]:
         """Return the periods that this mode has, by the words of the glossary."""
-        motion = self._motion
-        if not np.isnan(motion.period):
-            hint = "" if np.isfinite(motion.period) else "omega never returns"
-            return period_fields("period", "period in the body", motion.period, hint, {})
-        speed = float(lengths(motion.omega))
-        if speed == 0.0:
+        motion, periods = self._motion, self._motion.periods
+        if not np.isnan(periods.rotation):
+            hint = "" if np.isfinite(periods.rotation) else "omega never returns"
+            return period_fields("period", "period in the body", periods.rotation, hint, {})
+        if not np.isfinite(periods.turn):
             return [Field("turn_period", "one turn", math.inf, "s", "the body is at rest")]
-        turn = period_fields(
-            "turn_period", "one turn", 2.0 * math.pi / speed, "about an axis at rest in the body", {}
-        )
-        along = motion.gyrostat.inertia @ motion.omega + motion.rotor
-        if float(lengths(along)) > 0.0:
-            found = motion.equilibria
-            square = float(found.squared_rate[int(np.argmax(found.direction @ along))])
-        else:  # a small L rests in space, and the body turns below it
-            square = speed**2
-        if square > 0.0:
+        turn = period_fields("turn_period", "one turn", periods.turn, "about an axis at rest in the body", {})
+        if not np.isnan(periods.wobble):
             hint = "of small oscillations of omega in the body"
-            return [
-                *turn,
-                *period_fields("wobble_period", "wobble", 2.0 * math.pi / math.sqrt(square), hint, {}),
-            ]
-        why = "the spin is unstable" if square < 0.0 else "the spin is neutral"
+            return [*turn, *period_fields("wobble_period", "wobble", periods.wobble, hint, {})]
+        found = motion.equilibria()
+        nearest = int(np.argmax(found.direction @ motion.angular_momentum("body").spin))
+        why = "the spin is unstable" if found.squared_rate[nearest] < 0.0 else "the spin is neutral"
         return [*turn, Field("wobble_period", "wobble", None, hint=why, cells=["none"])]
 
     def constants(self, moment_unit: str) -> list[Field]:
         """Return what is conserved: the energy, the angular momentum, and what of it is inside."""
         motion, unit = self._motion, f"{moment_unit}/s"
-        momentum, inside = motion.angular_momentum, motion.rotor
+        momentum, inside = motion.angular_momentum().spin, motion.rotor
+        energy = motion.kinetic_energy().rotational
         size, held = float(lengths(momentum)), float(lengths(inside))
         hint = "half of omega.I omega: without the wheels' own"
         return [
-            Field("kinetic_energy", "kinetic energy", motion.kinetic_energy, f"{moment_unit}/s^2", hint),
+            Field("kinetic_energy", "kinetic energy", energy, f"{moment_unit}/s^2", hint),
             Field("angular_momentum", "|L|", size, unit, "with the wheels"),
             Field("angular_momentum_vector", "L, in space", momentum, unit, scale=max(size, held)),
             Field(
@@ -736,9 +728,9 @@ class GyrostatKind:
     def stability(self) -> list[Field | Table]:
         """Return the steady rotations with this length of L."""
         motion = self._motion
-        if not float(lengths(motion.angular_momentum)) > 0.0:
+        if not float(lengths(motion.angular_momentum().spin)) > 0.0:
             return [Field("stability", "steady rotations", "none with an axis of its own: L is zero")]
-        found = motion.equilibria
+        found = motion.equilibria()
         rows: list[dict[str, Any]] = []
         for k, kind in enumerate(found.kind.tolist()):
             circle = _clean(found.circle[k] @ self._axes) if found.circle[k].any() else None

@@ -68,7 +68,7 @@ def parts_of(load: _core.Load) -> list[Part]:
         On one body.
     """
     try:
-        _, (recipes,) = cast("tuple[Any, tuple[list[Recipe]]]", load.__reduce__())
+        _, (recipes,) = cast("tuple[Any, tuple[list[Recipe]]]", _core.Load.__reduce__(load))
     except TypeError:
         return []
     names = iter(load.states)

@@ -58,14 +58,14 @@ def top_of(trajectory: Trajectory) -> HeavyTop | None:
 
 
 def path_of(motion: HeavyTop) -> str:
-    """Return the kind of path of a top's axis: ``HeavyTop.path``, but ``steady`` if it nods by rounding.
+    """Return the kind of path of a top's axis: ``HeavyTop.mode``, but ``steady`` if it nods by rounding.
 
     180 degrees are not a float in radians: a top that hangs straight down with them is off by 1e-16, and what
     it draws has cusps of that size.
     """
     least, greatest = motion.nutation_limits
     is_vertical = greatest <= _ROUNDING or np.pi - least <= _ROUNDING
-    return "steady" if is_vertical else str(motion.path)
+    return "steady" if is_vertical else str(motion.mode)
 
 
 def pivot_of(trajectory: Trajectory, motion: FreeMotion | HeavyTop | GyrostatMotion | None) -> Pivot | None:

@@ -113,9 +113,9 @@ def fastest(motion: FreeMotion | HeavyTop | GyrostatMotion) -> float:
 
 def once_round(motion: GyrostatMotion) -> Floats:
     """Return times over one period of ω in the body, for one gyrostat."""
-    period = float(motion.period)
     if str(motion.mode) == "steady":
         return np.zeros(1)
+    period = float(motion.periods.rotation)
     if np.isfinite(period):
         return np.linspace(0.0, period, _PER_PERIOD + 1)
     reach = _GROWTHS / _quickest(motion)
@@ -126,7 +126,7 @@ def _quickest(motion: GyrostatMotion) -> float:
     """Find the greatest rate at which L circles about an equilibrium of one gyrostat, or departs from it."""
     if str(motion.mode) == "steady":
         return 0.0
-    return float(np.sqrt(np.abs(motion.equilibria.squared_rate).max()))
+    return float(np.sqrt(np.abs(motion.equilibria().squared_rate).max()))
 
 
 def follow(

@@ -174,7 +174,7 @@ def surface_of(trajectory: Trajectory, motion: FreeMotion | HeavyTop | GyrostatM
         "gyrostat",
         momentum,
         float(energy_level(tensor, rotor, in_body / size)),
-        _marks(gyrostat.equilibria, tensor, rotor),
+        _marks(gyrostat.equilibria(), tensor, rotor),
         bool(gyrostat.gyrostat._rotor()[1].any()),
     )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
@@ -149,8 +149,8 @@ def select_rows(trajectory: Trajectory, rows: Rows) -> Trajectory:
     known["states"] = {name: part(value, 3) for name, value in trajectory.states.items()}
     shared = ("t", "events", "pivoted", "uncertain_start")
     known |= {name: getattr(trajectory, name) for name in shared} | {"failures": ()}
-    own = {one: trajectory.__dict__[one] for one in ("_was_loaded",) if one in trajectory.__dict__}
-    return type(trajectory)._of_run(known | own)
+    known["_origin"] = replace(trajectory._origin, motion=None, states=(), start=None)
+    return type(trajectory)._of_run(known)
 
 
 def find_runnable(inputs: Inputs) -> tuple[Rows, dict[int, PolhodeError]]:

@@ -369,12 +369,12 @@ def _carried_of(trajectory: Trajectory) -> dict[str, Any]:
 
 
 def _began_of(trajectory: Trajectory) -> dict[str, Any]:
-    held = trajectory.__dict__.get("_began")
-    return {} if held is None else {_BEGAN: np.array(held)}
+    start = trajectory._origin.start
+    return {} if start is None else {_BEGAN: np.array(start)}
 
 
 def read_motion(path: str | PathLike[str]) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Read the attributes of a :class:`polhode.Trajectory` by name, and what it knows besides.
+    """Read the attributes of a :class:`polhode.Trajectory` by name, and the fields of its origin.
 
     Parameters
     ----------
@@ -431,13 +431,13 @@ def read_motion(path: str | PathLike[str]) -> tuple[dict[str, Any], dict[str, An
     was_loaded = _flag(fields, _LOADED, file)
     if was_loaded and body._doubts() is not None:
         ended["uncertain_start"] = None  # what the body's doubts do to the motion the load decides, too
-    known: dict[str, Any] = {"_was_loaded": True} if was_loaded else {}
+    origin: dict[str, Any] = {"loaded": was_loaded}
     if _BEGAN in fields:
         began = numbers(fields[_BEGAN], _BEGAN, file)
         if began.ndim:
             raise FileFormatError(f"{file}: {_BEGAN} has shape {began.shape}, expected one number")
-        known["_began"] = float(began)
-    return {"body": body, **states, **given, **ended}, known
+        origin["start"] = float(began)
+    return {"body": body, **states, **given, **ended}, origin
 
 
 def _stack(shape: tuple[int, ...], bodies: tuple[int, ...], axes_of_time: int) -> tuple[int, ...]:
@@ -577,7 +577,7 @@ def table_of(trajectory: Trajectory) -> tuple[dict[str, NDArray[Any]], dict[str,
     vectors = {name: (getattr(trajectory, name), parts) for name, parts in _COLUMNS.items()}
     vectors["euler"] = trajectory.euler_angles("ZXZ", singular="nan"), _EULER
     is_free = not trajectory._is_loaded() and trajectory.carried is None
-    is_known = trajectory.load is not None or is_free or "_within" in trajectory.__dict__
+    is_known = trajectory.load is not None or is_free or trajectory._origin.motion is not None
     if is_known and all(np.isfinite(values).all() for values, _ in list(vectors.values())[:-1]):
         vectors["torque"] = trajectory.torque(), "xyz"
     columns = {

@@ -43,7 +43,7 @@ def recipes(load: _core.Load | None) -> list[Recipe]:
     if load is None:
         return []
     try:
-        _, (parts,) = cast("tuple[Any, tuple[list[Recipe]]]", load.__reduce__())
+        _, (parts,) = cast("tuple[Any, tuple[list[Recipe]]]", _core.Load.__reduce__(load))
     except TypeError:
         return []
     return list(parts)
@@ -204,7 +204,7 @@ class _Row:
         self.omega, self.quaternion = run.omega[place], run.quaternion[place]
         self.states = {name: values[place][0] for name, values in run.states.items()}
         # Those that do not follow from the numbers of the load, and those that can be anything.
-        self.given = {name: self.states[name] for name in run.__dict__.get("_given", ())}
+        self.given = {name: self.states[name] for name in run._origin.states}
         known = known_states(self.load, self.recipes)
         self.free = {name: values for name, values in self.states.items() if name not in known}
         self.most_steps: int | None = None

@@ -53,7 +53,7 @@ class _Periods(NamedTuple):
 
 
 class Periods(_Periods):
-    """The periods of a free motion. Each kind of motion has its own; a period that it does not have is NaN.
+    """Periods of a free motion: each kind of motion has its own; a period that it does not have is NaN.
 
     ================================================  =============================================
     motion                                            periods
@@ -63,6 +63,8 @@ class Periods(_Periods):
     long-axis mode, short-axis mode                   `rotation`, `precession` of axis 1; `flip`
                                                       if the intermediate axis turns over
     separatrix                                        `precession`; `rotation`, `flip` are infinite
+    gyrostat: ω is constant                           `turn`; `wobble` if the spin is stable
+    gyrostat: ω is not constant                       `rotation`, infinite on the separatrix
     ================================================  =============================================
 
     An infinite period is that of something that happens once at most. In long- and short-axis mode the
@@ -82,7 +84,8 @@ class Periods(_Periods):
         axis and L. After it ω is at the same place in the body.
     rotation : float or numpy.ndarray, shape (...)
         P_ψ, after which the components of ω in the body repeat. In long-axis mode the body turns once about
-        its long axis in this time; in short-axis mode the long axis swings once to and fro.
+        its long axis in this time; in short-axis mode the long axis swings once to and fro. Of a gyrostat it
+        is the time after which the components of ω and L in the body repeat.
     precession : float or numpy.ndarray, shape (...)
         P_φ: the mean time in which axis 1 goes once round L; in a symmetric body the time of its symmetry
         axis.

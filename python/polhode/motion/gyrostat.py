@@ -1,13 +1,13 @@
-"""Wheels for gyrostats."""
+"""Wheels without a motor, and the results of gyrostats."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
 from polhode import _core
+from polhode._core import Wheel
 from polhode._format import short
 
 if TYPE_CHECKING:
@@ -83,47 +83,6 @@ class Equilibria(NamedTuple):
         return short(self)
 
 
-@dataclass(frozen=True, eq=False)
-class Wheel:
-    """A wheel in a body, made by :func:`wheel`; a stack of them where its numbers are arrays.
-
-    Attributes
-    ----------
-    axis : numpy.ndarray, shape (..., 3)
-        Axis a of the wheel, in the body frame; only the direction counts.
-    inertia : float or numpy.ndarray, shape (...)
-        Moment of inertia J of the wheel about its axis.
-    momentum : float or numpy.ndarray, shape (...)
-        J Ω at t = 0, where Ω is the rate of the wheel relative to the body.
-    mode : {"free", "held"}
-        ``"free"``: the momentum of the wheel along its axis, ``J (Ω + a·ω)``, is constant. ``"held"``: its
-        rate Ω relative to the body is constant.
-    """
-
-    axis: NDArray[np.float64]
-    inertia: Any
-    momentum: Any
-    mode: Literal["free", "held"]
-
-    @property
-    def rate(self) -> Any:
-        """Rate Ω relative to the body at t = 0, in radians per unit of time; NaN if J is zero."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return np.true_divide(self.momentum, self.inertia)[()]
-
-    def __eq__(self, other: object) -> bool:
-        """Return whether all numbers are equal."""
-        if not isinstance(other, Wheel):
-            return NotImplemented
-        return self.mode == other.mode and all(
-            np.array_equal(getattr(self, name), getattr(other, name))
-            for name in ("axis", "inertia", "momentum")
-        )
-
-    def __hash__(self) -> int:
-        return hash((self.mode, (self.axis + 0.0).tobytes()))  # zeros of both signs are equal
-
-
 def wheel(
     *,
     axis: ArrayLike,
@@ -131,8 +90,9 @@ def wheel(
     rate: ArrayLike | None = None,
     momentum: ArrayLike | None = None,
     mode: Literal["free", "held"] = "free",
+    name: str = "wheel",
 ) -> Wheel:
-    """Describe a wheel in a body, for :meth:`polhode.RigidBody.gyrostat`.
+    """Make a wheel in a body, for :meth:`polhode.RigidBody.gyrostat` and as a load of a simulation.
 
     Parameters
     ----------
@@ -147,10 +107,18 @@ def wheel(
     mode : {"free", "held"}
         A free wheel turns without friction, and J (Ω + a·ω) is constant. For a held wheel a motor keeps Ω
         constant.
+    name : str
+        Name of its state in ``states`` of a trajectory.
 
     Returns
     -------
     Wheel
+        In a simulation a wheel without moment (``inertia=0``) is a rotor: its momentum is constant in the
+        body.
+
+    See Also
+    --------
+    polhode.loads.wheel : a wheel with a motor and friction.
 
     Examples
     --------
@@ -171,24 +139,15 @@ def wheel(
         raise ValueError(
             f"inertia and {given}: shapes {moment.shape} and {spin.shape} do not broadcast"
         ) from None
-    if momentum is None:
-        with np.errstate(over="ignore"):
-            spin = moment * spin
-    place = np.array(_core.real_numbers(axis, "axis"))  # not the caller's
+    with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
+        rates, momenta = (spin, moment * spin) if momentum is None else (np.true_divide(spin, moment), spin)
+    place = _core.real_numbers(axis, "axis")
     if place.shape[-1:] != (3,):
         raise ValueError(f"axis: expected shape (..., 3), got {place.shape}")
     if not (np.isfinite(place).all() and np.any(place, axis=-1).all()):
         raise ValueError(f"axis: expected finite vectors other than zero, got {place.tolist()}")
     if not (np.isfinite(moment).all() and np.min(moment, initial=0.0) >= 0.0):
         raise ValueError(f"inertia: expected finite numbers that are not negative, got {moment.tolist()}")
-    if not np.isfinite(spin).all():
-        raise ValueError(f"{given}: J Ω must be finite, got {spin.tolist()}")
-    place.flags.writeable = False
-    return Wheel(place, _plain(moment), _plain(spin), mode)
-
-
-def _plain(numbers: Any) -> Any:
-    """Return a float for a single number."""
-    array = np.array(numbers)
-    array.flags.writeable = False
-    return float(array) if array.ndim == 0 else array
+    if not np.isfinite(momenta).all():
+        raise ValueError(f"{given}: J Ω must be finite, got {momenta.tolist()}")
+    return Wheel._of(place, moment, rates, momenta, mode, name)

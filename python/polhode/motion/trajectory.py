@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, cast
 
@@ -42,6 +42,28 @@ _ROUNDING = 1e-12
 """An angular momentum that differs by less, relative to its parts, is the same."""
 ROUNDING = 1e-12
 """A moment that small, relative to the largest, is that of no wheel."""
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where a trajectory comes from, as far as its states do not show it.
+
+    Attributes
+    ----------
+    motion : GyrostatMotion or None
+        The closed form that it shows, of a gyrostat.
+    states : tuple of str
+        The states of the load that were given at the start; the others follow from the numbers of the load.
+    start : float or None
+        The first time of the motion that it continues; None if it is the first part.
+    loaded : bool
+        Whether a load acted that is not known any more, since a file does not hold it.
+    """
+
+    motion: _core.GyrostatMotion | None = None
+    states: tuple[str, ...] = ()
+    start: float | None = None
+    loaded: bool = False
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -114,6 +136,7 @@ class Trajectory(metaclass=Hinting):
     ) = (None, None)
     states: dict[str, Floats] = field(default_factory=dict)
     carried: tuple[Floats, Floats] | None = field(default_factory=lambda: None)
+    _origin: Origin = field(default=Origin(), init=False)
 
     @classmethod
     def _of_run(cls, known: dict[str, Any]) -> Trajectory:
@@ -138,12 +161,7 @@ class Trajectory(metaclass=Hinting):
 
     def __getstate__(self) -> dict[str, Any]:
         """Return all attributes, for copy and pickle."""
-        held = {
-            name: self.__dict__[name]
-            for name in ("_within", "_was_loaded", "_given", "_began")
-            if name in self.__dict__
-        }
-        return held | {one.name: getattr(self, one.name) for one in fields(self)}
+        return {one.name: getattr(self, one.name) for one in fields(self)}
 
     def __len__(self) -> int:
         """Count the times."""
@@ -176,7 +194,7 @@ class Trajectory(metaclass=Hinting):
             Each part of shape (..., T). The rotational part includes the energy of wheels and slugs. It does
             not include the energy of a rotor, of which only the momentum is known. For a body with a rotor
             and no other load, ``½ ω·I ω`` stays constant. For a gyrostat in closed form the total is
-            :attr:`polhode.GyrostatMotion.kinetic_energy`.
+            :meth:`polhode.GyrostatMotion.kinetic_energy`.
         """
         found = self._bodies().kinetic_energy(
             self.omega,
@@ -319,9 +337,9 @@ class Trajectory(metaclass=Hinting):
         """
         from polhode.io.saved import read_motion
 
-        known, besides = read_motion(path)
+        known, origin = read_motion(path)
         motion = Trajectory(**known)
-        motion.__dict__.update(besides)
+        motion.__dict__["_origin"] = Origin(**origin)
         return motion
 
     def euler_angles(
@@ -395,7 +413,7 @@ class Trajectory(metaclass=Hinting):
         -------
         numpy.ndarray, shape (..., T, 3)
         """
-        if self.load is None and "_within" in self.__dict__:
+        if self.load is None and self._origin.motion is not None:
             return self._torque_of_rotor()
         if self._acting("torque") is None:
             return np.zeros_like(self.omega)
@@ -567,7 +585,7 @@ class Trajectory(metaclass=Hinting):
             load,
             self._about_word(),
             start.states if load is self.load else None,
-            self.__dict__.get("_given", ()),
+            self._origin.states,
         )
 
     def resume(self, t: ArrayLike, **options: Any) -> Trajectory:
@@ -630,11 +648,11 @@ class Trajectory(metaclass=Hinting):
         given = state._asdict() | {"about": about}
         if self.pivoted:
             del given["velocity"]
-        began = self.__dict__.get("_began", float(self.t.flat[0]))
+        first = float(self.t.flat[0]) if self._origin.start is None else self._origin.start
         is_another = "load" in options or "states" in options
         load = options.pop("load") if "load" in options else self._acting("resume", -1)
         if isinstance(load, _core.Load):
-            load = load.with_epoch(began)
+            load = load.with_epoch(first)
         known = load.states if isinstance(load, _core.Load) else {}
         states = {
             name: values
@@ -646,7 +664,7 @@ class Trajectory(metaclass=Hinting):
         if is_another:
             self._check_momentum(start, given)
         run = self.body.simulate(t, **given | options)
-        run.__dict__["_began"] = began
+        run.__dict__["_origin"] = replace(run._origin, start=first)
         if self.uncertain_start != (None, None) or self.body._doubts() is not None:
             run.__dict__["uncertain_start"] = None  # the last state is uncertain, together with the body
         return run
@@ -899,7 +917,7 @@ class Trajectory(metaclass=Hinting):
 
     def _is_loaded(self) -> bool:
         """Return whether a load acted, which a motion from a file does not have."""
-        return self.load is not None or "_was_loaded" in self.__dict__
+        return self.load is not None or self._origin.loaded
 
     def _about_word(self) -> Literal["origin", "center_of_mass"]:
         return "origin" if self.pivoted else "center_of_mass"
@@ -944,12 +962,13 @@ class Trajectory(metaclass=Hinting):
 
     def _rotor_inside(self) -> tuple[Floats, Floats]:
         """Return the momentum h inside a gyrostat, and Σ J a aᵀ of its free wheels."""
-        motion: _core.GyrostatMotion = self.__dict__["_within"]
+        motion = self._origin.motion
+        assert motion is not None
         return motion.rotor, motion.gyrostat._rotor()[1]
 
     def _carried_now(self) -> tuple[Floats, Floats] | None:
         """Return momentum and energy of the wheels of the load, or of a gyrostat."""
-        if "_within" in self.__dict__:
+        if self._origin.motion is not None:
             momentum, free = self._rotor_inside()
             of_free = np.einsum(
                 "...ij,...j->...i", free[(..., *self._time_axes(), slice(None), slice(None))], self.omega
@@ -965,7 +984,7 @@ class Trajectory(metaclass=Hinting):
             raise ValueError(f"{what}: a load acted on this motion, which its file does not hold")
         if self.load is not None or self.carried is None:
             return self.load
-        if "_within" not in self.__dict__:
+        if self._origin.motion is None:
             raise ValueError(
                 f"{what}: the load of this motion is unknown: its file holds only the angular momentum of "
                 "wheels and dampers; simulate the motion anew with its load"
@@ -984,7 +1003,8 @@ class Trajectory(metaclass=Hinting):
                 f"{what}: the gyrostats have free wheels along one, two or three axes; ask one by one"
             )
         start = self.omega[..., index, :]
-        load, rest = None, momentum
+        load: _core.Load | None = None
+        rest = momentum
         for k in np.flatnonzero(rows[0]):
             axis, inertia = axes[..., k], inertias[..., k]
             held = np.einsum("...i,...i->...", axis, momentum)
@@ -999,9 +1019,9 @@ class Trajectory(metaclass=Hinting):
         """Return the motion in closed form from the first state on, of one body; None where none is known."""
         if self._is_loaded() or self.pivoted:
             return None
-        if "_within" not in self.__dict__:
+        motion = self._origin.motion
+        if motion is None:
             return self.body.free_motion(self.omega[0], self.quaternion[0]) if self.carried is None else None
-        motion: _core.GyrostatMotion = self.__dict__["_within"]
         _, (_, besides, wheels) = cast("tuple[Any, tuple[Any, Floats, Any]]", motion.gyrostat.__reduce__())
         now = [_at(one, motion.omega - self.omega[0]) for one in wheels]
         return self.body.gyrostat(besides, wheels=now).free_motion(self.omega[0], self.quaternion[0])
@@ -1033,4 +1053,5 @@ def _at(one: Wheel, slower: Floats) -> Wheel:
     if one.mode == "held":
         return one
     along = (one.axis / np.linalg.norm(one.axis)) @ slower
-    return wheel(axis=one.axis, inertia=one.inertia, momentum=one.momentum + one.inertia * along)
+    momentum = one.momentum + one.inertia * along
+    return wheel(axis=one.axis, inertia=one.inertia, momentum=momentum, name=one.name)

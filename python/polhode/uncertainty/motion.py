@@ -369,8 +369,8 @@ def _row(run: Trajectory, stack: tuple[int, ...], row: int) -> NDArray[np.bool_]
     if of_attitude is not None:
         attitude = _product(_exponential(np.array([one[-1] for one in neighbours])), attitude)
     at_start: dict[str, Any] = {} if run.pivoted else {"velocity": run.velocity[place][0]}
-    if "_given" in run.__dict__:
-        at_start["states"] = {name: run.states[name][place][0] for name in run.__dict__["_given"]}
+    if run._origin.states:
+        at_start["states"] = {name: run.states[name][place][0] for name in run._origin.states}
     try:
         beside = bodies.simulate(
             run.t,

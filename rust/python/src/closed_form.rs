@@ -1,13 +1,14 @@
-//! Motions in closed form at the times asked for, as a `Trajectory`.
+//! Motions in closed form: at the times asked for, as a `Trajectory`, and what stays constant along them.
 
 use nalgebra::Vector3;
 use numpy::{PyArrayMethods, PyUntypedArrayMethods, dtype};
 use polhode::motion::closed_form::{ClosedForm, sample_many};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyType};
 
-use crate::arrays::{floats, numpy, write, zeros};
+use crate::arrays::{floats, numpy, write, write_numbers_of, write_of, zeros};
 use crate::body::PyRigidBody;
 use crate::errors::{at_row, to_py};
 use crate::interrupt::Interrupt;
@@ -90,6 +91,56 @@ pub(crate) fn trajectory<'py, M: ClosedForm>(
     fields.set_item("steps", &none)?;
     fields.set_item("evaluations", &none)?;
     class(py)?.call((), Some(&fields))
+}
+
+/// The kinetic energy of each motion as a `KineticEnergy`: that of the rotation about C, which rests.
+pub(crate) fn kinetic_energy<'py, T>(
+    py: Python<'py>,
+    stack: &Stack<T>,
+    energy: impl Fn(&T) -> f64,
+) -> PyResult<Bound<'py, PyAny>> {
+    let none = write_numbers_of(py, stack, |_| 0.0)?;
+    let parts = (&none, &none, write_numbers_of(py, stack, energy)?);
+    (py.import("polhode.results")?)
+        .getattr("KineticEnergy")?
+        .call1(parts)
+}
+
+/// The angular momentum of each motion as an `AngularMomentum`: that about C, which rests. `in_space` and `in_body`: its components
+/// in N, and those in B at t = 0.
+pub(crate) fn angular_momentum<'py, M: ClosedForm>(
+    py: Python<'py>,
+    motions: &Stack<M>,
+    frame: &str,
+    in_space: impl Fn(&M) -> Vector3<f64>,
+    in_body: impl Fn(&M) -> Vector3<f64>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let spin = match frame {
+        "space" => write_of(py, motions, in_space)?,
+        "body" => write_of(py, motions, in_body)?,
+        _ => {
+            return Err(PyValueError::new_err(format!(
+                "frame: {frame:?} is not \"space\" or \"body\""
+            )));
+        }
+    };
+    let none = write_of(py, motions, |_| Vector3::<f64>::zeros())?;
+    (py.import("polhode.results")?)
+        .getattr("AngularMomentum")?
+        .call1((&none, &none, spin))
+}
+
+/// Where a trajectory comes from: `polhode.motion.trajectory.Origin` with one field.
+pub(crate) fn origin<'py>(
+    py: Python<'py>,
+    field: &str,
+    value: impl IntoPyObject<'py>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let fields = PyDict::new(py);
+    fields.set_item(field, value)?;
+    (py.import("polhode.motion.trajectory")?)
+        .getattr("Origin")?
+        .call((), Some(&fields))
 }
 
 /// The class `polhode.motion.trajectory.Trajectory`.

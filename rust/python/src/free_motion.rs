@@ -5,7 +5,9 @@ use numpy::PyArrayDyn;
 use polhode::mass::refined::RefinedPrincipal;
 use polhode::motion::attitude::components;
 use polhode::motion::closed_form::ClosedForm;
-use polhode::motion::free::{CircledAxis, FreeMotion, FromPeriods, Invariants, attitude_about};
+use polhode::motion::free::{
+    CircledAxis, FreeMotion, FromPeriods, Invariants, Periods, attitude_about,
+};
 use polhode::motion::stability::stability;
 use polhode::{DoubleDouble, Error, RigidBody};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -18,7 +20,7 @@ use crate::arrays::{
 };
 use crate::attitudes::read_attitude;
 use crate::body::PyRigidBody;
-use crate::closed_form::trajectory;
+use crate::closed_form::{angular_momentum, kinetic_energy, trajectory};
 use crate::lazy_arrays::{handed_over, is_any};
 use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
@@ -535,6 +537,23 @@ impl PyFreeMotion {
     }
 }
 
+/// As `polhode.motion.free.Periods`.
+pub(crate) fn write_periods<'py>(
+    py: Python<'py>,
+    periods: &Stack<Periods>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let parts = (
+        write_numbers_of(py, periods, |periods| periods.turn)?,
+        write_numbers_of(py, periods, |periods| periods.wobble)?,
+        write_numbers_of(py, periods, |periods| periods.spin)?,
+        write_numbers_of(py, periods, |periods| periods.rotation)?,
+        write_numbers_of(py, periods, |periods| periods.precession)?,
+        write_numbers_of(py, periods, |periods| periods.flip)?,
+        write_of(py, periods, |periods| periods.rates)?,
+    );
+    named_tuple(py, "Periods", parts)
+}
+
 /// A named tuple of `polhode.motion.free`.
 fn named_tuple<'py>(
     py: Python<'py>,
@@ -584,16 +603,46 @@ impl PyFreeMotion {
         write_words_of(py, &self.motions, |motion| motion.mode.as_str(), "<U10")
     }
 
-    /// Angular momentum L about the centre of mass, components in space, shape (..., 3). It is constant.
-    #[getter]
-    fn angular_momentum<'py>(&self, py: Python<'py>) -> Array<'py> {
-        write_of(py, &self.motions, FreeMotion::angular_momentum)
+    /// Angular momentum L about the centre of mass, which rests.
+    ///
+    /// Parameters
+    /// ----------
+    /// frame : {"space", "body"}, optional
+    ///     The frame whose axes the components refer to. In space L is constant; in the body it is not, and the
+    ///     result is that at t = 0.
+    ///
+    /// Returns
+    /// -------
+    /// AngularMomentum
+    ///     Each part of shape (..., 3). The part ``spin`` is ``I ω``; the others are zero.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import RigidBody
+    /// >>> brick = RigidBody.from_principal(mass=1.0, moments=(1.0, 2.0, 2.5))
+    /// >>> brick.free_motion(omega=(0.3, 0.2, 1.1)).angular_momentum().spin
+    /// array([0.3 , 0.4 , 2.75])
+    #[pyo3(signature = (frame="space"))]
+    fn angular_momentum<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = read_scalar)] frame: &str,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (in_space, in_body) = (
+            FreeMotion::angular_momentum,
+            FreeMotion::angular_momentum_in_body,
+        );
+        angular_momentum(py, &self.motions, frame, in_space, in_body)
     }
 
-    /// Kinetic energy of the rotation, ½ ω·I ω. It is constant.
-    #[getter]
+    /// Kinetic energy, which is constant; the centre of mass rests.
+    ///
+    /// Returns
+    /// -------
+    /// KineticEnergy
+    ///     Each part of shape (...). The part ``rotational`` is ``½ ω·I ω``; the others are zero.
     fn kinetic_energy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.numbers(py, Invariants::kinetic_energy)
+        kinetic_energy(py, &self.invariants(py)?, Invariants::kinetic_energy)
     }
 
     /// ``T/T_min`` with ``T_min = L²/(2 I₃)``, the least energy of a body with this angular momentum.
@@ -641,16 +690,7 @@ impl PyFreeMotion {
     fn periods<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let (py, this) = (slf.py(), slf.get());
         let periods = this.invariants(py)?.map(py, Invariants::periods)?;
-        let parts = (
-            write_numbers_of(py, &periods, |periods| periods.turn)?,
-            write_numbers_of(py, &periods, |periods| periods.wobble)?,
-            write_numbers_of(py, &periods, |periods| periods.spin)?,
-            write_numbers_of(py, &periods, |periods| periods.rotation)?,
-            write_numbers_of(py, &periods, |periods| periods.precession)?,
-            write_numbers_of(py, &periods, |periods| periods.flip)?,
-            write_of(py, &periods, |periods| periods.rates)?,
-        );
-        let found = named_tuple(py, "Periods", parts)?;
+        let found = write_periods(py, &periods)?;
         if this.is_uncertain() {
             found.setattr("_motion", slf)?;
         }
@@ -719,20 +759,22 @@ impl PyFreeMotion {
         named_tuple(py, "Cones", parts)
     }
 
-    /// Stability of the steady spins about the principal axes with this angular momentum, shape (..., 3).
+    /// Stability of the steady spins about the principal axes with this angular momentum.
     ///
-    /// For axis k it is the squared frequency, seen from the body, of small oscillations about a spin with
-    /// ``ω = L/I_k``, in (radians per unit of time)². If it is negative, the spin is unstable.
-    /// `RigidBody.stability` gives it for a spin rate instead. NaN for an axis with zero moment: no spin
-    /// about it has angular momentum.
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (..., 3)
+    ///     For axis k the squared frequency, seen from the body, of small oscillations about a spin with
+    ///     ``ω = L/I_k``, in (radians per unit of time)². If it is negative, the spin is unstable. NaN for an
+    ///     axis with zero moment: no spin about it has angular momentum. `RigidBody.stability` computes it
+    ///     for a spin rate instead.
     ///
     /// Examples
     /// --------
     /// >>> from polhode import RigidBody
     /// >>> brick = RigidBody.from_principal(mass=1.0, moments=(1.0, 2.0, 2.5))
-    /// >>> brick.free_motion(omega=(0, 2, 0)).stability.round(12)
+    /// >>> brick.free_motion(omega=(0, 2, 0)).stability().round(12)
     /// array([ 4.8 , -0.8 ,  0.96])
-    #[getter]
     fn stability<'py>(&self, py: Python<'py>) -> Array<'py> {
         write_of(py, &self.motions, |motion| {
             let moments = motion.moments.map(DoubleDouble::rounded);

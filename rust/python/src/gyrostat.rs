@@ -17,9 +17,11 @@ use crate::arrays::{
 };
 use crate::attitudes::read_attitude;
 use crate::body::PyRigidBody;
-use crate::closed_form::trajectory;
+use crate::closed_form::{angular_momentum, kinetic_energy, origin, trajectory};
 use crate::errors::to_py;
+use crate::free_motion::write_periods;
 use crate::lazy_arrays::{handed_over, is_any};
+use crate::loads::{PyLoad, PyWheel, Turns};
 use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
 use crate::uncertain::{StartGiven, UncertainStart};
@@ -82,15 +84,22 @@ impl PyGyrostat {
     }
 }
 
-/// With what a wheel of Python adds.
+/// With what a wheel adds.
 fn with_wheel(
     py: Python<'_>,
     inside: &Stack<InternalMomentum>,
     wheel: &Bound<'_, PyAny>,
     k: usize,
 ) -> PyResult<Stack<InternalMomentum>> {
-    let part = |name: &str| {
-        wheel.getattr(name).map_err(|_| {
+    let PyWheel {
+        axis,
+        inertia,
+        momentum,
+        turns,
+        ..
+    } = wheel
+        .cast::<PyWheel>()
+        .map_err(|_| {
             PyTypeError::new_err(format!(
                 "wheels[{k}]: expected what polhode.wheel(axis=, inertia=, ...) makes, got {}",
                 wheel
@@ -98,18 +107,20 @@ fn with_wheel(
                     .name()
                     .map_or_else(|_| "something else".to_owned(), |name| name.to_string())
             ))
-        })
-    };
-    let axis: Stack<Vector3<f64>> = read(&part("axis")?, "axis")?;
-    let inertia: Stack<f64> = read(&part("inertia")?, "inertia")?;
-    let momentum: Stack<f64> = read(&part("momentum")?, "momentum")?;
-    let mode: String = part("mode")?.extract()?;
-    let is_free = match mode.as_str() {
-        "free" => true,
-        "held" => false,
-        _ => {
+        })?
+        .get();
+    let is_free = match turns {
+        Turns::Free => true,
+        Turns::Held => false,
+        Turns::Driven(by) => {
+            let what = match *by {
+                "torque" => "a motor",
+                "times" => "a speed that changes",
+                _ => "friction in its bearing",
+            };
             return Err(PyValueError::new_err(format!(
-                "wheels[{k}].mode: expected 'free' or 'held', got {mode:?}"
+                "wheels[{k}]: it has {what} ({by}=), and the closed form is that of wheels that turn freely or at a constant \
+                 rate; make it without, or integrate: body.simulate(t, omega, load=wheel)"
             )));
         }
     };
@@ -133,8 +144,8 @@ impl PyRigidBody {
     /// momentum : array_like, shape (..., 3), optional
     ///     Angular momentum relative to the body that is held constant, components in the body frame.
     /// wheels : sequence of Wheel, optional
-    ///     Wheels, made by :func:`polhode.wheel`. The inertia of this body includes them as if they were
-    ///     locked.
+    ///     Wheels, made by :func:`polhode.wheel`, or by :func:`polhode.loads.wheel` without motor and friction.
+    ///     The inertia of this body includes them as if they were locked.
     ///
     /// Returns
     /// -------
@@ -157,7 +168,7 @@ impl PyRigidBody {
     /// >>> body = polhode.RigidBody.from_principal(mass=1.0, moments=(1.0, 2.0, 2.5))
     /// >>> wheel = polhode.wheel(axis=(0, 1, 0), inertia=0.1, rate=50.0)
     /// >>> motion = body.gyrostat(wheels=[wheel]).free_motion((0.1, 0.2, 0.3))
-    /// >>> motion.mode, round(motion.period, 6)
+    /// >>> motion.mode, round(motion.periods.rotation, 6)
     /// ('single', 1.966414)
     #[pyo3(signature = (momentum=None, *, wheels=None))]
     fn gyrostat(
@@ -172,12 +183,16 @@ impl PyRigidBody {
         };
         let wheels = match wheels {
             Some(wheels) => {
-                let list = wheels.try_iter().map_err(|_| {
+                let refused = || {
                     PyTypeError::new_err(format!(
                         "wheels: expected a sequence of wheels, got {}; of one wheel [wheel]",
                         wheels.get_type()
                     ))
-                })?;
+                };
+                if wheels.is_instance_of::<PyLoad>() {
+                    return Err(refused());
+                }
+                let list = wheels.try_iter().map_err(|_| refused())?;
                 PyTuple::new(py, list.collect::<PyResult<Vec<_>>>()?)?
             }
             None => PyTuple::empty(py),
@@ -306,7 +321,7 @@ impl PyGyrostat {
     /// ------
     /// ValueError
     ///     For a stack. For free wheels too, since their h depends on ω at the start; use
-    ///     :attr:`GyrostatMotion.equilibria`.
+    ///     :meth:`GyrostatMotion.equilibria`.
     ///
     /// Examples
     /// --------
@@ -353,9 +368,17 @@ impl PyGyrostat {
 
 #[pymethods]
 impl PyGyrostatMotion {
-    /// All steady rotations with the length of L and the h of this motion, as :meth:`Gyrostat.equilibria`
-    /// gives them.
-    #[getter]
+    /// All steady rotations with the length of L and the h of this motion.
+    ///
+    /// Returns
+    /// -------
+    /// Equilibria
+    ///     As :meth:`Gyrostat.equilibria` has them.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     For a stack.
     fn equilibria<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let ([motion], [gyrostat]) = (
             &self.motions.rows[..],
@@ -592,11 +615,21 @@ impl PyGyrostatMotion {
         write_words_of(py, &self.motions, |motion| motion.mode.as_str(), "<U10")
     }
 
-    /// Time after which the components of ω and L in the body repeat; infinite where they never repeat, NaN where
-    /// they are constant (``mode`` "steady").
+    /// The periods of the motion: each mode has its own, and those that it does not have are NaN.
+    ///
+    /// Returns
+    /// -------
+    /// Periods
+    ///     ``turn``, ``wobble``: of a steady rotation. ``rotation``: the time after which the components of ω
+    ///     and L in the body repeat, of every other motion; infinite where they never repeat. The others are NaN:
+    ///     the mean rate about L is known except for whole turns, see :attr:`mean_precession`.
     #[getter]
-    fn period<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.numbers(py, |motion| motion.period.rounded())
+    fn periods<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let gyrostats = &self.gyrostat.get().gyrostats;
+        let shapes = [&gyrostats.shape[..], &self.motions.shape];
+        let periods = Broadcast::of(["gyrostat", "motion"], shapes)?
+            .try_map(py, |[g, m]| self.motions[m].periods(&gyrostats[g]))?;
+        write_periods(py, &periods)
     }
 
     /// Mean rate, in radians per unit of time, at which the body precesses about L.
@@ -609,18 +642,39 @@ impl PyGyrostatMotion {
         self.numbers(py, |motion| motion.mean_precession.rounded())
     }
 
-    /// Angular momentum L about the centre of mass with that of the wheels, components in space, shape (...,
-    /// 3). It is constant.
-    #[getter]
-    fn angular_momentum<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        write_of(py, &self.motions, |motion| motion.angular_momentum)
+    /// Angular momentum L about the centre of mass, which rests.
+    ///
+    /// Parameters
+    /// ----------
+    /// frame : {"space", "body"}, optional
+    ///     The frame whose axes the components refer to. In space L is constant; in the body it is not, and the
+    ///     result is that at t = 0.
+    ///
+    /// Returns
+    /// -------
+    /// AngularMomentum
+    ///     Each part of shape (..., 3). The part ``spin`` includes the wheels; the others are zero.
+    #[pyo3(signature = (frame="space"))]
+    fn angular_momentum<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = read_scalar)] frame: &str,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let in_space = |motion: &GyrostatMotion| motion.angular_momentum;
+        let in_body = GyrostatMotion::angular_momentum_in_body;
+        angular_momentum(py, &self.motions, frame, in_space, in_body)
     }
 
-    /// Kinetic energy without that of the wheels in their own rotation: ``½ ω·(I − Σ J a aᵀ) ω``, with the
-    /// sum over the free wheels. It is constant.
-    #[getter]
+    /// Kinetic energy without that of the wheels in their own rotation. It is constant; the centre of mass
+    /// rests.
+    ///
+    /// Returns
+    /// -------
+    /// KineticEnergy
+    ///     Each part of shape (...). The part ``rotational`` is ``½ ω·(I − Σ J a aᵀ) ω``, with the sum over the
+    ///     free wheels; the others are zero.
     fn kinetic_energy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.numbers(py, |motion| motion.kinetic_energy)
+        kinetic_energy(py, &self.motions, |motion| motion.kinetic_energy)
     }
 
     /// Constant angular momentum h inside, components in the body frame, shape (..., 3); for a free wheel it
@@ -678,7 +732,7 @@ impl PyGyrostatMotion {
         // What is carried along is computed for those who ask.
         let known = motion.getattr("__dict__")?;
         known.del_item("carried")?;
-        known.set_item("_within", slf)?;
+        known.set_item("_origin", origin(py, "motion", slf)?)?;
         Ok(motion)
     }
 

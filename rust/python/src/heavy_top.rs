@@ -55,13 +55,13 @@ struct Start {
 ///     Angular velocity and attitude at t = 0 where they were given with a sigma.
 /// shape : tuple of int
 ///     Shape of the stack of motions: bodies, angular velocities, attitudes and gravities broadcast together.
-/// path : str or numpy.ndarray of str, shape (...)
-///     Path of the axis on a sphere about the pivot, as a word.
+/// mode : str or numpy.ndarray of str, shape (...)
+///     How the axis moves on a sphere about the pivot, as a word.
 /// nutation_limits : numpy.ndarray, shape (..., 2)
 ///     Least and largest inclination θ of the axis, from the pivot to the centre of mass, from the upward vertical.
 /// nutation_period : float or numpy.ndarray, shape (...)
-///     Time from one least inclination to the next: infinite on an asymptotic path, NaN where the inclination
-///     is constant: on the paths "regular" and "steady".
+///     Time from one least inclination to the next: infinite in the mode "asymptotic", NaN where the inclination
+///     is constant: in the modes "regular" and "steady".
 /// mean_precession : float or numpy.ndarray, shape (...)
 ///     Mean rate at which the axis goes about the upward vertical, the mean of φ̇. Through the vertical φ jumps by half a
 ///     turn.
@@ -80,7 +80,7 @@ struct Start {
 /// >>> from polhode import RigidBody, euler_angles
 /// >>> body = RigidBody.from_principal(0.5, (2e-4, 2e-4, 3e-4), center_of_mass=(0, 0, 0.04))
 /// >>> top = body.heavy_top((0, 0, 150), euler_angles.to_quaternion((0, 0.6, 0)), gravity=(0, 0, -9.81))
-/// >>> top.path, top.nutation_limits.round(4), round(top.nutation_period, 5)
+/// >>> top.mode, top.nutation_limits.round(4), round(top.nutation_period, 5)
 /// ('cusp', array([0.6   , 0.7426]), 0.16619)
 #[pyclass(name = "HeavyTop", module = "polhode", frozen)]
 pub(crate) struct PyHeavyTop {
@@ -345,7 +345,7 @@ impl PyHeavyTop {
         slf
     }
 
-    /// One motion by its path and start; a stack by its shape.
+    /// One motion by its mode and start; a stack by its shape.
     fn __repr__(&self) -> String {
         if !self.motions.is_one() {
             let count = self.motions.rows.len();
@@ -355,8 +355,8 @@ impl PyHeavyTop {
             );
         }
         let [p, q, r]: [f64; 3] = self.starts[0].omega.into();
-        let path = self.motions[0].nutation().mode.name();
-        format!("<HeavyTop: {path}, omega=[{p:?}, {q:?}, {r:?}]>")
+        let mode = self.motions[0].nutation().mode.name();
+        format!("<HeavyTop: {mode}, omega=[{p:?}, {q:?}, {r:?}]>")
     }
 }
 
@@ -370,7 +370,7 @@ impl PyHeavyTop {
 
 #[pymethods]
 impl PyHeavyTop {
-    /// Path of the axis on a sphere about the pivot, as one of eight words.
+    /// How the axis moves on a sphere about the pivot, as one of eight words.
     ///
     /// ``"cusp"``: the axis rests whenever it is highest. ``"loop"``: its precession turns back while it is
     /// high. ``"wave"``: its precession never turns back. ``"regular"``: steady precession. ``"crossing"``:
@@ -379,7 +379,7 @@ impl PyHeavyTop {
     /// upright (a sleeping top), hanging, or because there is no weight. A string, or an array of them for a
     /// stack.
     #[getter]
-    fn path<'py>(&self, py: Python<'py>) -> Array<'py> {
+    fn mode<'py>(&self, py: Python<'py>) -> Array<'py> {
         write_words_of(
             py,
             &self.motions,
@@ -398,8 +398,8 @@ impl PyHeavyTop {
         Ok(write(py, &limits)?.into_any())
     }
 
-    /// Time from one least inclination to the next: infinite on an asymptotic path, NaN where the inclination is
-    /// constant: on the paths "regular" and "steady".
+    /// Time from one least inclination to the next: infinite in the mode "asymptotic", NaN where the inclination is
+    /// constant: in the modes "regular" and "steady".
     #[getter]
     fn nutation_period<'py>(&self, py: Python<'py>) -> Array<'py> {
         self.numbers(py, |nutation| nutation.period)

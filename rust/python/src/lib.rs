@@ -112,7 +112,9 @@ mod _core {
     #[pymodule_export]
     use crate::laminae::{annulus, disk, ellipse, polygon, rectangle, triangle};
     #[pymodule_export]
-    use crate::loads::{PyLoad, callback, compiled, schedule, torque_callback, with_states};
+    use crate::loads::{
+        PyLoad, PyWheel, callback, compiled, schedule, torque_callback, with_states,
+    };
     #[pymodule_export]
     use crate::orbits::{
         dipole_field, kepler_period, kepler_states, local_frames, oblate_states, sampled_states,

@@ -43,7 +43,7 @@ def cones(motion: FreeMotion, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
     """
     check_kind(motion, "motion", "FreeMotion")
     check_one(motion.shape, "motion")
-    momentum = motion.angular_momentum
+    momentum = motion.angular_momentum().spin
     size = float(lengths(momentum))
     if not size > 0.0:
         raise ValueError("motion: the body is at rest, and nothing rolls")

@@ -214,7 +214,7 @@ def polhode(
     else:
         inertia, path = motion.body.inertia, motion.polhode(361)
     principal = _core.principal_axes(inertia)
-    energy = float(motion.kinetic_energy)
+    energy = float(motion.kinetic_energy().rotational)
     if principal.moments[0] == 0.0:
         raise ValueError("motion: the body has a zero moment, and its ellipsoid no end")
     if not energy > 0.0:
@@ -277,7 +277,7 @@ def poinsot(
     found = motion.poinsot(times)
     if not np.isfinite(found.semi_axes).all():
         raise ValueError("motion: the body has a zero moment, and its ellipsoid no end")
-    if not np.linalg.norm(motion.angular_momentum) > 0.0:
+    if not np.linalg.norm(motion.angular_momentum().spin) > 0.0:
         raise ValueError("motion: the body is at rest, and nothing rolls")
     ax = axes_3d(ax)
     upright = to_upright(found.normal)

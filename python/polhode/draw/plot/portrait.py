@@ -194,14 +194,14 @@ def _read_gyrostat(
     motion = gyrostat
     if momentum is not None:
         raise ValueError(f"momentum: the motion has its own; leave {momentum:g} out, or pass motion.gyrostat")
-    size = float(np.linalg.norm(motion.angular_momentum))
+    size = float(np.linalg.norm(motion.angular_momentum().spin))
     if not size > 0.0:
         raise ValueError(
             "gyrostat: the angular momentum of this motion is zero; it has no direction in the body"
         )
     inertia = motion.gyrostat.inertia
     path = (motion.at(once_round(motion)).omega @ inertia + motion.rotor) / size
-    return inertia, motion.rotor / size, motion.equilibria, path
+    return inertia, motion.rotor / size, motion.equilibria(), path
 
 
 def _draw_path(ax: Axes3D, path: Floats) -> None:

@@ -132,7 +132,7 @@ def nutation(top: HeavyTop, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
     arrow(ax, 1.12 * path[-1], OMEGA_COLOR, "axis")
     low, high = np.rad2deg(top.nutation_limits)
     ax.text2D(
-        0.5, 0.02, f"path of the axis ({top.path}):\n{low:.2f}° to {high:.2f}° from the vertical",
+        0.5, 0.02, f"path of the axis ({top.mode}):\n{low:.2f}° to {high:.2f}° from the vertical",
         transform=ax.transAxes, ha="center", in_layout=False,
     )  # fmt: skip
     plain_frame(ax, (-1.05, -1.05, -1.05), (1.05, 1.05, 1.25))

@@ -32,7 +32,7 @@ use crate::stack::{Broadcast, Stack};
 /// >>> from polhode import loads
 /// >>> loads.constant_torque((0, 0, 1)) + 2 * loads.constant_torque((0, 2, 0), frame="space")
 /// <Load: constant_torque + 2.0 * constant_torque>
-#[pyclass(name = "Load", module = "polhode.loads", frozen)]
+#[pyclass(name = "Load", module = "polhode.loads", frozen, subclass)]
 #[derive(Default)]
 pub(crate) struct PyLoad {
     pub(super) parts: Vec<Part>,
@@ -55,6 +55,15 @@ impl PyLoad {
             part.name = Some(name.into());
         }
         self
+    }
+
+    /// The sum of the loads of these recipes.
+    pub(super) fn of_recipes(py: Python<'_>, recipes: Vec<Bound<'_, PyTuple>>) -> PyResult<Self> {
+        let mut sum = Self::default();
+        for recipe in recipes {
+            sum.parts.extend(rebuild(py, &recipe)?.parts);
+        }
+        Ok(sum)
     }
 
     pub(crate) fn clone_ref(&self, py: Python<'_>) -> PyResult<Self> {
@@ -475,11 +484,7 @@ impl PyLoad {
     /// The load that `__reduce__` took apart.
     #[staticmethod]
     fn _from_parts(py: Python<'_>, parts: Vec<Bound<'_, PyTuple>>) -> PyResult<Self> {
-        let mut sum = Self::default();
-        for recipe in parts {
-            sum.parts.extend(rebuild(py, &recipe)?.parts);
-        }
-        Ok(sum)
+        Self::of_recipes(py, parts)
     }
 
     /// The functions that made its terms; a stack also by its shape.

@@ -7,6 +7,7 @@
 //! | `load` | the sum of terms, and its states; one term, scaled, scheduled, picked; what Python's operators and pickle do with it |
 //! | `pickle_recipe` | how a term was made, for pickle |
 //! | `laws` | the functions that make loads |
+//! | `wheel` | the class `Wheel`, a record that is a load, and the function that makes one with a motor |
 //! | `registry` | which function makes which law |
 //! | `acting` | a load at work on a body, and what the body carries along under it |
 //! | `evaluate` | what a load exerts at a time and a state |
@@ -19,9 +20,11 @@ mod laws;
 mod load;
 mod pickle_recipe;
 mod registry;
+mod wheel;
 
 pub(crate) use acting::{Acting, Fault};
 pub(crate) use callbacks::{Named, Slot, report_states};
 pub(crate) use laws::{callback, compiled, schedule, torque_callback, with_states};
 pub(crate) use load::PyLoad;
 pub(crate) use registry::declare_laws;
+pub(crate) use wheel::{PyWheel, Turns};

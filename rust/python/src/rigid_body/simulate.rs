@@ -11,6 +11,7 @@ use crate::about::is_pivot;
 use crate::arrays::{read, read_scalar};
 use crate::attitudes::read_attitude_exactly;
 use crate::body::PyRigidBody;
+use crate::closed_form::origin;
 use crate::depth::RecursionGuard;
 use crate::errors::{at_row, to_py};
 use crate::events::Functions;
@@ -249,7 +250,7 @@ impl PyRigidBody {
         if let Some(Ok(states)) = states.map(|states| states.cast::<PyDict>()) {
             // Those of the load that do not follow from its numbers.
             let known = trajectory.getattr("__dict__")?;
-            known.set_item("_given", states.keys())?;
+            known.set_item("_origin", origin(py, "states", states.keys().to_tuple())?)?;
         }
         let failure = raises && has_failures;
         if let Err(stop) = interrupt.finish(py, !failure) {

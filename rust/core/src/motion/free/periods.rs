@@ -8,7 +8,8 @@ use super::motion::FreeMotion;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::{MultiPrecision, complete_first, complete_third};
 
-/// The periods of a free motion. Each mode has periods of its own; those that it does not have are NaN.
+/// The periods of a free motion, of a body or of a gyrostat. Each mode has periods of its own; those that it does not have
+/// are NaN.
 ///
 /// | motion | its periods |
 /// |---|---|
@@ -16,6 +17,7 @@ use crate::numerics::elliptic::{MultiPrecision, complete_first, complete_third};
 /// | symmetric body, ω not steady | `spin`, `precession` |
 /// | long-axis and short-axis mode | `rotation`, `precession`; `flip`, if the intermediate axis turns over |
 /// | separatrix | `precession`; `rotation` and `flip` are infinite |
+/// | gyrostat | `turn`, `wobble` of a steady rotation; else `rotation`, infinite on the separatrix |
 ///
 /// In long- and short-axis mode they follow the *long-axis convention* of the literature on tumbling asteroids: the Euler
 /// angles (ZXZ) refer to axis 1 of the body, that of the least moment, with L along z. φ is its precession about L and ψ the
@@ -43,7 +45,7 @@ pub struct Periods {
 }
 
 impl Periods {
-    const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         turn: f64::NAN,
         wobble: f64::NAN,
         spin: f64::NAN,

@@ -182,6 +182,12 @@ impl FreeMotion {
         momentum * inertia_unit * rate_unit
     }
 
+    /// L about the centre of mass at t = 0, components in B.
+    #[must_use]
+    pub fn angular_momentum_in_body(&self) -> Vector3<f64> {
+        (self.initial.attitude).inverse_transform_vector(&self.angular_momentum())
+    }
+
     /// The normal of the invariable plane: the unit vector along L, components in N. NaN without angular momentum.
     #[must_use]
     pub fn normal(&self) -> Vector3<f64> {

@@ -10,6 +10,7 @@
 //! | `internal_momentum.rs` | momentum and wheels, and the tensor that is left |
 //! | `mode.rs` | the ways to move |
 //! | `motion.rs` | a motion from its start, its states |
+//! | `periods.rs` | its periods |
 //! | `start.rs` | the frame of L and ω at the start, the matrix of the motion there, and the quartic that the spinor of L obeys |
 //! | `pencil.rs` | the real quartic of energy and momentum, the invariants of both; the discriminant next to a separatrix |
 //! | `curve.rs` | roots, periods and nome; where the start is on the curve: an elliptic logarithm by means |
@@ -62,6 +63,7 @@ mod internal_momentum;
 pub mod mode;
 mod motion;
 mod pencil;
+mod periods;
 mod products;
 mod propagator;
 mod spinor;

@@ -186,6 +186,12 @@ impl GyrostatMotion {
         }
     }
 
+    /// The angular momentum at t = 0, components in B.
+    #[must_use]
+    pub fn angular_momentum_in_body(&self) -> Vector3<f64> {
+        (self.initial.attitude).inverse_transform_vector(&self.angular_momentum)
+    }
+
     /// Attitude and ω at the time t; NaN for a t that is not finite, or beyond [`ClosedForm::reach`].
     ///
     /// The attitude is continuous in t as a quaternion, not only as a rotation.
