@@ -56,6 +56,15 @@ impl<L: Number, const R: usize> Batch<L, R> {
         Self([L::over(n); R])
     }
 
+    /// Compute `self / n`, as the product with 1/n.
+    #[inline(always)]
+    pub(super) fn quotient(mut self, n: usize) -> Self {
+        for row in 0..R {
+            self.0[row] = self.0[row].quotient(n);
+        }
+        self
+    }
+
     /// Return the number of one row, rounded to a double.
     #[inline(always)]
     pub(super) fn get(&self, row: usize) -> f64 {

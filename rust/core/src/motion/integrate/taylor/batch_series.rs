@@ -1,8 +1,7 @@
 //! The series of several motions in doubles, one motion in each lane.
 
 use super::batch::{Batch, CacheAligned};
-use super::series::increment;
-use super::series::{COUNT, Coefficient, RECIPROCALS, Series};
+use super::series::{AnyNumber, COUNT, Coefficient, Coefficients};
 use super::series::{add_squares, axis, from_squares, halved, roots};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
@@ -94,7 +93,9 @@ impl<L: Lane, const R: usize> Products<Batch<L, R>> {
     }
 }
 
-impl<L: Lane, const B: usize, const R: usize> Series<Batch<L, R>, B> for BatchSeries<L, B, R> {
+impl<L: Lane, const B: usize, const R: usize> Coefficients<Batch<L, R>, B>
+    for BatchSeries<L, B, R>
+{
     #[inline(always)]
     fn new() -> Self {
         let zero = Batch::new(0.0);
@@ -106,15 +107,6 @@ impl<L: Lane, const B: usize, const R: usize> Series<Batch<L, R>, B> for BatchSe
             directions: [[[zero; 3]; B]; COUNT],
             constant: NONE,
         }
-    }
-
-    #[inline(always)]
-    fn start(&mut self, state: &Coefficient<Batch<L, R>, B>) {
-        self.orders[0] = Order {
-            w: state.w,
-            q: state.q,
-        };
-        self.directions[0] = state.g;
     }
 
     fn set_constant_component(&mut self, constant: Option<usize>) {
@@ -129,11 +121,6 @@ impl<L: Lane, const B: usize, const R: usize> Series<Batch<L, R>, B> for BatchSe
             q,
             g: self.directions[k],
         }
-    }
-
-    #[inline(always)]
-    fn increment(&self, order: usize, h: Batch<L, R>) -> [Batch<L, R>; 7] {
-        increment(self, order, h)
     }
 
     type Sums = BatchSums<Batch<L, R>>;
@@ -151,17 +138,25 @@ impl<L: Lane, const B: usize, const R: usize> Series<Batch<L, R>, B> for BatchSe
     fn spins(sums: &Self::Sums) -> [Batch<L, R>; 3] {
         sums.spins
     }
+}
+
+impl<L: Lane, const B: usize, const R: usize> AnyNumber<Batch<L, R>, B> for BatchSeries<L, B, R> {
+    #[inline(always)]
+    fn put(&mut self, k: usize, at: &Coefficient<Batch<L, R>, B>) {
+        self.orders[k] = Order { w: at.w, q: at.q };
+        if k == 0 {
+            self.directions[0] = at.g;
+        }
+    }
 
     #[inline(always)]
-    fn extend(&mut self, k: usize, sums: &Self::Sums, acceleration: &[Batch<L, R>; 3]) {
-        let reciprocal = Batch::new(RECIPROCALS[k + 1]);
-        let half = Batch::new(0.5 * RECIPROCALS[k + 1]);
-        let [x, y, z] = *acceleration;
-        let [a, b, c, d] = sums.turned;
-        self.orders[k + 1] = Order {
-            w: [x * reciprocal, y * reciprocal, z * reciprocal],
-            q: [a * half, b * half, c * half, d * half],
-        };
+    fn attitude_sums(sums: &Self::Sums) -> [Batch<L, R>; 4] {
+        sums.turned
+    }
+
+    #[inline(always)]
+    fn direction_sums(_: &Self::Sums) -> Option<[[Batch<L, R>; 3]; B]> {
+        None
     }
 }
 

@@ -405,7 +405,7 @@ mod tests {
     use nalgebra::Matrix3;
 
     use super::*;
-    use crate::motion::integrate::taylor::series::Coefficient;
+    use crate::motion::integrate::taylor::series::{Coefficient, Coefficients};
     use crate::motion::integrate::taylor::single_series::SingleMotionSeries;
     use crate::motion::loads::{OMEGA, Steps};
 

@@ -18,11 +18,12 @@
 //! its parts are the first less the second, and the first plus the third.
 //! (Gauss's way; Knuth, The Art of Computer Programming 2, §4.6.4.)
 //!
-//! In doubles the sums are computed in two ways. [`SingleMotionSeries`](super::single_series::SingleMotionSeries) puts the
-//! components of one motion in the lanes. [`BatchSeries`](super::batch_series::BatchSeries) puts the same component of several
-//! motions in the lanes. Both add the same products in the same order, so a motion has the same bits in both.
-//! [`DoubleDoubleSeries`](super::double_double_series::DoubleDoubleSeries), for numbers of twice the precision, computes all
-//! twelve products.
+//! The recursion stands here once, for any numbers: [`Coefficients`] are stored, and their products added up, in the way of each kind. In doubles the sums are computed in two ways. [`BatchSeries`](super::batch_series::BatchSeries) puts
+//! the same component of several motions in the lanes. [`SingleMotionSeries`](super::single_series::SingleMotionSeries) puts the
+//! components of one motion in the lanes, and all of its recursion with them: in half the time of a batch of one.
+//! Both add the same products in the same order, so a motion has the same bits in both.
+//! [`DoubleDoubleSeries`](super::double_double_series::DoubleDoubleSeries) and
+//! [`VariationalSeries`](super::variational_series::VariationalSeries) compute all twelve products.
 //!
 //! The newest coefficients come last in a sum, because the processor may still be computing them. So a sum goes from the
 //! middle outward: first the product of order j < k/2 with k − j, then that of k − j with j.
@@ -52,17 +53,6 @@ pub(super) const COUNT: usize = MAX_ORDER_DOUBLE + 1;
 pub(super) const MAX_ORDER_DOUBLE_DOUBLE: usize = 40;
 pub(super) const MAX_COUNT: usize = MAX_ORDER_DOUBLE_DOUBLE + 1;
 
-/// The numbers 1/k.
-pub(super) const RECIPROCALS: [f64; COUNT] = {
-    let mut reciprocals = [0.0; COUNT];
-    let mut k = 1;
-    while k < COUNT {
-        reciprocals[k] = 1.0 / k as f64;
-        k += 1;
-    }
-    reciprocals
-};
-
 /// The coefficients of one order: ω in principal axes, (x, y, z, w) of the attitude, and `B` directions that are fixed in
 /// space as seen from the principal axes: the vertical `e_3` of three, or all of them.
 #[derive(Clone, Copy, Debug)]
@@ -72,12 +62,10 @@ pub(super) struct Coefficient<T, const B: usize> {
     pub(super) g: [[T; 3]; B],
 }
 
-/// The series of one motion or of several: coefficients of all orders, computed one order after the other.
-pub(super) trait Series<T, const B: usize> {
-    /// Return a series whose coefficients are all zero.
+/// The coefficients of all orders, of one motion or of several, and the sums of their products.
+pub(super) trait Coefficients<T, const B: usize> {
+    /// Return coefficients that are all zero.
     fn new() -> Self;
-    /// Set the coefficient of order zero.
-    fn start(&mut self, state: &Coefficient<T, B>);
     /// Set which component of ω is constant in all motions: the first, the third or none. Its coefficients of orders above zero
     /// are zero, so their products may be left out.
     fn set_constant_component(&mut self, _component: Option<usize>) {}
@@ -87,17 +75,90 @@ pub(super) trait Series<T, const B: usize> {
     fn rescale(&mut self, _ratio: f64) {}
     /// Return the coefficient of order `k`. Its directions are known once the sums of that order are computed.
     fn get(&self, k: usize) -> Coefficient<T, B>;
-    /// Compute the change of the state within the time `h`. The order is even. Horner's rule in h² runs for even and odd powers
-    /// side by side, because each product waits for the one before.
-    fn increment(&self, order: usize, h: T) -> [T; 7];
     /// Sums of products of one order.
     type Sums;
-    /// Compute the sums of order `k` from the coefficients up to k. Called for one order after the other.
+    /// Compute the sums of order `k` from the coefficients up to k. Called for one order after the other. The bits depend on the
+    /// order of the additions, which each kind of numbers has for itself.
     fn sums(&mut self, k: usize) -> Self::Sums;
     /// Return the sums of ω₂ω₃, ω₃ω₁ and ω₁ω₂.
     fn spins(sums: &Self::Sums) -> [T; 3];
+}
+
+/// The recursion, one order after the other.
+pub(super) trait Series<T, const B: usize>: Coefficients<T, B> {
+    /// Set the coefficient of order zero.
+    fn start(&mut self, state: &Coefficient<T, B>);
     /// Compute the coefficients of order k + 1 from the sums and the coefficient of ω̇, both of order `k`.
     fn extend(&mut self, k: usize, sums: &Self::Sums, acceleration: &[T; 3]);
+    /// Compute the change of the state within the time `h`. The order is even. Horner's rule in h² runs for even and odd powers
+    /// side by side, because each product waits for the one before.
+    fn increment(&self, order: usize, h: T) -> [T; 7];
+}
+
+/// The coefficients that the recursion needs of each kind of numbers.
+pub(super) trait AnyNumber<T, const B: usize>: Coefficients<T, B> {
+    /// Set the coefficient of order `k`; its directions only for order zero where [`Coefficients::sums`] computes them.
+    fn put(&mut self, k: usize, coefficient: &Coefficient<T, B>);
+    /// Return the sums of q∘ω.
+    fn attitude_sums(sums: &Self::Sums) -> [T; 4];
+    /// Return the sums of γ×ω for each direction; none where [`Coefficients::sums`] computes the directions.
+    fn direction_sums(sums: &Self::Sums) -> Option<[[T; 3]; B]>;
+}
+
+impl<L: Number, S: AnyNumber<Batch<L, R>, B>, const R: usize, const B: usize> Series<Batch<L, R>, B>
+    for S
+{
+    #[inline(always)]
+    fn start(&mut self, state: &Coefficient<Batch<L, R>, B>) {
+        self.put(0, state);
+    }
+
+    #[inline(always)]
+    fn increment(&self, order: usize, h: Batch<L, R>) -> [Batch<L, R>; 7] {
+        let square = h * h;
+        let mut odd = [Batch::new(0.0); 7];
+        let mut even = [Batch::new(0.0); 7];
+        for half in (1..=order / 2).rev() {
+            let (one, two) = (self.get(2 * half - 1), self.get(2 * half));
+            for i in 0..3 {
+                odd[i] = odd[i].mul_add(square, one.w[i]);
+                even[i] = even[i].mul_add(square, two.w[i]);
+            }
+            for i in 0..4 {
+                odd[3 + i] = odd[3 + i].mul_add(square, one.q[i]);
+                even[3 + i] = even[3 + i].mul_add(square, two.q[i]);
+            }
+        }
+        let mut sum = [Batch::new(0.0); 7];
+        for i in 0..7 {
+            sum[i] = even[i].mul_add(h, odd[i]) * h;
+        }
+        sum
+    }
+
+    #[inline(always)]
+    fn extend(&mut self, k: usize, sums: &S::Sums, acceleration: &[Batch<L, R>; 3]) {
+        // Loops, since closures would be compiled without the instructions of the level.
+        let mut next = Coefficient {
+            w: *acceleration,
+            q: S::attitude_sums(sums),
+            g: [[Batch::new(0.0); 3]; B],
+        };
+        for i in 0..3 {
+            next.w[i] = next.w[i].quotient(k + 1);
+        }
+        for i in 0..4 {
+            next.q[i] = next.q[i].quotient(2 * (k + 1));
+        }
+        if let Some(sums) = S::direction_sums(sums) {
+            for b in 0..B {
+                for i in 0..3 {
+                    next.g[b][i] = sums[b][i].quotient(k + 1);
+                }
+            }
+        }
+        self.put(k + 1, &next);
+    }
 }
 
 /// Return the axis of space that is direction `b` of `B`.
@@ -184,34 +245,6 @@ pub(super) fn direction_in_body<L: Number, const R: usize>(
         direction[i] = (-w).mul_add(t[i], e[i]) + direction[i];
     }
     direction
-}
-
-/// Compute [`Series::increment`] from the coefficients.
-#[inline(always)]
-pub(super) fn increment<L: Number, const R: usize, const B: usize>(
-    series: &impl Series<Batch<L, R>, B>,
-    order: usize,
-    h: Batch<L, R>,
-) -> [Batch<L, R>; 7] {
-    let square = h * h;
-    let mut odd = [Batch::new(0.0); 7];
-    let mut even = [Batch::new(0.0); 7];
-    for half in (1..=order / 2).rev() {
-        let (one, two) = (series.get(2 * half - 1), series.get(2 * half));
-        for i in 0..3 {
-            odd[i] = odd[i].mul_add(square, one.w[i]);
-            even[i] = even[i].mul_add(square, two.w[i]);
-        }
-        for i in 0..4 {
-            odd[3 + i] = odd[3 + i].mul_add(square, one.q[i]);
-            even[3 + i] = even[3 + i].mul_add(square, two.q[i]);
-        }
-    }
-    let mut sum = [Batch::new(0.0); 7];
-    for i in 0..7 {
-        sum[i] = even[i].mul_add(h, odd[i]) * h;
-    }
-    sum
 }
 
 #[cfg(test)]
