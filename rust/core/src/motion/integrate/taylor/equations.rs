@@ -10,8 +10,8 @@ use crate::mass::validity::ROUNDING;
 use crate::motion::kinematics::Frame;
 use crate::motion::loads::variables::{ATTITUDE, MASS, RATES, Variables};
 use crate::motion::loads::{
-    BodyAtPoint, Forcing, InternalState, LawNumber, PrincipalFrame, SeriesStructure, SeriesTerms,
-    Term, TorqueFormula, When,
+    BodyAtPoint, Forcing, InternalState, LawNumber, ParameterColumns, PrincipalFrame,
+    SeriesStructure, SeriesTerms, Term, TorqueFormula, When,
 };
 use crate::motion::problem::Task;
 use crate::motion::problem::limits::check_steps;
@@ -26,9 +26,9 @@ use crate::numerics::quaternion::{conjugate, normalized, product};
 pub(super) struct PiecewiseEquations<'a, X: Precision> {
     task: Task<'a>,
     terms: &'a [Term],
-    /// The variables of the derivatives, and the first column of each term.
+    /// The variables of the derivatives, and the columns of each term; last those of the states of the load.
     variables: X::Variables,
-    firsts: Vec<usize>,
+    parameters: Vec<ParameterColumns>,
     axes: Matrix3<X>,
     q_bp: [X; 4],
     kappa: Vector3<X>,
@@ -63,10 +63,10 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         terms: &'a [Term],
         variables: X::Variables,
     ) -> Result<Self, Error> {
-        // After those of all terms stand the states of the load.
-        let firsts = variables.columns(&mut terms.iter().map(Term::count).chain([0]));
+        let each = terms.iter().map(Term::parameters);
+        let parameters = variables.columns(&mut each.chain([Vec::new()]));
         let principal = X::subtract_wheels(X::principal(task, variables), |principal| {
-            free_wheel_tensor(task, terms, principal, variables, &firsts)
+            free_wheel_tensor(task, terms, principal, variables, &parameters)
         });
         let ([i1, i2, i3], [d1, d2, d3]) = (principal.moments, principal.differences);
         let one = X::one();
@@ -83,7 +83,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
             task: task.clone(),
             terms,
             variables,
-            firsts,
+            parameters,
             axes: principal.axes,
             q_bp: principal.q_bp,
             kappa: Vector3::new(
@@ -125,8 +125,8 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
     fn linearize(&mut self, state: &[X; 7]) -> Result<(), Error> {
         let mut linear = SeriesTerms::default();
         let mut switches: Vec<Switch<X>> = Vec::new();
-        for (first, term) in self.acting(self.segment_start(), self.breaks[self.segment]) {
-            let (axes, mut side) = (self.principal_axes(first), 1.0);
+        for (index, term) in self.acting(self.segment_start(), self.breaks[self.segment]) {
+            let (axes, mut side) = (self.principal_axes(index), 1.0);
             if let Some(scalar) = term.switch_function(&axes) {
                 let torque = Matrix3x4::zeros();
                 let mut switch = Switch {
@@ -152,14 +152,15 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         Ok(())
     }
 
-    /// Return the axes for the term whose first number is the variable of the column `first`.
-    fn principal_axes(&self, first: usize) -> PrincipalFrame<'_, X> {
+    /// Return the axes for the term of this index.
+    fn principal_axes(&self, index: usize) -> PrincipalFrame<'_, X> {
         PrincipalFrame {
             body: &self.task.body_at_point,
             columns: &self.axes,
             q_bp: &self.q_bp,
             variables: self.variables,
-            first,
+            parameters: columns_of(&self.parameters, index),
+            term: index,
             middle: self.middle(),
         }
     }
@@ -211,13 +212,10 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         Ok(())
     }
 
-    /// Iterate over the terms that act between two breaks, each with the column of its first number.
+    /// Iterate over the terms that act between two breaks, each with its index.
     fn acting(&self, from: f64, to: f64) -> impl Iterator<Item = (usize, &'a Term)> {
         let middle = from + 0.5 * (to - from);
-        (self.terms.iter().enumerate()).filter_map(move |(k, term)| {
-            let first = self.firsts.get(k).copied().unwrap_or(0);
-            Some((first, term.active(middle)?))
-        })
+        (self.terms.iter().enumerate()).filter_map(move |(k, term)| Some((k, term.active(middle)?)))
     }
 
     fn segment_start(&self) -> f64 {
@@ -408,8 +406,8 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
             middle: self.middle(),
             unit: self.unit,
         };
-        for (first, torque) in &self.linear.timed {
-            let axes = self.principal_axes(*first);
+        for (index, torque) in &self.linear.timed {
+            let axes = self.principal_axes(*index);
             for (k, torque_k) in torque.cubic(&axes, &when).iter().enumerate() {
                 match torque.frame() {
                     Frame::Body => forcing.in_body[k] += axes.principal(torque_k),
@@ -418,8 +416,8 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
             }
         }
         if !forcing.has_orbits {
-            for (first, gradient) in &self.linear.gradients {
-                let on_orbit = gradient.on_orbit(&self.principal_axes(*first), &when);
+            for (index, gradient) in &self.linear.gradients {
+                let on_orbit = gradient.on_orbit(&self.principal_axes(*index), &when);
                 forcing.orbits.push(on_orbit);
             }
         }
@@ -492,7 +490,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
 
     /// Compute the states of the load at the start; vectors among them in principal axes.
     pub(super) fn internal_states_at_start(&self) -> Vec<X> {
-        let first = self.firsts.get(self.terms.len()).copied().unwrap_or(0);
+        let first = columns_of(&self.parameters, self.terms.len()).first();
         let given = self.task.initial.internal_state.iter().enumerate();
         let given: Vec<X> = given
             .map(|(i, &x)| self.variables.number(x, first + i))
@@ -641,7 +639,7 @@ fn free_wheel_tensor<X: Precision>(
     terms: &[Term],
     principal: &PrincipalInertia<X>,
     variables: X::Variables,
-    firsts: &[usize],
+    parameters: &[ParameterColumns],
 ) -> Matrix3<X> {
     let mut linear = SeriesTerms::default();
     for (k, term) in terms.iter().enumerate() {
@@ -651,13 +649,19 @@ fn free_wheel_tensor<X: Precision>(
                 columns: &principal.axes,
                 q_bp: &principal.q_bp,
                 variables,
-                first: firsts.get(k).copied().unwrap_or(0),
+                parameters: columns_of(parameters, k),
+                term: k,
                 middle: task.times[0],
             };
             term.add_to(&mut linear, &axes, 1.0);
         }
     }
     linear.turning
+}
+
+/// Return the columns of the numbers of a term; none where nothing is varied.
+fn columns_of(parameters: &[ParameterColumns], index: usize) -> &ParameterColumns {
+    parameters.get(index).unwrap_or(ParameterColumns::NONE)
 }
 
 fn quotient_or_zero<X: Real>(number: X, moment: X) -> X {
@@ -678,14 +682,15 @@ pub(super) fn parts<X: LawNumber>(
 ) -> SeriesStructure {
     let (zero, one) = (X::zero(), X::one());
     let mut linear = SeriesTerms::default();
-    let firsts = variables.columns(&mut terms.iter().map(Term::count));
+    let parameters = variables.columns(&mut terms.iter().map(Term::parameters));
     for (k, term) in terms.iter().enumerate() {
         let axes = PrincipalFrame {
             body: subject,
             columns: &Matrix3::identity(),
             q_bp: &[zero, zero, zero, one],
             variables,
-            first: firsts.get(k).copied().unwrap_or(0),
+            parameters: columns_of(&parameters, k),
+            term: k,
             middle: subject.start,
         };
         term.add_to(&mut linear, &axes, 1.0);

@@ -95,7 +95,8 @@ impl Feedback {
     fn error_columns<X: LawNumber>(&self, axes: &PrincipalFrame<'_, X>) -> [[X; 4]; 4] {
         // One that moves has no series: the law toward the attitude that it has at the start.
         let (target, _) = self.target.at(axes.body.start, axes.body.start);
-        let left = (axes.variables).turned(X::quaternion(&target), axes.first + 18);
+        let left =
+            (axes.variables).turned(X::quaternion(&target), axes.parameters.of("target").start);
         let [o, l] = [X::zero(), X::one()];
         let units = [[l, o, o, o], [o, l, o, o], [o, o, l, o], [o, o, o, l]];
         units.map(|unit| product(product(conjugate(left), unit), conjugate(*axes.q_bp)))
@@ -166,8 +167,8 @@ impl Law for Feedback {
         axes: &PrincipalFrame<'_, X>,
         side: f64,
     ) {
-        series.add_on_omega(&-axes.tensor(&axes.matrix(&self.damping, 9)));
-        let stiffness = (axes.columns).tr_mul(&axes.matrix(&self.stiffness, 0));
+        series.add_on_omega(&-axes.tensor(&axes.matrix(&self.damping, "D")));
+        let stiffness = (axes.columns).tr_mul(&axes.matrix(&self.stiffness, "K"));
         let columns = self.error_columns(axes);
         let vector = Matrix3x4::from_columns(&columns.map(|[x, y, z, _]| Vector3::new(x, y, z)));
         series.add_on_attitude(&-(stiffness * vector * X::from(side)));

@@ -90,7 +90,9 @@ impl Law for Rotor {
         axes: &PrincipalFrame<'_, X>,
         _: f64,
     ) {
-        let [x, y, z] = axes.principal(&axes.vector(&self.momentum, 0)).into();
+        let [x, y, z] = axes
+            .principal(&axes.vector(&self.momentum, "momentum"))
+            .into();
         let o = X::zero();
         // h × ω.
         series.add_on_omega(&Matrix3::new(o, -z, y, z, o, -x, -y, x, o));
