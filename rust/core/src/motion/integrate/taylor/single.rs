@@ -3,8 +3,8 @@
 use std::hint::black_box;
 
 use super::batch::Batch;
+use super::directions::{PairSums, ROOTS, axis, from_squares};
 use super::series::{COUNT, Coefficient, Coefficients, Series};
-use super::series::{PairSums, ROOTS, axis, from_squares};
 use crate::numerics::lane::Lane;
 use crate::numerics::number::Number;
 
