@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-use super::directions::{add_squares, axis, from_squares, halved, roots};
+use super::directions::{add_squares, axis, from_squares, halve, roots};
 use super::series::{AnyNumber, COUNT, Coefficient, Coefficients};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
@@ -271,20 +271,27 @@ impl<L: Lane, const B: usize, const R: usize> Coefficients<Batch<L, R>, B>
 
 impl<L: Lane, const B: usize, const R: usize> AnyNumber<Batch<L, R>, B> for BatchSeries<L, B, R> {
     #[inline(always)]
-    fn put(&mut self, k: usize, at: &Coefficient<Batch<L, R>, B>) {
-        self.orders[k] = Order { w: at.w, q: at.q };
-        if k == 0 {
-            self.directions[0] = at.g;
-        }
+    fn put_omega(&mut self, k: usize, i: usize, x: Batch<L, R>) {
+        self.orders[k].w[i] = x;
     }
 
     #[inline(always)]
-    fn attitude_sums(sums: &Self::Sums) -> [Batch<L, R>; 4] {
-        sums.turned
+    fn put_attitude(&mut self, k: usize, i: usize, x: Batch<L, R>) {
+        self.orders[k].q[i] = x;
     }
 
     #[inline(always)]
-    fn direction_sums(_: &Self::Sums) -> Option<[[Batch<L, R>; 3]; B]> {
+    fn put_direction(&mut self, k: usize, b: usize, i: usize, x: Batch<L, R>) {
+        self.directions[k][b][i] = x;
+    }
+
+    #[inline(always)]
+    fn attitude_sum(sums: &Self::Sums, i: usize) -> Batch<L, R> {
+        sums.turned[i]
+    }
+
+    #[inline(always)]
+    fn direction_sum(_: &Self::Sums, _: usize, _: usize) -> Option<Batch<L, R>> {
         None
     }
 }
@@ -376,7 +383,7 @@ impl<L: Lane, const R: usize, const B: usize> Squares<Batch<L, R>, B> {
     fn add_middle_along(&mut self, b: usize, middle: &Order<Batch<L, R>>) {
         if let Some(sums) = self.0.get_mut(b) {
             let roots = roots(axis::<B>(b), &middle.q);
-            *sums = add_squares(*sums, &halved(&roots), &roots);
+            *sums = add_squares(*sums, &halve(&roots), &roots);
         }
     }
 

@@ -78,7 +78,7 @@ pub(super) fn add_squares<L: Lane, const R: usize>(
 }
 
 #[inline(always)]
-pub(super) fn halved<L: Lane, const R: usize>(roots: &[Batch<L, R>; 6]) -> [Batch<L, R>; 6] {
+pub(super) fn halve<L: Lane, const R: usize>(roots: &[Batch<L, R>; 6]) -> [Batch<L, R>; 6] {
     let half = Batch::new(0.5);
     let [a, b, c, d, e, f] = *roots;
     [a * half, b * half, c * half, d * half, e * half, f * half]
@@ -103,7 +103,7 @@ pub(super) fn direction_in_body<L: Number, const R: usize>(
 
 #[cfg(test)]
 mod tests {
-    use super::{Batch, add_squares, axis, from_squares, halved, roots};
+    use super::{Batch, add_squares, axis, from_squares, halve, roots};
     use crate::numerics::lane::{Double, Lane};
 
     type One = Batch<Double<false>, 1>;
@@ -140,7 +140,7 @@ mod tests {
                 };
                 let mut sums = [One::new(0.0); 6];
                 if k % 2 == 0 {
-                    sums = add_squares(sums, &halved(&root(k / 2)), &root(k / 2));
+                    sums = add_squares(sums, &halve(&root(k / 2)), &root(k / 2));
                 }
                 for j in 0..k.div_ceil(2) {
                     sums = add_squares(sums, &root(j), &root(k - j));

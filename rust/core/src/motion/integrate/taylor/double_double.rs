@@ -159,25 +159,32 @@ impl<L: Lane, const B: usize, const W: usize> AnyNumber<Double<L>, B>
     for DoubleDoubleSeries<L, B, W>
 {
     #[inline(always)]
-    fn put(&mut self, k: usize, at: &Coefficient<Double<L>, B>) {
-        self.orders[k] = Order::new(at);
-        self.plain[k] = *at;
+    fn put_omega(&mut self, k: usize, i: usize, x: Double<L>) {
+        self.plain[k].w[i] = x;
     }
 
     #[inline(always)]
-    fn attitude_sums(sums: &Self::Sums) -> [Double<L>; 4] {
-        let turned = &sums.turned;
-        [turned.get(0), turned.get(1), turned.get(2), turned.get(3)]
+    fn put_attitude(&mut self, k: usize, i: usize, x: Double<L>) {
+        self.plain[k].q[i] = x;
     }
 
     #[inline(always)]
-    fn direction_sums(sums: &Self::Sums) -> Option<[[Double<L>; 3]; B]> {
-        let mut crossed = [[Batch::new(0.0); 3]; B];
-        for b in 0..B {
-            for i in 0..3 {
-                crossed[b][i] = sums.turned.get(4 + 3 * b + i);
-            }
-        }
-        Some(crossed)
+    fn put_direction(&mut self, k: usize, b: usize, i: usize, x: Double<L>) {
+        self.plain[k].g[b][i] = x;
+    }
+
+    #[inline(always)]
+    fn complete(&mut self, k: usize) {
+        self.orders[k] = Order::new(&self.plain[k]);
+    }
+
+    #[inline(always)]
+    fn attitude_sum(sums: &Self::Sums, i: usize) -> Double<L> {
+        sums.turned.get(i)
+    }
+
+    #[inline(always)]
+    fn direction_sum(sums: &Self::Sums, b: usize, i: usize) -> Option<Double<L>> {
+        Some(sums.turned.get(4 + 3 * b + i))
     }
 }

@@ -83,12 +83,16 @@ pub(super) trait Series<T, const B: usize>: Coefficients<T, B> {
 
 /// The coefficients that the recursion needs of each kind of numbers.
 pub(super) trait AnyNumber<T, const B: usize>: Coefficients<T, B> {
-    /// Set the coefficient of order `k`; its directions only for order zero where [`Coefficients::sums`] computes them.
-    fn put(&mut self, k: usize, coefficient: &Coefficient<T, B>);
-    /// Return the sums of q∘ω.
-    fn attitude_sums(sums: &Self::Sums) -> [T; 4];
-    /// Return the sums of γ×ω for each direction; none where [`Coefficients::sums`] computes the directions.
-    fn direction_sums(sums: &Self::Sums) -> Option<[[T; 3]; B]>;
+    /// Set component `i` of ω, of the attitude or of direction `b` in the coefficient of order `k`.
+    fn put_omega(&mut self, k: usize, i: usize, x: T);
+    fn put_attitude(&mut self, k: usize, i: usize, x: T);
+    fn put_direction(&mut self, k: usize, b: usize, i: usize, x: T);
+    /// Prepare the products with the coefficient of order `k`, of which all numbers are set.
+    fn complete(&mut self, _k: usize) {}
+    /// Return component `i` of the sums of q∘ω.
+    fn attitude_sum(sums: &Self::Sums, i: usize) -> T;
+    /// Return component `i` of the sums of γ×ω for direction `b`; none where [`Coefficients::sums`] computes the directions.
+    fn direction_sum(sums: &Self::Sums, b: usize, i: usize) -> Option<T>;
 }
 
 impl<L: Number, S: AnyNumber<Batch<L, R>, B>, const R: usize, const B: usize> Series<Batch<L, R>, B>
@@ -96,7 +100,18 @@ impl<L: Number, S: AnyNumber<Batch<L, R>, B>, const R: usize, const B: usize> Se
 {
     #[inline(always)]
     fn start(&mut self, state: &Coefficient<Batch<L, R>, B>) {
-        self.put(0, state);
+        for i in 0..3 {
+            self.put_omega(0, i, state.w[i]);
+        }
+        for i in 0..4 {
+            self.put_attitude(0, i, state.q[i]);
+        }
+        for b in 0..B {
+            for i in 0..3 {
+                self.put_direction(0, b, i, state.g[b][i]);
+            }
+        }
+        self.complete(0);
     }
 
     #[inline(always)]
@@ -124,25 +139,21 @@ impl<L: Number, S: AnyNumber<Batch<L, R>, B>, const R: usize, const B: usize> Se
 
     #[inline(always)]
     fn extend(&mut self, k: usize, sums: &S::Sums, acceleration: &[Batch<L, R>; 3]) {
-        // Loops, since closures would be compiled without the instructions of the level.
-        let mut next = Coefficient {
-            w: *acceleration,
-            q: S::attitude_sums(sums),
-            g: [[Batch::new(0.0); 3]; B],
-        };
+        // Number by number: a whole coefficient with derivatives would be copied.
         for i in 0..3 {
-            next.w[i] = next.w[i].quotient(k + 1);
+            self.put_omega(k + 1, i, acceleration[i].quotient(k + 1));
         }
         for i in 0..4 {
-            next.q[i] = next.q[i].quotient(2 * (k + 1));
+            let sum = S::attitude_sum(sums, i);
+            self.put_attitude(k + 1, i, sum.quotient(2 * (k + 1)));
         }
-        if let Some(sums) = S::direction_sums(sums) {
-            for b in 0..B {
-                for i in 0..3 {
-                    next.g[b][i] = sums[b][i].quotient(k + 1);
+        for b in 0..B {
+            for i in 0..3 {
+                if let Some(sum) = S::direction_sum(sums, b, i) {
+                    self.put_direction(k + 1, b, i, sum.quotient(k + 1));
                 }
             }
         }
-        self.put(k + 1, &next);
+        self.complete(k + 1);
     }
 }

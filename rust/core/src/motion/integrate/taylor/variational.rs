@@ -127,32 +127,28 @@ impl<const B: usize> Coefficients<One, B> for VariationalSeries<B> {
 
 impl<const B: usize> AnyNumber<One, B> for VariationalSeries<B> {
     #[inline(always)]
-    fn put(&mut self, k: usize, at: &Coefficient<One, B>) {
-        for (row, Batch([x])) in self.w.iter_mut().zip(&at.w) {
-            row.set(k, x);
-        }
-        for (row, Batch([x])) in self.q.iter_mut().zip(&at.q) {
-            row.set(k, x);
-        }
-        let directions = at.g.as_flattened();
-        for (row, Batch([x])) in self.g.as_flattened_mut().iter_mut().zip(directions) {
-            row.set(k, x);
-        }
+    fn put_omega(&mut self, k: usize, i: usize, Batch([x]): One) {
+        self.w[i].set(k, &x);
     }
 
     #[inline(always)]
-    fn attitude_sums(sums: &Products<B>) -> [One; 4] {
-        let [x, y, z, w] = sums.turned;
-        [Batch([x]), Batch([y]), Batch([z]), Batch([w])]
+    fn put_attitude(&mut self, k: usize, i: usize, Batch([x]): One) {
+        self.q[i].set(k, &x);
     }
 
     #[inline(always)]
-    fn direction_sums(sums: &Products<B>) -> Option<[[One; 3]; B]> {
-        let mut crossed = [[Batch::new(0.0); 3]; B];
-        for (row, [x, y, z]) in crossed.iter_mut().zip(&sums.crossed) {
-            *row = [Batch([*x]), Batch([*y]), Batch([*z])];
-        }
-        Some(crossed)
+    fn put_direction(&mut self, k: usize, b: usize, i: usize, Batch([x]): One) {
+        self.g[b][i].set(k, &x);
+    }
+
+    #[inline(always)]
+    fn attitude_sum(sums: &Products<B>, i: usize) -> One {
+        Batch([sums.turned[i]])
+    }
+
+    #[inline(always)]
+    fn direction_sum(sums: &Products<B>, b: usize, i: usize) -> Option<One> {
+        Some(Batch([sums.crossed[b][i]]))
     }
 }
 
