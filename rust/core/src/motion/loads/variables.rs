@@ -38,7 +38,7 @@ pub(crate) trait Variables<X: Real>: Copy + Debug + Send + Sync {
     fn number(self, value: f64, column: usize) -> X;
 
     /// The attitude `q∘exp(δ)` (x, y, z, w), the components of the small rotation δ being the variables from `column` on.
-    fn turned(self, q: [X; 4], column: usize) -> [X; 4];
+    fn vary_attitude(self, q: [X; 4], column: usize) -> [X; 4];
 
     /// Whether one of these columns is varied.
     fn varies(self, columns: Range<usize>) -> bool;
@@ -71,7 +71,7 @@ impl<X: Real> Variables<X> for Fixed {
         X::from(value)
     }
 
-    fn turned(self, q: [X; 4], _: usize) -> [X; 4] {
+    fn vary_attitude(self, q: [X; 4], _: usize) -> [X; 4] {
         q
     }
 
@@ -104,7 +104,7 @@ impl Variables<Varied> for Block {
         }
     }
 
-    fn turned(self, q: [Varied; 4], column: usize) -> [Varied; 4] {
+    fn vary_attitude(self, q: [Varied; 4], column: usize) -> [Varied; 4] {
         let half = Varied::constant(0.5);
         let [x, y, z] = [0, 1, 2].map(|i| self.number(0.0, column + i) * half);
         product(q, [x, y, z, Varied::constant(1.0)])

@@ -655,11 +655,11 @@ where
         let order = self.settings.order;
         let change = self.series.increment(order, within);
         let change = self.nonlinear.change_in_space(change);
-        let state = self.state.moved(&change, row);
+        let state = self.state.state_after(&change, row);
         // Without `map`: its closure would be compiled without the instructions of the level.
         let position_velocity = match &self.translation {
             Some(translation) => {
-                Some(translation.moved(&translation.increment(order, within), row))
+                Some(translation.state_after(&translation.increment(order, within), row))
             }
             None => None,
         };

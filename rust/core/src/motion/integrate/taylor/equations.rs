@@ -449,7 +449,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         let Phase {
             attitude, omega, ..
         } = self.task.initial;
-        let attitude = (self.variables).turned(X::quaternion(&attitude), ATTITUDE);
+        let attitude = (self.variables).vary_attitude(X::quaternion(&attitude), ATTITUDE);
         let [x, y, z, w] = product(attitude, self.q_bp);
         let omega = self.variables.vector(&omega, RATES);
         let omega = self.axes.tr_mul(&omega) / X::from(self.unit);

@@ -49,7 +49,7 @@ impl<L: Lane, const W: usize> Components<L, W> {
 impl<L: Lane> Components<L, 4> {
     /// Compute the sums of pairs, with the signs from [`Signs`].
     #[inline(always)]
-    fn mixed(&self, pairs: &PairSums, signs: &Components<L, 8>) -> Components<L, 8> {
+    fn sum_pairs(&self, pairs: &PairSums, signs: &Components<L, 8>) -> Components<L, 8> {
         let mut row = Components::new();
         for i in 0..8 {
             row.0[i] = signs.0[i].mul_add(self.0[pairs.second[i]], self.0[pairs.first[i]]);
@@ -141,9 +141,10 @@ impl<L: Lane, const B: usize> Order<L, B> {
     #[inline(always)]
     fn new(w: [L; 3], q: Components<L, 4>, signs: &Signs<L, B>) -> Self {
         let [w0, w1, w2] = w;
-        let [l0, l1, l2, l3, l4, l5, l6, l7] = q.mixed(&LEFT, &signs.left).0;
-        let [r0, r1, r2, r3, r4, r5, r6, r7] =
-            Components([w0, w1, w2, w2]).mixed(&RIGHT, &signs.right).0;
+        let [l0, l1, l2, l3, l4, l5, l6, l7] = q.sum_pairs(&LEFT, &signs.left).0;
+        let [r0, r1, r2, r3, r4, r5, r6, r7] = Components([w0, w1, w2, w2])
+            .sum_pairs(&RIGHT, &signs.right)
+            .0;
         let [x, y, z, s] = q.0;
         let mut order = Self {
             state: Components([x, y, z, s, w0, w1, w2, L::new(0.0)]),
@@ -154,7 +155,7 @@ impl<L: Lane, const B: usize> Order<L, B> {
             ..Self::none()
         };
         for b in 0..B {
-            order.roots[b] = q.mixed(&ROOTS[axis::<B>(b)], &signs.roots[b]);
+            order.roots[b] = q.sum_pairs(&ROOTS[axis::<B>(b)], &signs.roots[b]);
         }
         order
     }

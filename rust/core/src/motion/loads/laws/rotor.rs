@@ -120,11 +120,11 @@ impl Carried for Rotor {
         Vec::new()
     }
 
-    fn reported(&self, _: &[f64], _: &Vector3<f64>) -> Vec<f64> {
+    fn report_states(&self, _: &[f64], _: &Vector3<f64>) -> Vec<f64> {
         Vec::new()
     }
 
-    fn resumed(&self, _: &[f64], _: f64, _: &Vector3<f64>) -> Vec<f64> {
+    fn resume_states(&self, _: &[f64], _: f64, _: &Vector3<f64>) -> Vec<f64> {
         Vec::new()
     }
 

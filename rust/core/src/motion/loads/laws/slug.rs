@@ -149,11 +149,11 @@ impl Carried for Slug {
             .collect()
     }
 
-    fn reported(&self, state: &[f64], _: &Vector3<f64>) -> Vec<f64> {
+    fn report_states(&self, state: &[f64], _: &Vector3<f64>) -> Vec<f64> {
         state.to_vec()
     }
 
-    fn resumed(&self, reported: &[f64], _: f64, _: &Vector3<f64>) -> Vec<f64> {
+    fn resume_states(&self, reported: &[f64], _: f64, _: &Vector3<f64>) -> Vec<f64> {
         reported.to_vec()
     }
 

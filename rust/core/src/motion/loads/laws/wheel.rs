@@ -151,7 +151,7 @@ impl Law for Wheel {
             keeps: Kept::All,
             has_series: !matches!(self.drive, Drive::Limited(..))
                 && self.bearing().is_none()
-                && (self.feedback()).is_none_or(|law| law.target.fixed().is_some()),
+                && (self.feedback()).is_none_or(|law| law.target.as_fixed().is_some()),
         }
     }
 
@@ -327,7 +327,7 @@ impl Carried for Wheel {
         self.has_speed()
     }
 
-    fn reported(&self, state: &[f64], omega: &Vector3<f64>) -> Vec<f64> {
+    fn report_states(&self, state: &[f64], omega: &Vector3<f64>) -> Vec<f64> {
         vec![if self.has_speed() {
             state[0] + self.inertia * self.unit.dot(omega)
         } else {
@@ -335,7 +335,7 @@ impl Carried for Wheel {
         }]
     }
 
-    fn resumed(&self, reported: &[f64], t: f64, omega: &Vector3<f64>) -> Vec<f64> {
+    fn resume_states(&self, reported: &[f64], t: f64, omega: &Vector3<f64>) -> Vec<f64> {
         if self.has_speed() {
             self.begin(t, omega)
         } else {
