@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use arbitrary::Result;
 use nalgebra::{Matrix3, Vector3};
-use polhode::motion::attitude::{self, from_components, from_matrix, restored};
+use polhode::motion::attitude::{self, from_components, from_matrix, normalize};
 use polhode::motion::euler_angles::{SINGULAR, Sequence};
 use polhode::motion::free_precession::free_precession;
 use polhode::motion::kinematics::{Frame, point_acceleration, point_velocity, transport};
@@ -105,7 +105,7 @@ fn attitudes(mut draw: Draw<'_>) -> Result<()> {
         assert!(off.fold(0.0, f64::max) <= 2e-8);
     }
     let q = draw.attitude()?;
-    is_unit(&restored(q.as_ref()));
+    is_unit(&normalize(q.as_ref()));
     assert!(from_components("attitude", &attitude::components(&q)).is_ok());
     let R = q.to_rotation_matrix().into_inner();
     let back = from_matrix(&R);

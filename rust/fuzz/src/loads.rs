@@ -67,7 +67,7 @@ pub fn term(draw: &mut Draw<'_>) -> Result<Made> {
             } else {
                 Term::constant_torque(&draw.vector()?, frame(draw)?)
             };
-            Windows::new(&windows).and_then(|windows| inner?.scheduled(&windows))
+            Windows::new(&windows).and_then(|windows| inner?.schedule(&windows))
         }
         9 => Rotor::new(&draw.vector()?).map(Term::Rotor),
         10 => Slug::new(draw.positive()?, draw.positive()?).map(Term::Slug),

@@ -83,7 +83,7 @@ impl PyFreeMotion {
             let refined = Broadcast::of(["body"], [&bodies.shape])?
                 .try_map(py, |[b]| Ok(RefinedPrincipal::of(&bodies[b])))?;
             starts.try_map(py, |[b, w, q]| {
-                FreeMotion::refined(&refined[b], &omega[w], &attitude[q])
+                FreeMotion::from_refined(&refined[b], &omega[w], &attitude[q])
             })?
         };
         Ok(Self {
@@ -278,7 +278,7 @@ impl PyFreeMotion {
         let attitude = quaternion.map(py, |&[x, y, z, w]| {
             UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)) // to the last bit
         })?;
-        let uncertain = UncertainStart::restored(uncertain_start);
+        let uncertain = UncertainStart::restore(uncertain_start);
         let motion = Self::new(py, body, &read(omega, "omega")?, &attitude, uncertain)?;
         Ok(Self {
             from_periods,
@@ -989,7 +989,7 @@ impl PyRigidBody {
         let (given, uncertain) = (room
             .call_method1("start_from_periods", (motion.into_pyobject(py)?, given))?)
         .extract::<(Py<PyAny>, _)>()?;
-        let uncertain = UncertainStart::restored(uncertain);
+        let uncertain = UncertainStart::restore(uncertain);
         let motion = PyFreeMotion::new(py, slf, &omega, &attitude, uncertain)?;
         Ok(PyFreeMotion {
             from_periods: Some(given),

@@ -333,7 +333,7 @@ impl PyHeavyTop {
             UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)) // to the last bit
         })?;
         let (omega, gravity) = (read(omega, "omega")?, read(gravity, "gravity")?);
-        let uncertain = UncertainStart::restored(uncertain_start);
+        let uncertain = UncertainStart::restore(uncertain_start);
         Self::new(py, body, &omega, &attitude, &gravity, rtol, uncertain)
     }
 

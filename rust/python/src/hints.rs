@@ -72,7 +72,7 @@ pub(crate) fn no_attribute(object: &Bound<'_, PyAny>, name: &str) -> PyErr {
 }
 
 /// Arguments that a function needs; they may be missing where a keyword is refused with the one that was meant.
-pub(crate) fn needed<'a, 'py, const N: usize>(
+pub(crate) fn require<'a, 'py, const N: usize>(
     function: &str,
     arguments: [(&str, Option<&'a Bound<'py, PyAny>>); N],
 ) -> PyResult<[&'a Bound<'py, PyAny>; N]> {

@@ -153,7 +153,7 @@ impl Motions<'_> {
         });
         let terms = &self.terms[l];
         initial.internal_state =
-            (self.load).begun(terms, self.times[0], &self.omega[w], &self.states[s]);
+            (self.load).initial_states(terms, self.times[0], &self.omega[w], &self.states[s]);
         let of = if self.pivoted {
             Task::pivoted
         } else {

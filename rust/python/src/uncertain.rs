@@ -783,7 +783,7 @@ impl UncertainStart {
     }
 
     /// From that.
-    pub(crate) fn restored(
+    pub(crate) fn restore(
         (omega, attitude): (Option<Py<PyUncertain>>, Option<Py<PyUncertain>>),
     ) -> Self {
         Self { omega, attitude }

@@ -90,17 +90,17 @@ pub fn from_axes(rotation: &Matrix3<f64>) -> UnitQuaternion<f64> {
 /// # Examples
 ///
 /// ```
-/// use polhode::motion::attitude::{from_axes, restored};
+/// use polhode::motion::attitude::{from_axes, normalize};
 /// use polhode::nalgebra::{Matrix3, Quaternion};
 ///
 /// // A quaternion that a long product left a little too long.
 /// let drifted = Quaternion::new(1.0 + 1e-9, 0.0, 0.0, 0.0);
-/// assert!((restored(&drifted).w - 1.0).abs() < 1e-17_f64.max(2e-18));
+/// assert!((normalize(&drifted).w - 1.0).abs() < 1e-17_f64.max(2e-18));
 /// assert_eq!(from_axes(&Matrix3::identity()).w, 1.0);
 /// ```
 #[must_use]
 #[inline]
-pub fn restored(q: &Quaternion<f64>) -> UnitQuaternion<f64> {
+pub fn normalize(q: &Quaternion<f64>) -> UnitQuaternion<f64> {
     let squares = (q.coords.iter()).fold(DoubleDouble::from(-1.0), |sum, &x| {
         sum + DoubleDouble::product(x, x)
     });
@@ -149,7 +149,7 @@ mod tests {
         let turn = UnitQuaternion::from_euler_angles(0.1, -0.2, 0.3);
         let (mut q, mut sum) = (turn, 0.0);
         for _ in 0..10_000 {
-            q = restored(&(q * turn).into_inner());
+            q = normalize(&(q * turn).into_inner());
             assert!(excess(&q).abs() < 4e-16);
             sum += excess(&q) / 1e4;
         }

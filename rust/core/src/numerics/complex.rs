@@ -92,7 +92,7 @@ impl<T: MultiPrecision> Complex<T> {
     /// `z²`.
     #[inline]
     #[must_use]
-    pub(crate) fn squared(self) -> Self {
+    pub(crate) fn square(self) -> Self {
         let product = self.re * self.im;
         Self::new(
             (self.re - self.im) * (self.re + self.im),
@@ -212,7 +212,7 @@ mod tests {
             let root = z.sqrt();
             assert!(root.re.high >= 0.0);
             assert!((root * root - z).size() <= 1e-30 * z.size());
-            assert!((root.squared() - z).size() <= 1e-30 * z.size());
+            assert!((root.square() - z).size() <= 1e-30 * z.size());
             let w = number(0.3, -5.0);
             assert!(((z * w).over(w) - z).size() <= 1e-30 * z.size());
         }
@@ -227,7 +227,7 @@ mod tests {
                 for (x, y) in [(0.6, 0.8), (-0.6, 0.8), (-1.0, 1e-9), (0.0, -1.0)] {
                     let z = Complex::new(DoubleDouble::from(x * size), (y * size).into());
                     let root = z.sqrt();
-                    let off = root.squared() - z;
+                    let off = root.square() - z;
                     assert!(off.size() <= 1e-30 * z.size(), "{x} {y} times {size:e}");
                 }
             }

@@ -528,7 +528,7 @@ fn jacobi<L: Lane>(a: &Symmetric<L>) -> Spectrum<L> {
     let mut iterate = Iterate::start(a);
     let mut sweep = 0;
     while sweep < SWEEPS && iterate.is_unfinished() {
-        iterate = iterate.swept();
+        iterate = iterate.sweep();
         sweep += 1;
     }
     iterate.spectrum()
@@ -573,7 +573,7 @@ impl<L: Lane> Iterate<L> {
 
     /// One rotation in each plane.
     #[inline(always)]
-    fn swept(mut self) -> Self {
+    fn sweep(mut self) -> Self {
         let Self {
             d: [d0, d1, d2],
             rest: [r0, r1, r2],
@@ -923,7 +923,7 @@ struct Sweep;
 impl RowFormula<{ ITERATE_NUMBERS }, { ITERATE_NUMBERS }> for Sweep {
     #[inline(always)]
     fn apply<L: Lane>(numbers: [L; ITERATE_NUMBERS]) -> [L; ITERATE_NUMBERS] {
-        Iterate::from_numbers(numbers).swept().into_numbers()
+        Iterate::from_numbers(numbers).sweep().into_numbers()
     }
 }
 

@@ -205,6 +205,16 @@ impl<const N: usize> Number for Jet<N> {
     fn over(n: usize) -> Self {
         Self::constant(<Double<false> as Number>::over(n).get())
     }
+
+    #[inline(always)]
+    fn quotient(mut self, n: usize) -> Self {
+        let over = <Double<false> as Number>::over(n).get();
+        for slope in &mut self.slopes {
+            *slope *= over;
+        }
+        self.value *= over;
+        self
+    }
 }
 
 #[cfg(test)]
@@ -229,6 +239,7 @@ mod tests {
         sum /= x;
         assert_eq!(sum, ((x + y) * x - y) / x);
         assert_eq!(Jet::<2>::over(3), Jet::constant(1.0 / 3.0));
+        assert_eq!(x.quotient(3), x * Jet::over(3));
         let composed = Jet::chain(7.0, [(2.0, &(x * y)), (5.0, &y)]);
         assert_eq!((composed.value, composed.slopes), (7.0, [4.0, 11.0]));
     }

@@ -96,6 +96,15 @@ pub(crate) trait Number:
     /// When `n` is 64 or more.
     #[must_use]
     fn over(n: usize) -> Self;
+    /// `self / n`, as the product with 1/n.
+    ///
+    /// # Panics
+    /// When `n` is 64 or more.
+    #[must_use]
+    #[inline(always)]
+    fn quotient(self, n: usize) -> Self {
+        self * Self::over(n)
+    }
 }
 
 /// 1/n.

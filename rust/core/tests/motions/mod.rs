@@ -59,7 +59,7 @@ pub(crate) fn loads() -> Vec<(&'static str, Vec<Term>)> {
     let field = MagneticField::uniform(&at).expect("finite");
     let magnet = Term::Magnetic(Magnetic::new(&v, None, field).expect("finite"));
     let windows = Windows::new(&[(1.0, 2.0), (3.0, 4.5), (7.0, f64::INFINITY)]).expect("ordered");
-    let scheduled = |term: Term| term.scheduled(&windows).expect("nothing is carried along");
+    let scheduled = |term: Term| term.schedule(&windows).expect("nothing is carried along");
     let rotor = Term::Rotor(Rotor::new(&v).expect("finite"));
     let slug = Term::Slug(Slug::new(0.2, 0.3).expect("positive"));
     let wheel =

@@ -81,7 +81,7 @@ impl<'a, 'py> Acting<'a, 'py> {
             load,
             py,
             callbacks: load.callbacks().collect(),
-            compiled: load.compiled().collect(),
+            compiled: load.compiled_functions().collect(),
             with_states: load.with_states().collect(),
             slots: if load.with_states().next().is_some() {
                 load.slots()
@@ -113,18 +113,21 @@ impl Load for Acting<'_, '_> {
         self.analytic.exerts_force()
             || self.load.callbacks().any(Callback::exerts_force)
             || self.with_states.iter().any(|one| one.exerts_force())
-            || self.load.compiled().next().is_some()
+            || self.load.compiled_functions().next().is_some()
     }
 
     fn depends_on_rates(&self) -> bool {
         self.analytic.depends_on_rates()
             || self.load.calls_python()
-            || self.load.compiled().next().is_some()
+            || self.load.compiled_functions().next().is_some()
     }
 
     fn breaks(&self, from: f64, to: f64) -> Vec<f64> {
-        let windows = (self.load.callbacks().map(|callback| &callback.windows))
-            .chain(self.load.compiled().map(|compiled| &compiled.windows));
+        let windows = (self.load.callbacks().map(|callback| &callback.windows)).chain(
+            self.load
+                .compiled_functions()
+                .map(|compiled| &compiled.windows),
+        );
         let mut breaks: Vec<f64> = windows.flatten().flat_map(Windows::switches).collect();
         breaks.extend(self.analytic.breaks(from, to));
         breaks.extend(self.with_states.iter().flat_map(|one| one.times(from, to)));
@@ -138,7 +141,11 @@ impl Load for Acting<'_, '_> {
         self.callbacks.clear();
         (self.callbacks).extend(self.load.callbacks().filter(|one| is_on(&one.windows)));
         self.compiled.clear();
-        (self.compiled).extend(self.load.compiled().filter(|one| is_on(&one.windows)));
+        (self.compiled).extend(
+            self.load
+                .compiled_functions()
+                .filter(|one| is_on(&one.windows)),
+        );
         Ok(self.analytic.enter(from, to)?)
     }
 
@@ -211,7 +218,7 @@ impl Load for Acting<'_, '_> {
 
     fn sizes(&self) -> Vec<[f64; 2]> {
         let scales = (self.with_states.iter().map(|one| &one.scale))
-            .chain(self.load.compiled().map(|one| &one.scale));
+            .chain(self.load.compiled_functions().map(|one| &one.scale));
         let mut sizes = self.analytic.sizes();
         sizes.extend(scales.flatten().map(|&scale| [0.0, scale]));
         sizes
@@ -327,6 +334,6 @@ fn own_of(carried: &dyn Carried, reported: &[f64], t: f64, omega: &Vector3<f64>)
     if carried.count() == 0 {
         Vec::new()
     } else {
-        carried.resumed(reported, t, omega)
+        carried.resume_states(reported, t, omega)
     }
 }

@@ -513,7 +513,7 @@ pub(crate) fn report_states(terms: &[Term], phase: &Phase) -> Vec<f64> {
     for carried in terms.iter().filter_map(Term::carried) {
         let mine = first..first + carried.count();
         if let Some(own) = states.get_mut(mine.clone()) {
-            let told = carried.reported(own, &phase.omega);
+            let told = carried.report_states(own, &phase.omega);
             own.copy_from_slice(&told);
         }
         first = mine.end;

@@ -109,7 +109,8 @@ impl PyLoad {
                             omega: omega[w],
                             position: position[r],
                             velocity: velocity[v],
-                            internal_state: self.begun(&terms[l], t[k], &omega[w], &states[s]),
+                            internal_state: self
+                                .initial_states(&terms[l], t[k], &omega[w], &states[s]),
                         };
                         acting.enter(t[k], t[k])?;
                         on_locked(&bodies[b], &subject, &mut acting, t[k], &phase)

@@ -501,7 +501,7 @@ pub(crate) fn compiled(
     check_name(name)?;
     let compiled = Compiled::new(function, user_data, own)?;
     let recipe = recipe(function.py(), "_unpicklable", (function,))?;
-    Ok(PyLoad::one(Acts::Compiled(compiled), recipe).named(name))
+    Ok(PyLoad::one(Acts::Compiled(compiled), recipe).with_name(name))
 }
 
 /// A load with states that are integrated together with the motion: filters, actuators, integrators, sampled
@@ -578,7 +578,7 @@ pub(crate) fn with_states(
     options.set_item("period", period)?;
     options.set_item("scale", scales)?;
     let recipe = recipe(py, "with_states", (rates, values, wrench, name, options))?;
-    Ok(PyLoad::one(Acts::WithStates(load), recipe).named(name))
+    Ok(PyLoad::one(Acts::WithStates(load), recipe).with_name(name))
 }
 
 // The functions that make analytic terms.
@@ -941,7 +941,7 @@ pub(crate) fn slug(
     })?;
     let number = |stack: &Stack<f64>| write_of(py, stack, |x| *x);
     let recipe = recipe(py, "slug", (number(&inertia)?, number(&damping)?, name))?;
-    Ok(PyLoad::one(Acts::Term(terms), recipe).named(name))
+    Ok(PyLoad::one(Acts::Term(terms), recipe).with_name(name))
 }
 
 register!(Slug by slug);

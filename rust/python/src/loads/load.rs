@@ -50,7 +50,7 @@ impl PyLoad {
     }
 
     /// The load with a name for the states of its parts.
-    pub(super) fn named(mut self, name: &str) -> Self {
+    pub(super) fn with_name(mut self, name: &str) -> Self {
         for part in &mut self.parts {
             part.name = Some(name.into());
         }
@@ -127,7 +127,7 @@ impl PyLoad {
         })
     }
 
-    pub(super) fn compiled(&self) -> impl Iterator<Item = &Compiled> {
+    pub(super) fn compiled_functions(&self) -> impl Iterator<Item = &Compiled> {
         self.parts.iter().filter_map(|part| match &part.acts {
             Acts::Compiled(compiled) => Some(compiled),
             _ => None,
@@ -191,7 +191,7 @@ pub(super) fn rebuild(py: Python<'_>, recipe: &Bound<'_, PyTuple>) -> PyResult<P
             "_picked" => {
                 let shape: Vec<usize> = arguments.get_item(1)?.extract()?;
                 let key = arguments.get_item(2)?;
-                load.map(|part| part.picked(py, &shape, &key))?
+                load.map(|part| part.pick(py, &shape, &key))?
             }
             _ => load.copy_with_epoch(py, arguments.get_item(1)?.extract()?)?,
         };
@@ -209,7 +209,7 @@ pub(super) fn schedule_load(
     let pairs: Vec<(f64, f64)> = pairs.rows.iter().map(|&[on, off]| (on, off)).collect();
     let opened = Windows::new(&pairs).map_err(|error| to_py(py, &error))?;
     let kept = numpy(py)?.call_method1("array", (windows, "float64"))?;
-    load.map(|part| part.scheduled(py, &opened, &kept))
+    load.map(|part| part.schedule(py, &opened, &kept))
 }
 
 // One term of a load: scaled, scheduled, picked from a stack.
@@ -289,7 +289,7 @@ impl Part {
     }
 
     /// The rows that NumPy's indexing picks, of the part broadcast to `shape`.
-    pub(super) fn picked(
+    pub(super) fn pick(
         &self,
         py: Python<'_>,
         shape: &[usize],
@@ -309,7 +309,7 @@ impl Part {
         Ok(part)
     }
 
-    pub(super) fn scheduled(
+    pub(super) fn schedule(
         &self,
         py: Python<'_>,
         windows: &Windows,
@@ -325,7 +325,7 @@ impl Part {
         };
         match &mut part.acts {
             Acts::Term(terms) => {
-                *terms = try_rows(py, terms, |term| term.clone().scheduled(windows))?;
+                *terms = try_rows(py, terms, |term| term.clone().schedule(windows))?;
             }
             Acts::Callback(callback) => callback.windows = within(&callback.windows),
             Acts::Compiled(compiled) => compiled.windows = within(&compiled.windows),
@@ -372,7 +372,7 @@ impl PyLoad {
 
     fn __getitem__(&self, py: Python<'_>, key: &Bound<'_, PyAny>) -> PyResult<Self> {
         let shape = self.stack_shape()?;
-        self.map(|part| part.picked(py, &shape, key))
+        self.map(|part| part.pick(py, &shape, key))
     }
 
     /// Shape of the stack of loads; empty for one.
@@ -471,7 +471,7 @@ impl PyLoad {
         &self,
         py: Python<'py>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        if self.compiled().next().is_some() {
+        if self.compiled_functions().next().is_some() {
             return Err(PyTypeError::new_err(
                 "a load with a compiled function cannot be pickled: its address holds in this process alone",
             ));
@@ -538,7 +538,7 @@ impl PyLoad {
 
     /// The states with which a motion starts at time `t` with `omega`, from those reported that are given; what is not a number is
     /// not given.
-    pub(crate) fn begun(
+    pub(crate) fn initial_states(
         &self,
         terms: &[Term],
         t: f64,
@@ -549,7 +549,7 @@ impl PyLoad {
         for carried in terms.iter().filter_map(Term::carried) {
             let mine = given.get(states.len()..states.len() + carried.count());
             states.extend(match mine.filter(|mine| !mine.iter().any(|x| x.is_nan())) {
-                Some(mine) => carried.resumed(mine, t, omega),
+                Some(mine) => carried.resume_states(mine, t, omega),
                 None => carried.begin(t, omega),
             });
         }
@@ -570,7 +570,7 @@ impl PyLoad {
         omega: &Vector3<f64>,
         given: &[f64],
     ) -> PyResult<()> {
-        let kept = self.begun(terms, t, omega, given);
+        let kept = self.initial_states(terms, t, omega, given);
         let phase = Phase {
             omega: *omega,
             internal_state: kept,
@@ -604,7 +604,7 @@ impl PyLoad {
 
     fn initial_of_functions(&self) -> impl Iterator<Item = &[f64]> {
         let called = self.with_states().map(|one| &one.initial[..]);
-        called.chain(self.compiled().map(|one| &one.initial[..]))
+        called.chain(self.compiled_functions().map(|one| &one.initial[..]))
     }
 
     /// The states given under their names, each of shape (..., k); what is not given is not a number.

@@ -250,7 +250,7 @@ impl PyWheel {
             momentum: momenta,
             turns: if is_held { Turns::Held } else { Turns::Free },
         };
-        numbers.acting(py, PyLoad::one(Acts::Term(terms), recipe).named(name))
+        numbers.acting(py, PyLoad::one(Acts::Term(terms), recipe).with_name(name))
     }
 
     fn __getitem__(slf: &Bound<'_, Self>, key: &Bound<'_, PyAny>) -> PyResult<Py<Self>> {
@@ -319,7 +319,7 @@ impl PyWheel {
                 _ => Turns::Free,
             },
         };
-        numbers.acting(py, PyLoad::of_recipes(py, parts)?.named(name))
+        numbers.acting(py, PyLoad::of_recipes(py, parts)?.with_name(name))
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {
@@ -569,7 +569,7 @@ pub(crate) fn wheel(
     let moment = write_of(py, &inertia, |x| *x)?;
     let arguments = (write(py, &axis)?, moment, number(rate, &rates)?, options);
     let recipe = recipe(py, "wheel", arguments)?;
-    let load = PyLoad::one(Acts::Term(terms), recipe).named(name);
+    let load = PyLoad::one(Acts::Term(terms), recipe).with_name(name);
     let acts = |numbers: &Stack<f64>| numbers.rows.iter().any(|x| *x != 0.0);
     let turns = match speed {
         _ if torque.is_some() => Turns::Driven("torque"),

@@ -186,7 +186,7 @@ impl Batch for Ensemble<'_> {
     fn start(&self, row: usize) -> (usize, Phase) {
         let [b, w, q, r, v, l, s] = self.grid.operands(row);
         let omega = self.start.omega[w];
-        let own = self.load.begun(
+        let own = self.load.initial_states(
             &self.start.terms[l],
             self.plan.times()[0],
             &omega,

@@ -163,7 +163,7 @@ impl PyRigidBody {
         unknown: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         hints::refuse_unknown("RigidBody.simulate", &KEYWORDS, unknown)?;
-        let [t, omega] = hints::needed("RigidBody.simulate", [("t", t), ("omega", omega)])?;
+        let [t, omega] = hints::require("RigidBody.simulate", [("t", t), ("omega", omega)])?;
         if is_any(&[Some(omega), attitude, position, velocity]) {
             let arrays = [load, position, velocity, events, states];
             let words = (about, method, on_failure);

@@ -58,7 +58,7 @@ pub fn stream_solid(
     };
     let outcome = solid(&mut source, amount, options);
     let (body, volume) = if source.is_inside_out && options.orient {
-        source.oriented(amount)?
+        source.orient(amount)?
     } else {
         outcome?
     };
@@ -106,7 +106,7 @@ fn apart(corners: &[[f64; 3]]) -> Vec<[usize; 3]> {
 
 impl Stream<'_> {
     /// The solid of the triangles that were kept, each component wound as it should be.
-    fn oriented(&mut self, amount: Amount) -> Result<(RigidBody, f64), StreamError> {
+    fn orient(&mut self, amount: Amount) -> Result<(RigidBody, f64), StreamError> {
         let corners = self.kept.take().unwrap_or_default();
         let options = Options {
             orient: true,

@@ -71,7 +71,7 @@ impl Invariants {
         let omega = [x, y, z].map(DoubleDouble::from);
         let inertia_unit = power_below(moments[2].high);
         let scaled = moments.map(|moment| moment.scaled(1.0 / inertia_unit));
-        Self::refined(&moments, &omega, &Separation::of(&scaled, &omega))
+        Self::from_refined(&moments, &omega, &Separation::of(&scaled, &omega))
     }
 
     /// Of an exact motion.
@@ -79,12 +79,12 @@ impl Invariants {
     pub fn of_motion(motion: &FreeMotion) -> Self {
         Self {
             mode: motion.mode,
-            ..Self::refined(&motion.moments, &motion.principal_omega, &motion.separation)
+            ..Self::from_refined(&motion.moments, &motion.principal_omega, &motion.separation)
         }
     }
 
     /// As [`Invariants::of`], of moments and ω that are known to twice the precision, and how far they are from the separatrix.
-    fn refined(
+    fn from_refined(
         moments: &[DoubleDouble; 3],
         omega: &[DoubleDouble; 3],
         separation: &Separation,

@@ -32,7 +32,7 @@
 //! let moments = [1.0, 2.0, 2.5];
 //! let body = RigidBody::from_principal(1.0, &moments, &Matrix3::identity(), &Vector3::zeros(), 0.0)?;
 //! let (omega, attitude) = (Vector3::new(0.2, 0.1, 1.0), UnitQuaternion::identity());
-//! let motion = FreeMotion::refined(&RefinedPrincipal::of(&body), &omega, &attitude)?;
+//! let motion = FreeMotion::from_refined(&RefinedPrincipal::of(&body), &omega, &attitude)?;
 //! assert_eq!(motion, FreeMotion::of(&body, &omega, &attitude)?);
 //!
 //! // What it keeps: L, T and what follows from them.

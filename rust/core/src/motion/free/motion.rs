@@ -46,14 +46,14 @@ impl FreeMotion {
         omega: &Vector3<f64>,
         attitude: &UnitQuaternion<f64>,
     ) -> Result<Self, Error> {
-        Self::refined(&RefinedPrincipal::of(body), omega, attitude)
+        Self::from_refined(&RefinedPrincipal::of(body), omega, attitude)
     }
 
     /// As [`Self::of`], for principal moments and axes already refined: many states of one body.
     ///
     /// # Errors
     /// [`Error::NonFinite`] when `omega` is not finite.
-    pub fn refined(
+    pub fn from_refined(
         principal: &RefinedPrincipal,
         omega: &Vector3<f64>,
         attitude: &UnitQuaternion<f64>,

@@ -685,7 +685,7 @@ mod tests {
 
     fn motion(moments: [f64; 3], omega: Vector3<f64>) -> FreeMotion {
         let principal = RefinedPrincipal::from_principal(&moments, &Matrix3::identity());
-        FreeMotion::refined(&principal, &omega, &UnitQuaternion::identity()).expect("finite")
+        FreeMotion::from_refined(&principal, &omega, &UnitQuaternion::identity()).expect("finite")
     }
 
     #[test]
@@ -728,7 +728,7 @@ mod tests {
             let first = motion(moments, omega.into());
             let middle = first.at(t);
             let principal = RefinedPrincipal::from_principal(&moments, &Matrix3::identity());
-            let second = FreeMotion::refined(&principal, &middle.omega, &middle.attitude);
+            let second = FreeMotion::from_refined(&principal, &middle.omega, &middle.attitude);
             let second = second.expect("finite").sensitivity(1e3);
             let (whole, early) = (first.sensitivity(t + 1e3), first.sensitivity(t));
             let size = second.state.norm() * early.state.norm();

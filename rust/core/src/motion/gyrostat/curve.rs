@@ -219,7 +219,7 @@ pub(super) fn logarithm(means: &Means, [value, derivative]: [Number; 2]) -> Loga
     let (mut slope, mut weight) = (f, 1.0);
     for _ in 0..MOST_MEANS {
         let is_last = (a - b).high.abs() <= CLOSE * a.high;
-        let (sum, product) = (f.squared() + c * d, real(a * b));
+        let (sum, product) = (f.square() + c * d, real(a * b));
         let next = (c + d).scaled(0.5);
         let squares = [(sum + product).scaled(0.5), (sum - product).scaled(0.5)];
         let (d_next, f_next) = both(squares, f * next, next);

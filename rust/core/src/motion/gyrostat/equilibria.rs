@@ -117,7 +117,7 @@ pub struct Equilibria {
 impl Equilibria {
     /// With all directions in the frame in which these axes (columns) are given.
     #[must_use]
-    pub fn turned(mut self, axes: &Matrix3<f64>) -> Self {
+    pub fn rotate(mut self, axes: &Matrix3<f64>) -> Self {
         let turn = |v: &mut [f64; 3]| *v = (axes * Vector3::from(*v)).into();
         for one in &mut self.found {
             turn(&mut one.direction);
@@ -454,7 +454,7 @@ impl<'a> Secular<'a> {
             far *= 16.0;
         }
         let start = bisect(near, far, is_above);
-        self.refined(k, start.into())
+        self.refine(k, start.into())
     }
 
     /// The root between the pole of one axis and the minimum toward another pole.
@@ -473,7 +473,7 @@ impl<'a> Secular<'a> {
             // μ ascends as s falls, and poles ascend as moments fall.
             let is_lower = self.frame.moments[from].high > self.frame.moments[to].high;
             let side = if is_lower { width } else { -width };
-            return self.refined(minimum.axis, minimum.s + side.into());
+            return self.refine(minimum.axis, minimum.s + side.into());
         }
         // The half of the way to the other pole in which the root is names the pole that it is seen from.
         let near = self.view::<f64>(from);
@@ -491,12 +491,12 @@ impl<'a> Secular<'a> {
                 middle
             };
             let is_above = |s: f64| near.value_and_slope(s).0 > 0.0;
-            return self.refined(from, bisect(start, end, is_above).into());
+            return self.refine(from, bisect(start, end, is_above).into());
         }
         let far = self.view::<f64>(to);
         let is_above = |s: f64| far.value_and_slope(s).0 > 0.0;
         let start = bisect(self.middle(to, from), minimum.s.high, is_above);
-        self.refined(to, start.into())
+        self.refine(to, start.into())
     }
 
     /// Half of the way from one pole to another, as seen from the first.
@@ -534,7 +534,7 @@ impl<'a> Secular<'a> {
     }
 
     /// Newton's method to twice the precision.
-    fn refined(&self, k: usize, start: DoubleDouble) -> Multiplier {
+    fn refine(&self, k: usize, start: DoubleDouble) -> Multiplier {
         let view = self.view::<DoubleDouble>(k);
         let mut s = start;
         for _ in 0..STEPS {

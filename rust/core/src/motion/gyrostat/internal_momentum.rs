@@ -144,7 +144,7 @@ impl Gyrostat {
         let scaled = rotor.map(|x| x.times_power_of_two(-unit));
         let along = (self.principal.along(&scaled)).map(|x| x.times_power_of_two(unit));
         let found = equilibria(&self.principal.moments, &along, momentum.into());
-        Ok(found.turned(&self.principal.rounded_axes()))
+        Ok(found.rotate(&self.principal.rounded_axes()))
     }
 
     /// The tensor `I − Σ J a aᵀ` in B.

@@ -79,9 +79,9 @@ impl GyrostatMotion {
             attitude: *attitude,
             omega: *omega,
         };
-        let (angular_momentum, kinetic_energy) = conserved(principal, rotor, &initial);
+        let (angular_momentum, kinetic_energy) = conserved_quantities(principal, rotor, &initial);
         if rounded == Vector3::zeros() {
-            let motion = FreeMotion::refined(principal, omega, attitude)?;
+            let motion = FreeMotion::from_refined(principal, omega, attitude)?;
             return Ok(Self::free(&motion, angular_momentum, kinetic_energy));
         }
         if principal.moments[0].high <= 0.0 {
@@ -231,7 +231,11 @@ impl ClosedForm for GyrostatMotion {
 }
 
 /// `I ω + h` in space, and `½ ω·I ω`.
-fn conserved(principal: &RefinedPrincipal, rotor: &Vector, start: &State) -> (Vector3<f64>, f64) {
+fn conserved_quantities(
+    principal: &RefinedPrincipal,
+    rotor: &Vector,
+    start: &State,
+) -> (Vector3<f64>, f64) {
     let along = principal.components(&start.omega);
     let parts: Vector = std::array::from_fn(|k| principal.moments[k] * along[k]);
     let of_body = principal.in_body(&parts);

@@ -103,7 +103,7 @@ impl Ratios {
         let q = spinor.nome;
         let z = spinor.argument;
         let turn = z.times(DoubleDouble::from(1.0) / z.norm_squared().sqrt());
-        let square = turn.squared();
+        let square = turn.square();
         let (mut power, mut weight, mut step) = (turn, DoubleDouble::from(1.0), q);
         // Of `cos nφ`, n even, `cos nφ` and `sin nφ`, n odd: `Q^{(n² − 1)/8}` is before the latter, n = 1, 3, ….
         let (mut v, mut w) = (DoubleDouble::default(), DoubleDouble::default());
@@ -120,7 +120,7 @@ impl Ratios {
             sign = -sign;
         }
         // n = 4, 8, … of T and n = 2, 6, … of U: from one to the next in both the weight grows by `Q^{2n}`.
-        let (q2, fourth) = (q * q, square.squared());
+        let (q2, fourth) = (q * q, square.square());
         let step = q2 * q2;
         let series = |mut sum: DoubleDouble,
                       mut power: Number,
@@ -347,7 +347,7 @@ mod tests {
             is_alternating: nome < 0.0,
             rate: 1.0.into(),
             sense: 1.0,
-            start: Complex::<DoubleDouble>::one().over(argument.squared()),
+            start: Complex::<DoubleDouble>::one().over(argument.square()),
             argument,
             columns: [[Complex::zero(); 2]; 2],
             phase: 0.0.into(),

@@ -174,7 +174,7 @@ fn place_of(found: &Logarithm) -> (f64, Number, Number) {
         (-1.0, found.cotangent - imaginary)
     };
     let ratio = found.cosecant.over(large);
-    (sense, large.over(found.cosecant), ratio.squared())
+    (sense, large.over(found.cosecant), ratio.square())
 }
 
 /// Θₑ and Θₒ/Z₀ at the start with their rates.

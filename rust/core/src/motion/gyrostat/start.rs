@@ -173,7 +173,7 @@ impl Quartic {
     /// to the start: `P = a₂ − a₁²`, `P′ = i(a₃ − 3a₁a₂ + 2a₁³)`.
     pub(super) fn place(&self) -> [Number; 2] {
         let [a1, a2, a3, _] = self.a;
-        let value = a2 - a1.squared();
+        let value = a2 - a1.square();
         let slope = a3 - a1 * (value + a2.scaled(0.5)).scaled(2.0);
         [value, slope.times_i()]
     }
@@ -190,9 +190,9 @@ impl Quartic {
         let shift = a2.scaled(0.5) + Complex::new(root, DoubleDouble::from(0.0));
         let twice = shift.scaled(2.0);
         let first = a4 * a1 - twice * a3;
-        let middle = twice.squared() - a4;
+        let middle = twice.square() - a4;
         let last = (a1 * middle + first).over(twice);
-        let spread = (middle.squared() + (first * last).scaled(4.0)).sqrt();
+        let spread = (middle.square() + (first * last).scaled(4.0)).sqrt();
         let spread = if spread.is_opposite_to(middle) {
             -spread
         } else {
@@ -218,12 +218,12 @@ mod tests {
             }
             .far(root.into());
             let twice = a2 + number(2.0 * root, 0.0);
-            let (first, middle) = (a4 * a1 - twice * a3, twice.squared() - a4);
+            let (first, middle) = (a4 * a1 - twice * a3, twice.square() - a4);
             let last = (a1 * middle + first).over(twice);
-            let rest = first + middle * far - last * far.squared();
+            let rest = first + middle * far - last * far.square();
             assert!(rest.size() < 1e-28, "{root} {rest:?}");
             // The product of both is −first/last.
-            assert!(far.squared().size() <= first.over(last).size(), "{root}");
+            assert!(far.square().size() <= first.over(last).size(), "{root}");
         }
     }
 }

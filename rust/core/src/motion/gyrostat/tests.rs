@@ -155,7 +155,7 @@ fn without_momentum_it_is_free_motion() {
     let (omega, attitude) = (Vector3::new(0.3, 0.2, 1.1), UnitQuaternion::identity());
     let rotor = InternalMomentum::default().rotor(&omega);
     let motion = GyrostatMotion::of(&principal, &rotor, &omega, &attitude).expect("a motion");
-    let free = FreeMotion::refined(&principal, &omega, &attitude).expect("a motion");
+    let free = FreeMotion::from_refined(&principal, &omega, &attitude).expect("a motion");
     assert_eq!(motion.at(1e6), free.at(1e6));
     assert_eq!(motion.as_free(), Some(&free));
 }

@@ -102,7 +102,7 @@ impl<T: MultiPrecision> Reduced<T> {
         let upward = conjugate(&to_third_axis(
             &[-gravity.x, -gravity.y, -gravity.z].map(T::from),
         ));
-        let [w1, w2, w3, _] = turned(&aligning, &scaled);
+        let [w1, w2, w3, _] = rotate_vector(&aligning, &scaled);
         let given = components(attitude).map(T::from);
         let relative = product(&product(&conjugate(&upward), &given), &conjugate(&aligning));
         let norm2 = sum_of_squares(&relative);
@@ -248,7 +248,7 @@ fn to_third_axis<T: MultiPrecision>(direction: &[T; 3]) -> Components<T> {
 }
 
 /// The vector turned by the unit quaternion.
-fn turned<T: MultiPrecision>(q: &Components<T>, vector: &Vector3<f64>) -> Components<T> {
+fn rotate_vector<T: MultiPrecision>(q: &Components<T>, vector: &Vector3<f64>) -> Components<T> {
     let v = [vector.x, vector.y, vector.z, 0.0].map(T::from);
     product(&product(q, &v), &conjugate(q))
 }

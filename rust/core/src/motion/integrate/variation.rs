@@ -285,7 +285,7 @@ mod tests {
         UnitQuaternion::new_normalize(Quaternion::new(0.7, 0.3, -0.2, 0.4))
     }
 
-    fn varied(body: &RigidBody, start: &State, times: &[f64], terms: &[Term]) -> Vec<Variation> {
+    fn vary(body: &RigidBody, start: &State, times: &[f64], terms: &[Term]) -> Vec<Variation> {
         let tolerance = Tolerance::new(1e-10, 0.0).expect("tolerance");
         let task = Task::free(
             body,
@@ -308,7 +308,7 @@ mod tests {
             let motion = FreeMotion::of(&body, &start.omega, &start.attitude).expect("motion");
             for t in [60.0, -7.0] {
                 let (found, exact) = (
-                    &varied(&body, &start, &[0.0, t], &[])[1],
+                    &vary(&body, &start, &[0.0, t], &[])[1],
                     motion.sensitivity(t),
                 );
                 let size = exact.state.norm();
@@ -356,8 +356,8 @@ mod tests {
         let mut watch = |_: f64| ControlFlow::Continue(());
         let run = crate::motion::integrate::taylor::solve_one(&task, &terms, &mut watch);
         let middle = run.phase.state();
-        let whole = varied(&body, &start, &[0.0, 4.0, 20.0], &terms);
-        let late = &varied(&body, &middle, &[4.0, 20.0], &terms)[1];
+        let whole = vary(&body, &start, &[0.0, 4.0, 20.0], &terms);
+        let late = &vary(&body, &middle, &[4.0, 20.0], &terms)[1];
         let size = late.state.norm() * whole[1].state.norm();
         assert!((late.state * whole[1].state - whole[2].state).norm() < 1e-12 * size);
         for k in 0..whole[1].load.len() {
@@ -384,7 +384,7 @@ mod tests {
         };
         let body = body([1.0, 2.0, 2.5]);
         let slopes = |epoch: f64| {
-            varied(&body, &start, &[0.0, 3.0], &[orbit(epoch)])[1]
+            vary(&body, &start, &[0.0, 3.0], &[orbit(epoch)])[1]
                 .load
                 .clone()
         };
@@ -421,7 +421,7 @@ mod tests {
             omega: Vector3::zeros(),
         };
         let terms = [Term::Damping(damping)];
-        let there = &varied(&body, &start, &[0.0, -350.0], &terms)[1];
+        let there = &vary(&body, &start, &[0.0, -350.0], &terms)[1];
         assert!((there.state[(3, 3)] / 700.0_f64.exp() - 1.0).abs() < 1e-11);
         let tolerance = Tolerance::new(1e-10, 0.0).expect("tolerance");
         let times = [0.0, -350.0, -360.0];

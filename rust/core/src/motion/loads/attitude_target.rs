@@ -28,7 +28,7 @@ const QUARTER: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// // Toward an attitude that stays, with the stiffness 2 N m and the damping 1 N m s:
 /// let (stiffness, damping) = (Matrix3::identity() * 2.0, Matrix3::identity());
 /// let feedback = Feedback::new(&stiffness, &damping, &about_z(0.0))?;
-/// assert_eq!(feedback.target.fixed(), Some(&about_z(0.0)));
+/// assert_eq!(feedback.target.as_fixed(), Some(&about_z(0.0)));
 /// // one that turns at 0.1 rad/s, from the start of the motion on or from a time that is said,
 /// let turning = AttitudeTarget::turning(&about_z(0.0), &Vector3::new(0.0, 0.0, 0.1), None)?;
 /// assert!(turning.needs_epoch() && !turning.clone().with_epoch(5.0).needs_epoch());
@@ -172,7 +172,7 @@ impl AttitudeTarget {
 
     /// The attitude that stays, of a target that does.
     #[must_use]
-    pub fn fixed(&self) -> Option<&UnitQuaternion<f64>> {
+    pub fn as_fixed(&self) -> Option<&UnitQuaternion<f64>> {
         match self {
             Self::Fixed(attitude) => Some(attitude),
             _ => None,

@@ -27,10 +27,10 @@ pub trait Carried {
     }
 
     /// The states as they are reported, of the same number: those of a wheel are its momentum `h = J (Ω + a·ω)`.
-    fn reported(&self, state: &[f64], omega: &Vector3<f64>) -> Vec<f64>;
+    fn report_states(&self, state: &[f64], omega: &Vector3<f64>) -> Vec<f64>;
 
     /// Its states where a motion starts at time `t` with `omega`, from those reported.
-    fn resumed(&self, reported: &[f64], t: f64, omega: &Vector3<f64>) -> Vec<f64>;
+    fn resume_states(&self, reported: &[f64], t: f64, omega: &Vector3<f64>) -> Vec<f64>;
 
     /// The axis (not of unit length) and the moment J of what turns freely in the body: the equations of motion have the tensor
     /// `I − J a aᵀ`.

@@ -1,5 +1,7 @@
 //! What every analytic law of a load is asked.
 
+use std::ops::Range;
+
 use nalgebra::Vector3;
 
 use super::body_at_point::BodyAtPoint;
@@ -170,5 +172,49 @@ impl Parameter {
     #[must_use]
     pub fn count(&self) -> usize {
         self.shape.iter().product()
+    }
+}
+
+/// The columns of the numbers of a term among the variables of a motion, by their names. Without names where nothing is varied.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ParameterColumns {
+    first: usize,
+    parameters: Vec<Parameter>,
+}
+
+impl ParameterColumns {
+    /// Where nothing is varied.
+    pub(crate) const NONE: &'static Self = &Self {
+        first: 0,
+        parameters: Vec::new(),
+    };
+
+    /// Of a term whose first number has the column `first`.
+    pub(crate) fn new(first: usize, parameters: Vec<Parameter>) -> Self {
+        Self { first, parameters }
+    }
+
+    /// The first of them.
+    pub(crate) fn first(&self) -> usize {
+        self.first
+    }
+
+    /// How many there are.
+    pub(super) fn count(&self) -> usize {
+        self.parameters.iter().map(Parameter::count).sum()
+    }
+
+    /// Those of the numbers of this name.
+    pub(super) fn of(&self, name: &str) -> Range<usize> {
+        let mut start = self.first;
+        for parameter in &self.parameters {
+            let end = start + parameter.count();
+            if parameter.name == name {
+                return start..end;
+            }
+            start = end;
+        }
+        debug_assert!(self.parameters.is_empty(), "no number {name}");
+        start..start
     }
 }

@@ -302,7 +302,7 @@ impl Term {
     ///
     /// # Errors
     /// [`MotionFault::StatesStay`] for what the body carries along.
-    pub fn scheduled(self, windows: &Windows) -> Result<Self, Error> {
+    pub fn schedule(self, windows: &Windows) -> Result<Self, Error> {
         if self.carried().is_some() {
             return Err(MotionFault::StatesStay { what: "scheduled" }.into());
         }

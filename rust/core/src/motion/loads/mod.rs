@@ -86,6 +86,7 @@ pub use self::callback::Callback;
 pub use self::carried::Carried;
 pub use self::law::Kept;
 pub use self::law::Parameter;
+pub(crate) use self::law::ParameterColumns;
 pub use self::law_switches::{LawSwitch, Switch};
 pub use self::laws::*;
 pub use self::load::{Load, wrench_at};

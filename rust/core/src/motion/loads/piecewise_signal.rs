@@ -95,15 +95,15 @@ impl PiecewiseSignal {
         self.values[self.index(t)]
     }
 
-    /// The value at time `t` in numbers of any kind, those that it is made of being numbers of the term from `first` on.
+    /// The value at time `t` in numbers of any kind. It is made of the numbers of the term of this name.
     pub(super) fn number<X: LawNumber>(
         &self,
         t: f64,
         axes: &PrincipalFrame<'_, X>,
-        first: usize,
+        name: &str,
     ) -> X {
         let index = self.index(t);
-        axes.number(self.values[index], first + index)
+        axes.element(self.values[index], name, index)
     }
 
     fn index(&self, t: f64) -> usize {
@@ -116,12 +116,12 @@ impl PiecewiseSignal {
         &self,
         t: f64,
         axes: &PrincipalFrame<'_, X>,
-        first: usize,
+        name: &str,
     ) -> X {
         let mut slope = X::from(self.line(t)[1]);
-        if axes.varies(first, self.values.len()) {
+        if axes.varies(name) {
             for (index, [_, share]) in self.shares(t) {
-                slope += axes.variation(self.values[index], first + index) * X::from(share);
+                slope += axes.variation(self.values[index], name, index) * X::from(share);
             }
         }
         slope

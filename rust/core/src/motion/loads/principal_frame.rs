@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::body_at_point::BodyAtPoint;
+use super::law::ParameterColumns;
 use super::variables::{Block, CENTER, Fixed, MASS, Variables, Varied};
 use crate::motion::attitude::components;
 use crate::numerics::double_double::DoubleDouble;
@@ -73,8 +74,9 @@ pub(crate) struct PrincipalFrame<'s, X: LawNumber> {
     pub q_bp: &'s [X; 4],
     /// Which numbers are varied.
     pub variables: X::Variables,
-    /// The column of the first number of the term that is asked.
-    pub first: usize,
+    /// The columns of the numbers of the term that is asked, and its index in the load.
+    pub parameters: &'s ParameterColumns,
+    pub term: usize,
     /// A time within the span under way, which has no breaks.
     pub middle: f64,
 }
@@ -90,36 +92,33 @@ impl<X: LawNumber> PrincipalFrame<'_, X> {
         self.columns.tr_mul(matrix) * self.columns
     }
 
-    /// Numbers of the term: a number, a vector, a matrix that it has, of which the first is its number `index`.
-    pub(super) fn number(&self, value: f64, index: usize) -> X {
-        self.variables.number(value, self.first + index)
+    /// Numbers of the term of this name: a number, a vector, a matrix.
+    pub(super) fn number(&self, value: f64, name: &str) -> X {
+        self.element(value, name, 0)
     }
 
-    pub(super) fn vector(&self, value: &Vector3<f64>, index: usize) -> Vector3<X> {
-        self.variables.vector(value, self.first + index)
+    pub(super) fn vector(&self, value: &Vector3<f64>, name: &str) -> Vector3<X> {
+        self.variables.vector(value, self.parameters.of(name).start)
     }
 
-    pub(super) fn matrix(&self, value: &Matrix3<f64>, index: usize) -> Matrix3<X> {
-        self.variables.matrix(value, self.first + index)
+    pub(super) fn matrix(&self, value: &Matrix3<f64>, name: &str) -> Matrix3<X> {
+        self.variables.matrix(value, self.parameters.of(name).start)
     }
 
-    /// The parameter minus its value: numerically zero, but it carries the derivative.
-    pub(super) fn variation(&self, value: f64, index: usize) -> X {
-        self.number(value, index) - X::from(value)
+    /// One of the numbers of this name.
+    pub(super) fn element(&self, value: f64, name: &str, index: usize) -> X {
+        let column = self.parameters.of(name).start + index;
+        self.variables.number(value, column)
     }
 
-    /// Whether one of `count` numbers of the term from `index` on is varied.
-    pub(super) fn varies(&self, index: usize, count: usize) -> bool {
-        let first = self.first + index;
-        self.variables.varies(first..first + count)
+    /// The number minus its value: numerically zero, but it carries the derivative.
+    pub(super) fn variation(&self, value: f64, name: &str, index: usize) -> X {
+        self.element(value, name, index) - X::from(value)
     }
 
-    /// Those of the part of the term whose first number is its number `index`.
-    pub(super) fn part(&self, index: usize) -> Self {
-        Self {
-            first: self.first + index,
-            ..*self
-        }
+    /// Whether one of the numbers of this name is varied.
+    pub(super) fn varies(&self, name: &str) -> bool {
+        self.variables.varies(self.parameters.of(name))
     }
 
     /// m.

@@ -24,7 +24,7 @@ pub(crate) struct SeriesTerms<'a, X: LawNumber> {
     pub on_space: Vec<(Vector3<X>, Matrix3<X>)>,
     force: Option<Vector3<X>>,
     thrust: Option<Vector3<X>>,
-    /// Torques that depend on the time, each with the column of its first number.
+    /// Torques that depend on the time, each with the index of its term.
     pub timed: Vec<(usize, &'a dyn Timed<X>)>,
     /// Gravity gradients, likewise.
     pub gradients: Vec<(usize, &'a dyn Orbiting<X>)>,
@@ -420,8 +420,8 @@ mod tests {
     use super::*;
     use crate::motion::loads::variables::Fixed;
     use crate::motion::loads::{
-        BodyAtPoint, Damping, Drive, Feedback, GravityGradient, PiecewiseSignal, PrincipalFrame,
-        Rotor, Sampled, Slug, Term, Wheel,
+        BodyAtPoint, Damping, Drive, Feedback, GravityGradient, ParameterColumns, PiecewiseSignal,
+        PrincipalFrame, Rotor, Sampled, Slug, Term, Wheel,
     };
 
     /// What a term alone adds to the equations of a body, at a time and on a side of its switch.
@@ -439,7 +439,8 @@ mod tests {
             columns: &Matrix3::identity(),
             q_bp: &[0.0, 0.0, 0.0, 1.0],
             variables: Fixed,
-            first: 0,
+            parameters: ParameterColumns::NONE,
+            term: 0,
             middle,
         };
         let mut series = SeriesTerms::<f64>::default();

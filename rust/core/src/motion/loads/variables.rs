@@ -9,6 +9,7 @@ use std::ops::Range;
 use nalgebra::{Matrix3, Vector3};
 
 use super::kepler::Orbit;
+use super::law::{Parameter, ParameterColumns};
 use crate::numerics::jet::Jet;
 use crate::numerics::number::Real;
 use crate::numerics::quaternion::product;
@@ -37,16 +38,17 @@ pub(crate) trait Variables<X: Real>: Copy + Debug + Send + Sync {
     fn number(self, value: f64, column: usize) -> X;
 
     /// The attitude `q∘exp(δ)` (x, y, z, w), the components of the small rotation δ being the variables from `column` on.
-    fn turned(self, q: [X; 4], column: usize) -> [X; 4];
+    fn vary_attitude(self, q: [X; 4], column: usize) -> [X; 4];
 
     /// Whether one of these columns is varied.
     fn varies(self, columns: Range<usize>) -> bool;
 
-    /// The first column of each term that has so many numbers; none where nothing is varied.
-    fn columns(self, counts: &mut dyn Iterator<Item = usize>) -> Vec<usize>;
+    /// The columns of terms that have these numbers, one after the other; none where nothing is varied.
+    fn columns(self, terms: &mut dyn Iterator<Item = Vec<Parameter>>) -> Vec<ParameterColumns>;
 
-    /// Position and velocity on an orbit, μ, position and velocity at its epoch being the variables from `column` on.
-    fn on_orbit(self, orbit: &Orbit, elapsed: f64, column: usize) -> (Vector3<X>, Vector3<X>);
+    /// Position and velocity on an orbit. μ, and position and velocity at its epoch, are the variables from these columns on.
+    fn on_orbit(self, orbit: &Orbit, elapsed: f64, columns: [usize; 3])
+    -> (Vector3<X>, Vector3<X>);
 
     /// A vector whose components are variables.
     fn vector(self, value: &Vector3<f64>, first: usize) -> Vector3<X> {
@@ -69,7 +71,7 @@ impl<X: Real> Variables<X> for Fixed {
         X::from(value)
     }
 
-    fn turned(self, q: [X; 4], _: usize) -> [X; 4] {
+    fn vary_attitude(self, q: [X; 4], _: usize) -> [X; 4] {
         q
     }
 
@@ -77,11 +79,11 @@ impl<X: Real> Variables<X> for Fixed {
         false
     }
 
-    fn columns(self, _: &mut dyn Iterator<Item = usize>) -> Vec<usize> {
+    fn columns(self, _: &mut dyn Iterator<Item = Vec<Parameter>>) -> Vec<ParameterColumns> {
         Vec::new()
     }
 
-    fn on_orbit(self, orbit: &Orbit, elapsed: f64, _: usize) -> (Vector3<X>, Vector3<X>) {
+    fn on_orbit(self, orbit: &Orbit, elapsed: f64, _: [usize; 3]) -> (Vector3<X>, Vector3<X>) {
         let (r, v) = orbit.at(elapsed);
         (r.map(X::from), v.map(X::from))
     }
@@ -102,7 +104,7 @@ impl Variables<Varied> for Block {
         }
     }
 
-    fn turned(self, q: [Varied; 4], column: usize) -> [Varied; 4] {
+    fn vary_attitude(self, q: [Varied; 4], column: usize) -> [Varied; 4] {
         let half = Varied::constant(0.5);
         let [x, y, z] = [0, 1, 2].map(|i| self.number(0.0, column + i) * half);
         product(q, [x, y, z, Varied::constant(1.0)])
@@ -112,22 +114,29 @@ impl Variables<Varied> for Block {
         columns.start < self.first + WIDTH && self.first < columns.end
     }
 
-    fn columns(self, counts: &mut dyn Iterator<Item = usize>) -> Vec<usize> {
-        let firsts = counts.scan(LOAD, |next, count| {
+    fn columns(self, terms: &mut dyn Iterator<Item = Vec<Parameter>>) -> Vec<ParameterColumns> {
+        let columns = terms.scan(LOAD, |next, parameters| {
             let first = *next;
-            *next += count;
-            Some(first)
+            *next += parameters.iter().map(Parameter::count).sum::<usize>();
+            Some(ParameterColumns::new(first, parameters))
         });
-        firsts.collect()
+        columns.collect()
     }
 
     fn on_orbit(
         self,
         orbit: &Orbit,
         elapsed: f64,
-        column: usize,
+        [mu, position, velocity]: [usize; 3],
     ) -> (Vector3<Varied>, Vector3<Varied>) {
-        let number = |value, n| self.number(value, column + n);
+        let number = |value, n| {
+            let column = match n {
+                0 => mu,
+                1..4 => position + n - 1,
+                _ => velocity + n - 4,
+            };
+            self.number(value, column)
+        };
         orbit.at_with_derivatives(elapsed, number)
     }
 }

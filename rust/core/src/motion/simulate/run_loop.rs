@@ -273,15 +273,19 @@ where
                 .into())
             }
             Method::Radau if states <= FEW - MOVING => {
-                solved::<L, Radau<FEW>, FEW>(task, span, load)
+                begin_runge_kutta::<L, Radau<FEW>, FEW>(task, span, load)
             }
             Method::Radau if states <= SOME - MOVING => {
-                solved::<L, Radau<SOME>, SOME>(task, span, load)
+                begin_runge_kutta::<L, Radau<SOME>, SOME>(task, span, load)
             }
-            Method::Radau => solved::<L, Radau<MANY>, MANY>(task, span, load),
-            _ if states <= FEW - MOVING => solved::<L, Dop853<FEW>, FEW>(task, span, load),
-            _ if states <= SOME - MOVING => solved::<L, Dop853<SOME>, SOME>(task, span, load),
-            _ => solved::<L, Dop853<MANY>, MANY>(task, span, load),
+            Method::Radau => begin_runge_kutta::<L, Radau<MANY>, MANY>(task, span, load),
+            _ if states <= FEW - MOVING => {
+                begin_runge_kutta::<L, Dop853<FEW>, FEW>(task, span, load)
+            }
+            _ if states <= SOME - MOVING => {
+                begin_runge_kutta::<L, Dop853<SOME>, SOME>(task, span, load)
+            }
+            _ => begin_runge_kutta::<L, Dop853<MANY>, MANY>(task, span, load),
         };
     }
     match method {
@@ -290,22 +294,22 @@ where
             span,
             load.analytic(),
         )?)),
-        Method::Radau if moves => solved::<L, Radau<MOVING>, MOVING>(task, span, load),
-        Method::Radau => solved::<L, Radau<TURNING>, TURNING>(task, span, load),
+        Method::Radau if moves => begin_runge_kutta::<L, Radau<MOVING>, MOVING>(task, span, load),
+        Method::Radau => begin_runge_kutta::<L, Radau<TURNING>, TURNING>(task, span, load),
         Method::Splitting => Ok(Box::new(SplittingRun::new(task, span, load)?)),
         // Auto was settled, and a series has a driver of its own.
         Method::Auto | Method::Taylor | Method::Dop853 if moves => {
-            solved::<L, Dop853<MOVING>, MOVING>(task, span, load)
+            begin_runge_kutta::<L, Dop853<MOVING>, MOVING>(task, span, load)
         }
         Method::Auto | Method::Taylor | Method::Dop853 => {
-            solved::<L, Dop853<TURNING>, TURNING>(task, span, load)
+            begin_runge_kutta::<L, Dop853<TURNING>, TURNING>(task, span, load)
         }
     }
 }
 
 /// Not inlined: a run of few numbers is not to take the stack that many take.
 #[inline(never)]
-fn solved<'a, L: Load, M: RungeKutta<N> + 'a, const N: usize>(
+fn begin_runge_kutta<'a, L: Load, M: RungeKutta<N> + 'a, const N: usize>(
     task: &Task<'_>,
     span: &Span,
     load: &'a mut L,

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use super::scheme::Scheme;
 use crate::error::Error;
 use crate::mass::refined::RefinedPrincipal;
-use crate::motion::attitude::{from_axes, restored};
+use crate::motion::attitude::{from_axes, normalize};
 use crate::motion::euler_equations::EulerEquations;
 use crate::motion::free::FreeMotion;
 use crate::motion::loads::Load;
@@ -88,7 +88,7 @@ impl Symmetry {
         })
     }
 
-    fn turned(&self, point: &Point, time: f64) -> UnitQuaternion<f64> {
+    fn attitude_of_top(&self, point: &Point, time: f64) -> UnitQuaternion<f64> {
         let momentum = point.momentum.value;
         let along = point.attitude.inverse_transform_vector(&momentum)[self.axis];
         let mut spin = Vector3::zeros();
@@ -182,18 +182,18 @@ impl Body {
 
     fn drift(&self, point: &mut Point, time: f64) -> Result<(), Error> {
         let attitude = if let Some(top) = self.symmetry {
-            top.turned(point, time)
+            top.attitude_of_top(point, time)
         } else {
             let omega = self.omega(point);
             let q = point.attitude.into_inner();
             if let Some([x, y, z, w]) = short_turn(&self.kappa, &(omega * time)) {
                 UnitQuaternion::new_unchecked(q + q * Quaternion::new(w, x, y, z))
             } else {
-                let motion = FreeMotion::refined(&self.principal, &omega, &point.attitude)?;
+                let motion = FreeMotion::from_refined(&self.principal, &omega, &point.attitude)?;
                 motion.at(time).attitude
             }
         };
-        point.attitude = restored(&attitude);
+        point.attitude = normalize(&attitude);
         point.position.add(&(point.velocity.value * time));
         Ok(())
     }
@@ -358,7 +358,7 @@ mod tests {
             for n in 1..200 {
                 let w = direction(n) * (f64::from(n) * 0.002);
                 let [x, y, z, u] = short_turn(&kappa, &w).expect("near");
-                let motion = FreeMotion::refined(&principal, &w, &UnitQuaternion::identity());
+                let motion = FreeMotion::from_refined(&principal, &w, &UnitQuaternion::identity());
                 let exact = motion.expect("finite").at(1.0).attitude;
                 let found = Quaternion::new(1.0 + u, x, y, z);
                 let error = (found - exact.into_inner()).norm();

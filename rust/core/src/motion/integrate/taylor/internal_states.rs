@@ -1,11 +1,10 @@
 //! The internal states of a load: those of wheels and dampers.
 
 use super::batch::{Batch, CacheAligned, cross_term, plus};
-use super::principal_frame::Precision;
-use super::series::MAX_COUNT;
-use super::series::Series;
+use super::equations::Precision;
+use super::series::{MAX_COUNT, Series};
 use super::step::{compensate, exp2, log2_step};
-use super::variational_series::ConvergenceRadius;
+use super::variational::ConvergenceRadius;
 use crate::motion::loads::InternalState;
 use crate::motion::loads::variables::WIDTH;
 use crate::numerics::dispatch::{Kernel, dispatch};
@@ -320,7 +319,7 @@ impl<L: Number<Real: Precision>, const R: usize> InternalStates<Batch<L, R>> {
     }
 }
 
-/// Computes the coefficients of one order of several rows. A separate function, as in [`formulas`](super::formulas).
+/// Computes the coefficients of one order of several rows. A separate function, as in [`formulas`](super::nonlinear).
 struct Next<'a, L, S, const R: usize, const B: usize> {
     states: &'a mut InternalStates<Batch<L, R>>,
     k: usize,

@@ -118,7 +118,7 @@ impl<L: Number, const R: usize> Compensated<Batch<L, R>> {
 
     /// Compute the state of one row after `increment`, with the same bits as by [`Self::add`].
     #[inline(always)]
-    pub(super) fn moved(&self, increment: &[Batch<L, R>; 7], row: usize) -> [L::Real; 7] {
+    pub(super) fn state_after(&self, increment: &[Batch<L, R>; 7], row: usize) -> [L::Real; 7] {
         let mut end = self.clone();
         end.add(increment);
         end.now(row)

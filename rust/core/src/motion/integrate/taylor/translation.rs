@@ -125,7 +125,7 @@ impl<L: Number, const R: usize> Translation<Batch<L, R>> {
 
     /// Compute position and velocity of one row after `increment`.
     #[inline(always)]
-    pub(super) fn moved(&self, increment: &[Batch<L, R>; 6], row: usize) -> [L::Real; 6] {
+    pub(super) fn state_after(&self, increment: &[Batch<L, R>; 6], row: usize) -> [L::Real; 6] {
         let mut place = [L::Real::default(); 6];
         for i in 0..6 {
             let change = increment[i].real(row) + self.rest[i].real(row);

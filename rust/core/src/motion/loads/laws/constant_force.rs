@@ -132,8 +132,10 @@ impl Law for ConstantForce {
         axes: &PrincipalFrame<'_, X>,
         _: f64,
     ) {
-        let arm = (self.point).map_or(axes.center(), |point| axes.vector(&point, 3) - axes.point());
-        let vector = axes.vector(&self.vector, 0);
+        let arm = (self.point).map_or(axes.center(), |point| {
+            axes.vector(&point, "point") - axes.point()
+        });
+        let vector = axes.vector(&self.vector, "vector");
         match self.frame {
             Frame::Body => {
                 series.constant += axes.principal(&arm.cross(&vector));

@@ -90,7 +90,7 @@ impl Law for ConstantTorque {
         axes: &PrincipalFrame<'_, X>,
         _: f64,
     ) {
-        let vector = axes.vector(&self.vector, 0);
+        let vector = axes.vector(&self.vector, "vector");
         match self.frame {
             Frame::Body => series.constant += axes.principal(&vector),
             Frame::Space => series.on_space.push((vector, Matrix3::identity())),

@@ -110,12 +110,12 @@ impl Law for Damping {
         axes: &PrincipalFrame<'_, X>,
         _: f64,
     ) {
-        series.add_on_omega(&-axes.tensor(&axes.matrix(&self.linear, 0)));
-        if self.quadratic != Matrix3::zeros() || axes.varies(9, 9) {
+        series.add_on_omega(&-axes.tensor(&axes.matrix(&self.linear, "matrix")));
+        if self.quadratic != Matrix3::zeros() || axes.varies("quadratic") {
             let mut steps = Steps::default();
             let speed = steps.speed();
             let vector = steps.times(speed, OMEGA);
-            let matrix = -axes.tensor(&axes.matrix(&self.quadratic, 9));
+            let matrix = -axes.tensor(&axes.matrix(&self.quadratic, "quadratic"));
             series.formulas.push(steps.torque(matrix, vector));
         }
     }

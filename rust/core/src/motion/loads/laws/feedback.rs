@@ -86,7 +86,7 @@ impl Feedback {
         if self.stiffness != Matrix3::from_diagonal_element(k) || self.damping != Matrix3::zeros() {
             return None;
         }
-        let error = self.target.fixed()?.conjugate() * attitude;
+        let error = self.target.as_fixed()?.conjugate() * attitude;
         // 1 − |w| = |vec|²/(1 + |w|), which loses nothing near the target.
         Some(2.0 * k * error.imag().norm_squared() / (1.0 + error.w.abs()))
     }
@@ -95,7 +95,8 @@ impl Feedback {
     fn error_columns<X: LawNumber>(&self, axes: &PrincipalFrame<'_, X>) -> [[X; 4]; 4] {
         // One that moves has no series: the law toward the attitude that it has at the start.
         let (target, _) = self.target.at(axes.body.start, axes.body.start);
-        let left = (axes.variables).turned(X::quaternion(&target), axes.first + 18);
+        let left = (axes.variables)
+            .vary_attitude(X::quaternion(&target), axes.parameters.of("target").start);
         let [o, l] = [X::zero(), X::one()];
         let units = [[l, o, o, o], [o, l, o, o], [o, o, l, o], [o, o, o, l]];
         units.map(|unit| product(product(conjugate(left), unit), conjugate(*axes.q_bp)))
@@ -110,7 +111,7 @@ impl Law for Feedback {
             needs_body: false,
             needs_epoch: self.target.needs_epoch(),
             keeps: Kept::Nothing,
-            has_series: self.target.fixed().is_some(),
+            has_series: self.target.as_fixed().is_some(),
         }
     }
 
@@ -166,8 +167,8 @@ impl Law for Feedback {
         axes: &PrincipalFrame<'_, X>,
         side: f64,
     ) {
-        series.add_on_omega(&-axes.tensor(&axes.matrix(&self.damping, 9)));
-        let stiffness = (axes.columns).tr_mul(&axes.matrix(&self.stiffness, 0));
+        series.add_on_omega(&-axes.tensor(&axes.matrix(&self.damping, "D")));
+        let stiffness = (axes.columns).tr_mul(&axes.matrix(&self.stiffness, "K"));
         let columns = self.error_columns(axes);
         let vector = Matrix3x4::from_columns(&columns.map(|[x, y, z, _]| Vector3::new(x, y, z)));
         series.add_on_attitude(&-(stiffness * vector * X::from(side)));

@@ -191,7 +191,7 @@ impl Law for GravityGradient {
         axes: &PrincipalFrame<'_, X>,
         _: f64,
     ) {
-        series.gradients.push((axes.first, self));
+        series.gradients.push((axes.term, self));
     }
 }
 
@@ -202,10 +202,11 @@ impl<X: LawNumber> Orbiting<X> for GravityGradient {
             return OnOrbit::none();
         };
         let elapsed = when.time - epoch.unwrap_or(axes.body.start);
-        let (r, v) = (axes.variables).on_orbit(orbit, elapsed, axes.first);
+        let columns = ["mu", "position", "velocity"].map(|name| axes.parameters.of(name).start);
+        let (r, v) = (axes.variables).on_orbit(orbit, elapsed, columns);
         let (distance, unit) = (r.dot(&r).root(), X::from(when.unit));
         let cube = distance * distance * distance * unit * unit;
-        let mu = axes.number(self.mu(), 0);
+        let mu = axes.number(self.mu(), "mu");
         let more = (mu - X::from(self.mu())) * X::from(3.0 * self.strength); // zero, but its derivatives are not
         OnOrbit {
             position: r / distance,

@@ -302,8 +302,8 @@ impl Law for Magnetic {
         _: f64,
     ) {
         if let Some(field) = self.constant() {
-            let lever = cross_matrix(&axes.principal(&axes.vector(&self.dipole, 0)));
-            series.on_space.push((axes.vector(field, 3), lever));
+            let lever = cross_matrix(&axes.principal(&axes.vector(&self.dipole, "dipole")));
+            series.on_space.push((axes.vector(field, "field"), lever));
         }
     }
 }

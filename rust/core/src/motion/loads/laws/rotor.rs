@@ -90,7 +90,9 @@ impl Law for Rotor {
         axes: &PrincipalFrame<'_, X>,
         _: f64,
     ) {
-        let [x, y, z] = axes.principal(&axes.vector(&self.momentum, 0)).into();
+        let [x, y, z] = axes
+            .principal(&axes.vector(&self.momentum, "momentum"))
+            .into();
         let o = X::zero();
         // h × ω.
         series.add_on_omega(&Matrix3::new(o, -z, y, z, o, -x, -y, x, o));
@@ -118,11 +120,11 @@ impl Carried for Rotor {
         Vec::new()
     }
 
-    fn reported(&self, _: &[f64], _: &Vector3<f64>) -> Vec<f64> {
+    fn report_states(&self, _: &[f64], _: &Vector3<f64>) -> Vec<f64> {
         Vec::new()
     }
 
-    fn resumed(&self, _: &[f64], _: f64, _: &Vector3<f64>) -> Vec<f64> {
+    fn resume_states(&self, _: &[f64], _: f64, _: &Vector3<f64>) -> Vec<f64> {
         Vec::new()
     }
 

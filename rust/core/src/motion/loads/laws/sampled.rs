@@ -142,9 +142,11 @@ impl Sampled {
         let (knots, mut piece) = (self.knots(), piece.each_ref().map(exact::<X>));
         let index = self.spline.index(t);
         let near = index.saturating_sub(NEAR)..(index + 2 + NEAR).min(knots.len());
-        if (axes.variables).varies(axes.first + 3 * near.start..axes.first + 3 * near.end) {
+        let first = axes.parameters.of("torque").start;
+        if (axes.variables).varies(first + 3 * near.start..first + 3 * near.end) {
             let zero = Vector3::zeros();
-            let samples: Vec<_> = near.clone().map(|k| axes.vector(&zero, 3 * k)).collect();
+            let sample = |k: usize| axes.variables.vector(&zero, first + 3 * k);
+            let samples: Vec<_> = near.clone().map(sample).collect();
             let go_on = &mut |_| ControlFlow::Continue(());
             if let Ok(own) = pieces(&knots[near.clone()], &samples, go_on) {
                 for (c, more) in piece.iter_mut().zip(own[index - near.start]) {
@@ -206,7 +208,7 @@ impl Law for Sampled {
         axes: &PrincipalFrame<'_, X>,
         _: f64,
     ) {
-        series.timed.push((axes.first, self));
+        series.timed.push((axes.term, self));
     }
 }
 
@@ -266,6 +268,7 @@ mod tests {
     use nalgebra::Matrix3;
 
     use super::*;
+    use crate::motion::loads::ParameterColumns;
     use crate::motion::loads::variables::{Block, Varied};
 
     #[test]
@@ -323,7 +326,8 @@ mod tests {
                 columns: &columns,
                 q_bp: &q_bp,
                 variables: Block { first: 3 * sample },
-                first: 0,
+                parameters: &ParameterColumns::new(0, alone(sample).parameters()),
+                term: 0,
                 middle: 0.0,
             };
             let alone = alone(sample);

@@ -106,7 +106,8 @@ impl Law for Slug {
         axes: &PrincipalFrame<'_, X>,
         _: f64,
     ) {
-        let (inertia, damping) = (axes.number(self.inertia, 0), axes.number(self.damping, 1));
+        let inertia = axes.number(self.inertia, "inertia");
+        let damping = axes.number(self.damping, "damping");
         let rate = damping / inertia;
         series.add_on_omega(&Matrix3::from_diagonal_element(-damping));
         let first = series.internal_states.len();
@@ -148,11 +149,11 @@ impl Carried for Slug {
             .collect()
     }
 
-    fn reported(&self, state: &[f64], _: &Vector3<f64>) -> Vec<f64> {
+    fn report_states(&self, state: &[f64], _: &Vector3<f64>) -> Vec<f64> {
         state.to_vec()
     }
 
-    fn resumed(&self, reported: &[f64], _: f64, _: &Vector3<f64>) -> Vec<f64> {
+    fn resume_states(&self, reported: &[f64], _: f64, _: &Vector3<f64>) -> Vec<f64> {
         reported.to_vec()
     }
 

@@ -95,7 +95,7 @@ impl Law for UniformGravity {
         axes: &PrincipalFrame<'_, X>,
         _: f64,
     ) {
-        let (gravity, mass) = (axes.vector(&self.gravity, 0), axes.mass());
+        let (gravity, mass) = (axes.vector(&self.gravity, "gravity"), axes.mass());
         if axes.body.pivoted {
             let lever = axes.center() * mass;
             let lever = cross_matrix(&axes.principal(&lever));

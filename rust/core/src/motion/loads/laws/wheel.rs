@@ -7,21 +7,13 @@ use super::slug::{not_negative, positive};
 use crate::error::{Error, MotionFault, finite};
 use crate::motion::loads::body_at_point::BodyAtPoint;
 use crate::motion::loads::carried::{Carried, Now};
-use crate::motion::loads::law::{Kept, Law, Parameter, Traits};
+use crate::motion::loads::law::{Kept, Law, Parameter, ParameterColumns, Traits};
 use crate::motion::loads::law_switches::Switch;
 use crate::motion::loads::piecewise_signal::PiecewiseSignal;
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame, exact};
 use crate::motion::loads::series_terms::{InternalState, SeriesTerms};
 use crate::motion::loads::wrench::Wrench;
 use crate::motion::state::Phase;
-
-/// The places of its numbers among its parameters: of a wheel whose speed is given, the speed stands where the others have their rate.
-const AXIS: usize = 0;
-const INERTIA: usize = 3;
-const RATE: usize = 4;
-const SPEED: usize = 4;
-const FRICTION: usize = 5;
-const DRIVE: usize = 6;
 
 /// A wheel that turns about an axis a fixed in the body with the rate Ω relative to it: J is its moment about that axis, and the
 /// tensor I of the body includes it as if it were locked.
@@ -140,9 +132,9 @@ impl Wheel {
     fn direction<X: LawNumber>(&self, axes: &PrincipalFrame<'_, X>) -> Vector3<X> {
         let scale = self.axis.amax().log2().floor().exp2();
         let mut scaled = exact::<X>(&(self.axis / scale));
-        if axes.varies(AXIS, 3) {
+        if axes.varies("axis") {
             for i in 0..3 {
-                scaled[i] += axes.variation(self.axis[i], AXIS + i) / X::from(scale);
+                scaled[i] += axes.variation(self.axis[i], "axis", i) / X::from(scale);
             }
         }
         axes.principal(&(scaled / scaled.dot(&scaled).root()))
@@ -159,7 +151,7 @@ impl Law for Wheel {
             keeps: Kept::All,
             has_series: !matches!(self.drive, Drive::Limited(..))
                 && self.bearing().is_none()
-                && (self.feedback()).is_none_or(|law| law.target.fixed().is_some()),
+                && (self.feedback()).is_none_or(|law| law.target.as_fixed().is_some()),
         }
     }
 
@@ -239,11 +231,11 @@ impl Law for Wheel {
         side: f64,
     ) {
         let a = self.direction(axes);
-        let inertia = axes.number(self.inertia, INERTIA);
+        let inertia = axes.number(self.inertia, "inertia");
         let friction = if self.has_speed() {
             X::zero()
         } else {
-            axes.number(self.friction, FRICTION)
+            axes.number(self.friction, "friction")
         };
         let mut state = InternalState {
             momentum: a,
@@ -252,14 +244,14 @@ impl Law for Wheel {
         };
         match &self.drive {
             Drive::Speed(speed) => {
-                state.constant = inertia * speed.slope(axes.middle, axes, SPEED);
+                state.constant = inertia * speed.slope(axes.middle, axes, "speed");
                 state.reported_on_omega = a * inertia;
             }
-            Drive::Torque(torque) => state.constant = torque.number(axes.middle, axes, DRIVE),
+            Drive::Torque(torque) => state.constant = torque.number(axes.middle, axes, "torque"),
             // With a limit it has no series, nor with dry friction: the law without them.
             Drive::Feedback(law) | Drive::Limited(law, _) => {
                 let mut asked = SeriesTerms::default();
-                law.add_to(&mut asked, &axes.part(DRIVE), side);
+                law.add_to(&mut asked, axes, side);
                 state.on_omega = -asked.on_omega().tr_mul(&a);
                 state.on_attitude = -asked.on_attitude().tr_mul(&a);
                 series.add_on_attitude(&-(a * state.on_attitude.transpose()));
@@ -286,7 +278,7 @@ impl Law for Wheel {
     }
 
     fn switch_function<X: LawNumber>(&self, axes: &PrincipalFrame<'_, X>) -> Option<Vector4<X>> {
-        self.feedback()?.switch_function(&axes.part(DRIVE))
+        self.feedback()?.switch_function(axes)
     }
 
     fn carried(&self) -> Option<&dyn Carried> {
@@ -313,20 +305,21 @@ impl Carried for Wheel {
     }
 
     fn beginning(&self, t: f64, omega: &Vector3<f64>) -> Vec<(Vector3<f64>, Vec<f64>)> {
-        let mut by_numbers = vec![0.0; self.parameters().iter().map(Parameter::count).sum()];
+        let places = ParameterColumns::new(0, self.parameters());
+        let mut by_numbers = vec![0.0; places.count()];
         let (a, inertia) = (self.unit, self.inertia);
         if let Drive::Speed(speed) = &self.drive {
-            by_numbers[INERTIA] = speed.line(t)[0];
+            by_numbers[places.of("inertia").start] = speed.line(t)[0];
             for (index, [share, _]) in speed.shares(t) {
-                by_numbers[SPEED + index] = inertia * share;
+                by_numbers[places.of("speed").start + index] = inertia * share;
             }
             return vec![(Vector3::zeros(), by_numbers)];
         }
         // Of a of unit length, by a of any.
         let across = (omega - a * a.dot(omega)) * (inertia / self.axis.norm());
-        by_numbers[AXIS..AXIS + 3].copy_from_slice(across.as_slice());
-        by_numbers[INERTIA] = self.rate + a.dot(omega);
-        by_numbers[RATE] = inertia;
+        by_numbers[places.of("axis")].copy_from_slice(across.as_slice());
+        by_numbers[places.of("inertia").start] = self.rate + a.dot(omega);
+        by_numbers[places.of("rate").start] = inertia;
         vec![(a * inertia, by_numbers)]
     }
 
@@ -334,7 +327,7 @@ impl Carried for Wheel {
         self.has_speed()
     }
 
-    fn reported(&self, state: &[f64], omega: &Vector3<f64>) -> Vec<f64> {
+    fn report_states(&self, state: &[f64], omega: &Vector3<f64>) -> Vec<f64> {
         vec![if self.has_speed() {
             state[0] + self.inertia * self.unit.dot(omega)
         } else {
@@ -342,7 +335,7 @@ impl Carried for Wheel {
         }]
     }
 
-    fn resumed(&self, reported: &[f64], t: f64, omega: &Vector3<f64>) -> Vec<f64> {
+    fn resume_states(&self, reported: &[f64], t: f64, omega: &Vector3<f64>) -> Vec<f64> {
         if self.has_speed() {
             self.begin(t, omega)
         } else {

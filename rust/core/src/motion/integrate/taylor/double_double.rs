@@ -1,7 +1,7 @@
 //! The series of one motion in double-double, its components in the lanes.
 
 use super::batch::Batch;
-use super::series::{Coefficient, MAX_COUNT, Series, increment};
+use super::series::{AnyNumber, Coefficient, Coefficients, MAX_COUNT};
 use crate::numerics::double_double::two_sum;
 use crate::numerics::lane::Lane;
 use crate::numerics::twofold::Twofold;
@@ -111,7 +111,9 @@ pub(super) struct DoubleDoubleSums<L, const W: usize> {
     turned: Components<L, W>,
 }
 
-impl<L: Lane, const B: usize, const W: usize> Series<Double<L>, B> for DoubleDoubleSeries<L, B, W> {
+impl<L: Lane, const B: usize, const W: usize> Coefficients<Double<L>, B>
+    for DoubleDoubleSeries<L, B, W>
+{
     #[inline(always)]
     fn new() -> Self {
         let zero = Batch::new(0.0);
@@ -127,19 +129,8 @@ impl<L: Lane, const B: usize, const W: usize> Series<Double<L>, B> for DoubleDou
     }
 
     #[inline(always)]
-    fn start(&mut self, state: &Coefficient<Double<L>, B>) {
-        self.orders[0] = Order::new(state);
-        self.plain[0] = *state;
-    }
-
-    #[inline(always)]
     fn get(&self, k: usize) -> Coefficient<Double<L>, B> {
         self.plain[k]
-    }
-
-    #[inline(always)]
-    fn increment(&self, order: usize, h: Double<L>) -> [Double<L>; 7] {
-        increment(self, order, h)
     }
 
     type Sums = DoubleDoubleSums<L, W>;
@@ -162,29 +153,38 @@ impl<L: Lane, const B: usize, const W: usize> Series<Double<L>, B> for DoubleDou
     fn spins(sums: &Self::Sums) -> [Double<L>; 3] {
         [sums.spins.get(0), sums.spins.get(1), sums.spins.get(2)]
     }
+}
+
+impl<L: Lane, const B: usize, const W: usize> AnyNumber<Double<L>, B>
+    for DoubleDoubleSeries<L, B, W>
+{
+    #[inline(always)]
+    fn put_omega(&mut self, k: usize, i: usize, x: Double<L>) {
+        self.plain[k].w[i] = x;
+    }
 
     #[inline(always)]
-    fn extend(&mut self, k: usize, sums: &Self::Sums, acceleration: &[Double<L>; 3]) {
-        let reciprocal = Batch::over(k + 1);
-        let half = Batch::over(2 * (k + 1));
-        // Loops, since closures would be compiled without the instructions of the level.
-        let mut next = Coefficient {
-            w: *acceleration,
-            q: [half; 4],
-            g: [[reciprocal; 3]; B],
-        };
-        for w in &mut next.w {
-            *w = *w * reciprocal;
-        }
-        for i in 0..4 {
-            next.q[i] = sums.turned.get(i) * half;
-        }
-        for b in 0..B {
-            for i in 0..3 {
-                next.g[b][i] = sums.turned.get(4 + 3 * b + i) * reciprocal;
-            }
-        }
-        self.orders[k + 1] = Order::new(&next);
-        self.plain[k + 1] = next;
+    fn put_attitude(&mut self, k: usize, i: usize, x: Double<L>) {
+        self.plain[k].q[i] = x;
+    }
+
+    #[inline(always)]
+    fn put_direction(&mut self, k: usize, b: usize, i: usize, x: Double<L>) {
+        self.plain[k].g[b][i] = x;
+    }
+
+    #[inline(always)]
+    fn complete(&mut self, k: usize) {
+        self.orders[k] = Order::new(&self.plain[k]);
+    }
+
+    #[inline(always)]
+    fn attitude_sum(sums: &Self::Sums, i: usize) -> Double<L> {
+        sums.turned.get(i)
+    }
+
+    #[inline(always)]
+    fn direction_sum(sums: &Self::Sums, b: usize, i: usize) -> Option<Double<L>> {
+        Some(sums.turned.get(4 + 3 * b + i))
     }
 }

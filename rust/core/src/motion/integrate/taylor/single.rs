@@ -3,9 +3,10 @@
 use std::hint::black_box;
 
 use super::batch::Batch;
-use super::series::{COUNT, Coefficient, RECIPROCALS, Series};
-use super::series::{PairSums, ROOTS, axis, from_squares};
+use super::directions::{PairSums, ROOTS, axis, from_squares};
+use super::series::{COUNT, Coefficient, Coefficients, Series};
 use crate::numerics::lane::Lane;
+use crate::numerics::number::Number;
 
 /// `W` numbers in the lanes.
 #[derive(Clone, Copy, Debug)]
@@ -48,7 +49,7 @@ impl<L: Lane, const W: usize> Components<L, W> {
 impl<L: Lane> Components<L, 4> {
     /// Compute the sums of pairs, with the signs from [`Signs`].
     #[inline(always)]
-    fn mixed(&self, pairs: &PairSums, signs: &Components<L, 8>) -> Components<L, 8> {
+    fn sum_pairs(&self, pairs: &PairSums, signs: &Components<L, 8>) -> Components<L, 8> {
         let mut row = Components::new();
         for i in 0..8 {
             row.0[i] = signs.0[i].mul_add(self.0[pairs.second[i]], self.0[pairs.first[i]]);
@@ -140,9 +141,10 @@ impl<L: Lane, const B: usize> Order<L, B> {
     #[inline(always)]
     fn new(w: [L; 3], q: Components<L, 4>, signs: &Signs<L, B>) -> Self {
         let [w0, w1, w2] = w;
-        let [l0, l1, l2, l3, l4, l5, l6, l7] = q.mixed(&LEFT, &signs.left).0;
-        let [r0, r1, r2, r3, r4, r5, r6, r7] =
-            Components([w0, w1, w2, w2]).mixed(&RIGHT, &signs.right).0;
+        let [l0, l1, l2, l3, l4, l5, l6, l7] = q.sum_pairs(&LEFT, &signs.left).0;
+        let [r0, r1, r2, r3, r4, r5, r6, r7] = Components([w0, w1, w2, w2])
+            .sum_pairs(&RIGHT, &signs.right)
+            .0;
         let [x, y, z, s] = q.0;
         let mut order = Self {
             state: Components([x, y, z, s, w0, w1, w2, L::new(0.0)]),
@@ -153,7 +155,7 @@ impl<L: Lane, const B: usize> Order<L, B> {
             ..Self::none()
         };
         for b in 0..B {
-            order.roots[b] = q.mixed(&ROOTS[axis::<B>(b)], &signs.roots[b]);
+            order.roots[b] = q.sum_pairs(&ROOTS[axis::<B>(b)], &signs.roots[b]);
         }
         order
     }
@@ -208,28 +210,13 @@ impl<L: Lane, const B: usize> SingleMotionSums<L, B> {
     }
 }
 
-impl<L: Lane, const B: usize> Series<Batch<L, 1>, B> for SingleMotionSeries<L, B> {
+impl<L: Lane, const B: usize> Coefficients<Batch<L, 1>, B> for SingleMotionSeries<L, B> {
     #[inline(always)]
     fn new() -> Self {
         Self {
             orders: [Order::none(); COUNT],
             signs: Signs::new(),
             partial: [SingleMotionSums::new(); 2],
-        }
-    }
-
-    #[inline(always)]
-    fn start(&mut self, state: &Coefficient<Batch<L, 1>, B>) {
-        let mut q = Components::new();
-        for i in 0..4 {
-            q.0[i] = state.q[i].0[0];
-        }
-        let [w0, w1, w2] = &state.w;
-        self.orders[0] = Order::new([w0.0[0], w1.0[0], w2.0[0]], q, &self.signs);
-        for b in 0..B {
-            for i in 0..3 {
-                self.orders[0].g[b][i] = state.g[b][i].0[0];
-            }
         }
     }
 
@@ -253,27 +240,6 @@ impl<L: Lane, const B: usize> Series<Batch<L, 1>, B> for SingleMotionSeries<L, B
             }
         }
         at
-    }
-
-    #[inline(always)]
-    fn increment(&self, order: usize, h: Batch<L, 1>) -> [Batch<L, 1>; 7] {
-        let [h] = h.0;
-        let square = h * h;
-        let (mut odd, mut even) = (Components::new(), Components::new());
-        for pair in self.orders[1..=order].chunks_exact(2).rev() {
-            odd = odd.times_plus(square, &pair[0].state);
-            even = even.times_plus(square, &pair[1].state);
-        }
-        let [x, y, z, w, w0, w1, w2, _] = even.times_plus(h, &odd).times(h).0;
-        [
-            Batch([w0]),
-            Batch([w1]),
-            Batch([w2]),
-            Batch([x]),
-            Batch([y]),
-            Batch([z]),
-            Batch([w]),
-        ]
     }
 
     type Sums = SingleMotionSums<L, B>;
@@ -317,11 +283,49 @@ impl<L: Lane, const B: usize> Series<Batch<L, 1>, B> for SingleMotionSeries<L, B
         let [.., w0, w1, w2] = sums.products.0;
         [Batch([w0]), Batch([w1]), Batch([w2])]
     }
+}
+
+impl<L: Lane, const B: usize> Series<Batch<L, 1>, B> for SingleMotionSeries<L, B> {
+    #[inline(always)]
+    fn start(&mut self, state: &Coefficient<Batch<L, 1>, B>) {
+        let mut q = Components::new();
+        for i in 0..4 {
+            q.0[i] = state.q[i].0[0];
+        }
+        let [w0, w1, w2] = &state.w;
+        self.orders[0] = Order::new([w0.0[0], w1.0[0], w2.0[0]], q, &self.signs);
+        for b in 0..B {
+            for i in 0..3 {
+                self.orders[0].g[b][i] = state.g[b][i].0[0];
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn increment(&self, order: usize, h: Batch<L, 1>) -> [Batch<L, 1>; 7] {
+        let [h] = h.0;
+        let square = h * h;
+        let (mut odd, mut even) = (Components::new(), Components::new());
+        for pair in self.orders[1..=order].chunks_exact(2).rev() {
+            odd = odd.times_plus(square, &pair[0].state);
+            even = even.times_plus(square, &pair[1].state);
+        }
+        let [x, y, z, w, w0, w1, w2, _] = even.times_plus(h, &odd).times(h).0;
+        [
+            Batch([w0]),
+            Batch([w1]),
+            Batch([w2]),
+            Batch([x]),
+            Batch([y]),
+            Batch([z]),
+            Batch([w]),
+        ]
+    }
 
     #[inline(always)]
     fn extend(&mut self, k: usize, sums: &Self::Sums, acceleration: &[Batch<L, 1>; 3]) {
-        let reciprocal = L::new(RECIPROCALS[k + 1]);
-        let half = L::new(0.5 * RECIPROCALS[k + 1]);
+        let reciprocal: L = Number::over(k + 1);
+        let half: L = Number::over(2 * (k + 1));
         let products = &sums.products.0;
         let [first, second, third] = &self.signs.turned;
         let mut q = Components::new();

@@ -4,7 +4,7 @@
 //! of the variational equations. Steps are as long as both allow.
 
 use super::batch::Batch;
-use super::series::{Coefficient, Series, increment};
+use super::series::{AnyNumber, Coefficient, Coefficients};
 use crate::motion::loads::variables::{Varied, WIDTH};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
@@ -33,13 +33,11 @@ impl VariedCoefficients {
         }
     }
 
-    /// Set the coefficient of order `k` to a number times a factor.
+    /// Set the coefficient of order `k`.
     #[inline(always)]
-    pub(super) fn set(&mut self, k: usize, number: &Varied, factor: f64) {
-        self.values[k] = number.value * factor;
-        for n in 0..WIDTH {
-            self.slopes[k].0[n] = number.slopes[n] * factor;
-        }
+    pub(super) fn set(&mut self, k: usize, number: &Varied) {
+        self.values[k] = number.value;
+        self.slopes[k].0 = number.slopes;
     }
 
     /// Return the coefficient of order `k`.
@@ -70,7 +68,7 @@ pub(super) struct Products<const B: usize> {
     crossed: [[Varied; 3]; B],
 }
 
-impl<const B: usize> Series<One, B> for VariationalSeries<B> {
+impl<const B: usize> Coefficients<One, B> for VariationalSeries<B> {
     fn new() -> Self {
         let row = |_| VariedCoefficients::new();
         Self {
@@ -78,15 +76,6 @@ impl<const B: usize> Series<One, B> for VariationalSeries<B> {
             q: std::array::from_fn(row),
             g: std::array::from_fn(|_| std::array::from_fn(row)),
             radii: [ConvergenceRadius::default(); 2],
-        }
-    }
-
-    fn start(&mut self, state: &Coefficient<One, B>) {
-        let rows = (self.w.iter_mut()).chain(&mut self.q);
-        let rows = rows.chain(self.g.as_flattened_mut());
-        let numbers = state.w.iter().chain(&state.q);
-        for (row, Batch([number])) in rows.zip(numbers.chain(state.g.as_flattened())) {
-            row.set(0, number, 1.0);
         }
     }
 
@@ -123,10 +112,6 @@ impl<const B: usize> Series<One, B> for VariationalSeries<B> {
         }
     }
 
-    fn increment(&self, order: usize, h: One) -> [One; 7] {
-        increment(self, order, h)
-    }
-
     type Sums = Products<B>;
 
     fn sums(&mut self, k: usize) -> Products<B> {
@@ -138,20 +123,32 @@ impl<const B: usize> Series<One, B> for VariationalSeries<B> {
         let [x, y, z] = sums.spins;
         [Batch([x]), Batch([y]), Batch([z])]
     }
+}
+
+impl<const B: usize> AnyNumber<One, B> for VariationalSeries<B> {
+    #[inline(always)]
+    fn put_omega(&mut self, k: usize, i: usize, Batch([x]): One) {
+        self.w[i].set(k, &x);
+    }
 
     #[inline(always)]
-    fn extend(&mut self, k: usize, sums: &Products<B>, acceleration: &[One; 3]) {
-        let (next, half) = (1.0 / (k + 1) as f64, 0.5 / (k + 1) as f64);
-        for (row, Batch([x])) in self.w.iter_mut().zip(acceleration) {
-            row.set(k + 1, x, next);
-        }
-        for (row, x) in self.q.iter_mut().zip(&sums.turned) {
-            row.set(k + 1, x, half);
-        }
-        let crossed = sums.crossed.as_flattened();
-        for (row, x) in self.g.as_flattened_mut().iter_mut().zip(crossed) {
-            row.set(k + 1, x, next);
-        }
+    fn put_attitude(&mut self, k: usize, i: usize, Batch([x]): One) {
+        self.q[i].set(k, &x);
+    }
+
+    #[inline(always)]
+    fn put_direction(&mut self, k: usize, b: usize, i: usize, Batch([x]): One) {
+        self.g[b][i].set(k, &x);
+    }
+
+    #[inline(always)]
+    fn attitude_sum(sums: &Products<B>, i: usize) -> One {
+        Batch([sums.turned[i]])
+    }
+
+    #[inline(always)]
+    fn direction_sum(sums: &Products<B>, b: usize, i: usize) -> Option<One> {
+        Some(Batch([sums.crossed[b][i]]))
     }
 }
 
