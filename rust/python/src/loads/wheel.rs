@@ -268,7 +268,7 @@ impl PyWheel {
             rate: pick(py, &this.rate, &shape, &rows)?,
             turns: this.turns,
         };
-        numbers.acting(py, load.map(|part| part.picked(py, &shape, key))?)
+        numbers.acting(py, load.map(|part| part.pick(py, &shape, key))?)
     }
 
     /// The load that it is, as its parts, and its numbers; for pickle.
@@ -396,7 +396,7 @@ fn option(wheel: &Bound<'_, PyWheel>, name: &str) -> PyResult<Option<Py<PyAny>>>
             picked.get_item(2)?,
         );
         if let Ok(load) = value.cast::<PyLoad>() {
-            let load = load.get().map(|part| part.picked(py, &shape, &key))?;
+            let load = load.get().map(|part| part.pick(py, &shape, &key))?;
             value = load.into_pyobject(py)?.into_any();
         } else if value.hasattr("dtype")? && !is_table {
             let every = numpy(py)?.call_method1("broadcast_to", (value, shape))?;
