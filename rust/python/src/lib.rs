@@ -15,7 +15,7 @@
 //! | `pictures` | pictures of exact motions, which Python draws |
 //! | `uncertain` | numbers with a sigma, and the covariances of bodies |
 //! | `environment` | the variables that limit threads and name the instruction set |
-//! | the others | one each for a class or module of the Python package |
+//! | the others | a class or module of the Python package, or what several of them read as arguments |
 
 // What Python sees is documented in Python's terms; the names are public to it alone.
 #![allow(missing_docs, clippy::doc_markdown, clippy::needless_pass_by_value)]

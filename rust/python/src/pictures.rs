@@ -22,7 +22,7 @@ macro_rules! draw_methods {
             /// end : float
             ///     The time to which it is shown.
             /// **options
-            ///     As of `polhode.animation.animate`: `shape`, `frames`, `duration`, `title`, `time_unit`, `size`, `fps`, `labels`
+            ///     As of `polhode.animation.animate`: `shape`, `frames`, `duration`, `title`, `time_label`, `size`, `fps`, `labels`
             ///     and `progress`.
             ///
             /// Returns

@@ -19,8 +19,8 @@ use crate::error::{BodyFault, Error};
 use crate::numerics::double_double::{DoubleDouble, two_sum};
 use crate::numerics::eigen3::eigen3;
 use crate::numerics::lane::Lane;
-use crate::numerics::reduce::{BLOCK, depth};
 use crate::numerics::threads::{Halt, fill_blocks};
+use crate::numerics::tree_sum::{BLOCK, depth};
 
 // Particles in chunks, in whatever order they come, and the body of all of them.
 
@@ -250,7 +250,7 @@ impl MassAccumulator {
             }
             next = piece.end;
         }
-        // From the last on, the tree of `numerics::reduce`.
+        // From the last on, the tree of `numerics::tree_sum`.
         let mut total = Moments::default();
         for piece in self.pieces.values().rev() {
             total = piece.matter.moments()?.merge(&total);

@@ -11,7 +11,7 @@ use super::validity::{ROUNDING, check_mass, trace};
 use crate::error::{BodyFault, Error, all_finite_of_body};
 use crate::numerics::eigen3::eigen3;
 use crate::numerics::power_of_two::length;
-use crate::numerics::reduce::{depth, sum_terms};
+use crate::numerics::tree_sum::{depth, sum_terms};
 use crate::principal::{PrincipalAxes, canonical_to_rounding, principal_axes, with_sign_rule};
 
 /// The bodies as one rigid body.

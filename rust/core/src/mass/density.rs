@@ -9,12 +9,12 @@ use super::body::RigidBody;
 use super::error_bound::{ErrorBound, UNIT};
 use super::provenance::{BodySource, Checks, Provenance};
 use super::regions::Region;
+use super::scaling::Units;
 use super::second_moment::SecondMoment;
-use super::units::Units;
 use crate::error::{BodyFault, Error, finite};
 use crate::numerics::power_of_two::{exponent, halves, times_power_of_two};
 use crate::numerics::quadrature::{Cell, Integrand, Leaf, Rule, integrate};
-use crate::numerics::reduce::{depth, sum_terms};
+use crate::numerics::tree_sum::{depth, sum_terms};
 
 // How far a cubature may go, and how far it came.
 

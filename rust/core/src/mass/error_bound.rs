@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::numerics::reduce::depth;
+use crate::numerics::tree_sum::depth;
 
 /// The unit of rounding, 2⁻⁵³.
 pub(crate) const UNIT: f64 = 0.5 * f64::EPSILON;

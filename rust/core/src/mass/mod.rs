@@ -30,7 +30,7 @@
 //! | thin shells | [`surface`] |
 //! | shells of finite thickness | [`thick_shell`] |
 //! | thin wires | [`curve`] |
-//! | powers of two as units, so that nothing under- or overflows on the way | `units` |
+//! | powers of two as units, so that nothing under- or overflows on the way | `scaling` |
 //! | equimomental systems: few particles with the moments of a body | [`equimomental`] |
 //!
 //! # Examples
@@ -98,6 +98,7 @@ pub mod realizable;
 pub mod refined;
 pub mod regions;
 pub mod rods;
+mod scaling;
 pub mod second_moment;
 mod simplex;
 pub mod solids;
@@ -105,7 +106,6 @@ pub mod surface;
 pub mod tetrahedra;
 pub mod thick_shell;
 pub mod transforms;
-mod units;
 pub mod validity;
 pub mod voxels;
 

@@ -1,4 +1,6 @@
-//! Which tensors belong to bodies: the nearest one that does, and whether a body of a given size can have it.
+//! The nearest tensor that a body can have, and whether a body within a given box can have one.
+//!
+//! Whether a tensor is that of a body at all is decided in `validity`.
 
 use nalgebra::{Matrix3, Vector3};
 

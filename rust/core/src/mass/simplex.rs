@@ -6,7 +6,7 @@
 //!
 //! Coordinates are taken from a reference within the body, so that nothing cancels wherever the body stands. Simplex i
 //! goes to lane `i mod 8` of block `i / 4096`; lanes and blocks are merged in a fixed tree (see
-//! [`reduce`](crate::numerics::reduce)), so the bits depend neither on threads nor on how a stream is cut.
+//! [`tree_sum`](crate::numerics::tree_sum)), so the bits depend neither on threads nor on how a stream is cut.
 
 use std::convert::Infallible;
 use std::marker::PhantomData;
@@ -18,10 +18,10 @@ use crate::error::Error;
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::double_double::two_sum;
 use crate::numerics::lane::{Double, Lane};
-use crate::numerics::reduce::{BLOCK, depth};
 use crate::numerics::split_vector::along_axes;
 use crate::numerics::structure_of_arrays::{ROWS, StructureOfArrays};
 use crate::numerics::threads::{Watch, fill_blocks};
+use crate::numerics::tree_sum::{BLOCK, depth};
 use crate::principal::principal_axes;
 
 // What the sums over simplices come to in a frame.

@@ -9,15 +9,15 @@ use super::body::RigidBody;
 use super::error_bound::{ErrorBound, UNIT};
 use super::integrator::{Matter, integrate};
 use super::provenance::{BodySource, Checks, Provenance};
+use super::scaling::{QUANTUM, Units};
 use super::second_moment::SecondMoment;
 use super::simplex::LocalFrame;
-use super::units::{QUANTUM, Units};
 use crate::error::{CellFault, Error, finite};
 use crate::numerics::expansion;
 use crate::numerics::power_of_two::{exponent, halves, times_power_of_two};
-use crate::numerics::reduce::{block_sum, depth, sum_blocks};
 use crate::numerics::split_vector::{SplitVector, determinant};
 use crate::numerics::threads::{Watch, each_watched};
+use crate::numerics::tree_sum::{block_sum, depth, sum_blocks};
 
 // Where densities are given; what nodes, cells and densities must be.
 

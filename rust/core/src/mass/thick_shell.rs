@@ -23,9 +23,9 @@ use super::simplex::{LocalFrame, Sums};
 use super::surface::finish;
 use crate::error::{Corner, Count, Error, MeshFault};
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
-use crate::numerics::reduce::{block_sum, sum_blocks};
 use crate::numerics::split_vector::{SplitVector, cross};
 use crate::numerics::threads::{Halt, Watch, each_watched};
+use crate::numerics::tree_sum::{block_sum, sum_blocks};
 use crate::principal::{PrincipalAxes, principal_axes};
 
 // The body of a shell: what is asked of its mid-surface and its thickness, and the axes its integrals are taken in.

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::body::RigidBody;
 use super::error_bound::{ErrorBound, UNIT, faint};
 use super::provenance::{MomentsFrom, Provenance};
-use super::units::Units;
+use super::scaling::Units;
 use super::validity::{check_mass, check_rotation, mean_of_halves, trace};
 use crate::error::{Error, all_finite, all_finite_of_body, finite};
 use crate::numerics::power_of_two::{exponent, times_power_of_two};

@@ -29,15 +29,15 @@ use super::integrator::{Matter, integrate};
 use super::particles::Watch;
 use super::particles::sums::{CentralInAxes, block_sums};
 use super::provenance::{BodySource, Checks, Provenance};
+use super::scaling::Units;
 use super::second_moment::SecondMoment;
 use super::simplex::LocalFrame;
-use super::units::Units;
 use crate::error::{BodyFault, Error, all_finite, finite};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
-use crate::numerics::reduce::{depth, sum_blocks, sum_terms};
 use crate::numerics::threads::fill_blocks;
+use crate::numerics::tree_sum::{depth, sum_blocks, sum_terms};
 
 // The body of a grid of cells.
 

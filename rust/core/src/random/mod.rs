@@ -13,5 +13,5 @@
 pub mod laws;
 pub mod stream;
 
-pub use crate::numerics::covariance::factor;
+pub use crate::numerics::cholesky::factor;
 pub use stream::{Stream, philox};

@@ -2,7 +2,7 @@
 
 use super::variable::{Source, Variable};
 use crate::error::{Error, finite};
-use crate::numerics::covariance::factor;
+use crate::numerics::cholesky::factor;
 
 /// A linear form: what one standard deviation of each variable does to a number, in the order of the variables.
 pub type Form = Vec<(Variable, f64)>;

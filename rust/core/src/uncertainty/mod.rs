@@ -14,7 +14,7 @@
 //! | through the ways to a body and from body to body; through the corners of a polygon | [`body_functions`] |
 //! | through the vertices of a mesh | [`mesh`] |
 //! | through sums, where parts are many; through particles | [`assemblies`] |
-//! | which covariances no body can have | [`possible`] |
+//! | which covariances no body can have | [`check_covariance`](mod@check_covariance) |
 //! | standard deviations of all that a body has, and where they are not to be trusted | [`deviations`](mod@deviations) |
 //!
 //! # Examples
@@ -53,11 +53,11 @@
 
 pub mod assemblies;
 pub mod body_functions;
+pub mod check_covariance;
 pub mod deviations;
 pub mod linear_forms;
 pub mod linear_uncertainty;
 pub mod mesh;
-pub mod possible;
 pub mod propagate;
 pub mod variable;
 
@@ -66,10 +66,10 @@ pub use body_functions::{
     FromPositiveProducts, FromPrincipal, FromTensor, FromTensorAboutOrigin, OfPolygon, OfShape,
     Rotated, Scaled, Shape, Translated,
 };
+pub use check_covariance::check_covariance;
 pub use deviations::{Deviations, deviations, deviations_about};
 pub use linear_forms::{Form, LinearForms};
 pub use linear_uncertainty::{LinearUncertainty, Tangent};
 pub use mesh::of_mesh;
-pub use possible::check_possible;
 pub use propagate::{BodyFunction, Inputs, propagate};
 pub use variable::{PROBES, Source, Variable};

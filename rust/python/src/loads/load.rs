@@ -526,7 +526,7 @@ impl PyLoad {
                     continue;
                 }
                 slots.push(Slot {
-                    name: unused_message(part.name.as_deref().unwrap_or("states"), &slots),
+                    name: unused_name(part.name.as_deref().unwrap_or("states"), &slots),
                     first,
                     count,
                 });
@@ -674,7 +674,7 @@ impl PyLoad {
 }
 
 /// A name that no slot has yet: the one that is asked for, or with the first number that makes it one.
-fn unused_message(name: &str, slots: &[Slot]) -> String {
+fn unused_name(name: &str, slots: &[Slot]) -> String {
     let is_taken = |name: &str| slots.iter().any(|slot| slot.name == name);
     let mut found = name.to_owned();
     let mut number = 2;

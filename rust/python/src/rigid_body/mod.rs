@@ -8,16 +8,18 @@
 //! | `provenance` | where the numbers come from, and how good they are |
 //! | `figures` | what a body looks like |
 //! | `interop` | what Python does for a body: files, other libraries' objects, pictures |
-//! | `motion` | motions in closed form |
-//! | `simulate`, `outcome`, `ensemble` | motions under loads |
+//! | `instant` | a moving body at one instant: its points, what holds it, whether it spins steadily |
+//! | `simulate`, `simulate_stack`, `outcome` | motions under loads |
+//!
+//! Motions in closed form are classes of their own: `crate::free_motion`, `crate::heavy_top`, `crate::gyrostat`.
 
 mod construct;
-mod ensemble;
 mod figures;
+mod instant;
 mod interop;
-mod motion;
 mod outcome;
 mod properties;
 mod provenance;
 mod simulate;
+mod simulate_stack;
 mod uncertainty;

@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple};
 
-use super::ensemble::{Ensemble, Results, Runs};
+use super::simulate_stack::{Ensemble, Results, Runs};
 use crate::arrays::{Item, Numbers, write, write_of};
 use crate::body::PyRigidBody;
 use crate::errors::at_row;

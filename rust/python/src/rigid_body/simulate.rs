@@ -6,7 +6,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::ensemble::{Ensemble, Start};
+use super::simulate_stack::{Ensemble, Start};
 use crate::about::is_pivot;
 use crate::arrays::{read, read_scalar};
 use crate::attitudes::read_attitude_exactly;

@@ -8,8 +8,8 @@ use polhode::mass::inertial_parameters::place;
 use polhode::uncertainty::linear_uncertainty::plus;
 use polhode::uncertainty::propagate::directly;
 use polhode::uncertainty::{
-    Deviations, LinearForms, LinearUncertainty, PROBES, Source, Tangent, Variable, check_possible,
-    deviations, deviations_about,
+    Deviations, LinearForms, LinearUncertainty, PROBES, Source, Tangent, Variable,
+    check_covariance, deviations, deviations_about,
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -289,7 +289,7 @@ impl PyRigidBody {
             .flat_map(|uncertainties| uncertainties.iter())
             .enumerate()
         {
-            check_possible(&self.bodies[row], uncertainty)
+            check_covariance(&self.bodies[row], uncertainty)
                 .map_err(|error| at_row(&self.bodies.shape, row, &to_py(py, &error), py))?;
         }
         Ok(self)

@@ -13,9 +13,9 @@ use crate::mass::error_bound::{ErrorBound, UNIT};
 use crate::mass::provenance::BodySource;
 use crate::mass::second_moment::SecondMoment;
 use crate::numerics::power_of_two::times_power_of_two;
-use crate::numerics::reduce::{depth, sum_terms};
 use crate::numerics::split_vector::{SplitVector, cross2};
 use crate::numerics::threads::Watch;
+use crate::numerics::tree_sum::{depth, sum_terms};
 
 /// Triangle with these corners, in any order: `S = m (e₁e₁ᵀ + e₂e₂ᵀ + e₃e₃ᵀ)/36` with its edges e, C their mean.
 ///

@@ -10,12 +10,12 @@ use crate::mass::body::RigidBody;
 use crate::mass::error_bound::ErrorBound;
 use crate::mass::integrator::{Matter, integrate};
 use crate::mass::provenance::Provenance;
+use crate::mass::scaling::{QUANTUM, Units};
 use crate::mass::second_moment::SecondMoment;
 use crate::mass::simplex::LocalFrame;
-use crate::mass::units::{QUANTUM, Units};
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
-use crate::numerics::reduce::sum_blocks;
 use crate::numerics::threads::Watch;
+use crate::numerics::tree_sum::sum_blocks;
 
 /// How many particles are asked for the point that the sums are taken about.
 const SAMPLE: usize = 16;

@@ -1,14 +1,14 @@
 //! Sums over particles, eight particles side by side.
 //!
-//! Particle i goes to the virtual lane i mod 8 of its block, see [`reduce`](crate::numerics::reduce).
+//! Particle i goes to the virtual lane i mod 8 of its block, see [`tree_sum`](crate::numerics::tree_sum).
 
 use nalgebra::{Matrix3, Vector3};
 
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::double_double::two_sum;
 use crate::numerics::lane::Lane;
-use crate::numerics::reduce::{LANES, merge_lanes};
 use crate::numerics::split_vector::along_axes;
+use crate::numerics::tree_sum::{LANES, merge_lanes};
 
 /// What one particle adds to `K` sums.
 pub(crate) trait Addend<const K: usize>: Copy + Sync {

@@ -12,8 +12,8 @@ use std::hash::{BuildHasher, RandomState};
 use std::sync::LazyLock;
 
 use crate::error::{Count, MeshFault};
-use crate::numerics::reduce::BLOCK;
 use crate::numerics::threads::{Halt, Watch, fill_blocks};
+use crate::numerics::tree_sum::BLOCK;
 
 /// The three corners of a triangle.
 pub(super) type Triangle = [[f64; 3]; 3];

@@ -14,8 +14,8 @@ use crate::mass::provenance::Checks;
 use crate::mass::simplex::{
     Corners, LocalFrame, Partial, Shell, Solid, Sums, block_sum, merge, sums,
 };
-use crate::numerics::reduce::BLOCK;
 use crate::numerics::threads::{Halt, Watch, fill_blocks};
+use crate::numerics::tree_sum::BLOCK;
 
 /// A solid of uniform density bounded by a closed, consistently wound triangle mesh.
 ///

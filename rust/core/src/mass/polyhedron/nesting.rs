@@ -13,8 +13,8 @@ use super::boundary::mark_of;
 use super::view::{Index, View};
 use crate::error::MeshFault;
 use crate::mass::simplex::Corners;
-use crate::numerics::reduce::BLOCK;
 use crate::numerics::threads::{Halt, Watch, each_watched, fill_blocks};
+use crate::numerics::tree_sum::BLOCK;
 
 /// A part of a mesh that is connected by its corners.
 #[derive(Clone, Copy, Debug)]

@@ -7,9 +7,9 @@ use crate::mass::body::RigidBody;
 use crate::mass::error_bound::{ErrorBound, UNIT};
 use crate::mass::integrator::{is_settled, is_stout, sums_in_own_axes};
 use crate::mass::provenance::{BodySource, Checks, MomentsFrom, Provenance};
+use crate::mass::scaling::{QUANTUM, Units};
 use crate::mass::second_moment::SecondMoment;
 use crate::mass::simplex::{LocalFrame, Sums};
-use crate::mass::units::{QUANTUM, Units};
 use crate::numerics::power_of_two::exponent;
 
 /// What to make of a mesh that is not as it should be.

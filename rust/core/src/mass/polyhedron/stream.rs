@@ -9,7 +9,7 @@ use crate::error::{Error, FileFault};
 pub type Triangle = [[f64; 3]; 3];
 
 /// Triangles that a stream hands over at a time, but for the last time.
-pub const BLOCK: usize = crate::numerics::reduce::BLOCK;
+pub const BLOCK: usize = crate::numerics::tree_sum::BLOCK;
 
 /// The triangles of a file in order, as often as asked, without all of them ever being in memory.
 ///

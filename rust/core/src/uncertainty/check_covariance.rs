@@ -19,7 +19,7 @@ const KNOWN: f64 = 1e-9;
 ///
 /// ```
 /// use polhode::mass::{Amount, laminae};
-/// use polhode::uncertainty::{Form, Source, check_possible, propagate::directly};
+/// use polhode::uncertainty::{Form, Source, check_covariance, propagate::directly};
 ///
 /// // A disk without thickness: its moments are ½ I₃ each, and cannot have deviations of their own.
 /// let disk = laminae::disk(1.0, Amount::Mass(1.0))?;
@@ -30,14 +30,14 @@ const KNOWN: f64 = 1e-9;
 ///     }
 ///     directly(&forms)
 /// };
-/// assert!(check_possible(&disk, &with_sigma_of(&[0])).is_ok());
-/// assert!(check_possible(&disk, &with_sigma_of(&[4, 5, 6])).is_err());
+/// assert!(check_covariance(&disk, &with_sigma_of(&[0])).is_ok());
+/// assert!(check_covariance(&disk, &with_sigma_of(&[4, 5, 6])).is_err());
 /// # Ok::<(), polhode::Error>(())
 /// ```
 ///
 /// # Errors
 /// [`UncertaintyFault::NoBody`] when a second moment that is zero has a variance.
-pub fn check_possible(body: &RigidBody, uncertainty: &LinearUncertainty) -> Result<(), Error> {
+pub fn check_covariance(body: &RigidBody, uncertainty: &LinearUncertainty) -> Result<(), Error> {
     let principal = body.principal();
     let [i1, i2, i3] = principal.moments;
     let sum = 0.5 * (i1 + i2 + i3);
