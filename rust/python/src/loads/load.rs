@@ -275,12 +275,14 @@ impl Part {
         Ok(scaled)
     }
 
-    /// That functions with states of their own are not scaled or scheduled.
+    /// That wheels, slugs and functions with states of their own are not scaled or scheduled. A wheel without moment is a
+    /// rotor, but with a name.
     fn check_changes(&self, py: Python<'_>, what: &'static str) -> PyResult<()> {
         let has_states = match &self.acts {
             Acts::WithStates(_) => true,
             Acts::Compiled(compiled) => !compiled.initial.is_empty(),
-            Acts::Term(_) | Acts::Callback(_) => false,
+            Acts::Term(_) => self.name.is_some(),
+            Acts::Callback(_) => false,
         };
         if has_states {
             return Err(to_py(py, &MotionFault::StatesStay { what }.into()));

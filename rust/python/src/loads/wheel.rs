@@ -127,31 +127,39 @@ fn pick<T: Clone + Send + Sync>(
 
 #[pymethods]
 impl PyWheel {
+    /// Axis a of the wheel, in the body frame, shape (..., 3); only the direction counts.
     #[getter]
     fn axis<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         Ok(write(py, &self.axis)?.into_any())
     }
 
+    /// Moment of inertia J of the wheel about its axis.
     #[getter]
     fn inertia<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         write_numbers(py, &self.inertia)
     }
 
+    /// J Ω at the start, where Ω is the rate of the wheel relative to the body.
     #[getter]
     fn momentum<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         write_numbers(py, &self.momentum)
     }
 
+    /// Rate Ω relative to the body at the start, in radians per unit of time. NaN if J is zero, and for a speed
+    /// that is given at times.
     #[getter]
     fn rate<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         write_numbers(py, &self.rate)
     }
 
+    /// How the wheel turns: "free", "held" at a constant rate, or "driven" by a motor, by friction or by a speed that
+    /// changes.
     #[getter]
     fn mode(&self) -> &'static str {
         self.turns.word()
     }
 
+    /// Name of its state in ``states`` of a trajectory.
     #[getter]
     fn name(slf: &Bound<'_, Self>) -> String {
         let part = slf.as_super().get().parts.first();
@@ -160,32 +168,37 @@ impl PyWheel {
             .to_owned()
     }
 
-    /// Not `torque`, which a load has at a time.
+    /// Torque of the motor that was given to `loads.wheel`; None where none was. Its method `torque` is that of a load.
     #[getter]
     fn motor(slf: &Bound<'_, Self>) -> PyResult<Option<Py<PyAny>>> {
         option(slf, "torque")
     }
 
+    /// Rate Ω that was given, a constant or values at `times`; None where none was.
     #[getter]
     fn speed(slf: &Bound<'_, Self>) -> PyResult<Option<Py<PyAny>>> {
         option(slf, "speed")
     }
 
+    /// Times of the torque or of the speed; None where none were given.
     #[getter]
     fn times(slf: &Bound<'_, Self>) -> PyResult<Option<Py<PyAny>>> {
         option(slf, "times")
     }
 
+    /// Coefficient of viscous friction in the bearing; None where none was given.
     #[getter]
     fn friction(slf: &Bound<'_, Self>) -> PyResult<Option<Py<PyAny>>> {
         option(slf, "friction")
     }
 
+    /// Torque of dry friction in the bearing; None where none was given.
     #[getter]
     fn dry_friction(slf: &Bound<'_, Self>) -> PyResult<Option<Py<PyAny>>> {
         option(slf, "dry_friction")
     }
 
+    /// Largest possible torque of a motor that follows a feedback; None where none was given.
     #[getter]
     fn limit(slf: &Bound<'_, Self>) -> PyResult<Option<Py<PyAny>>> {
         option(slf, "limit")
