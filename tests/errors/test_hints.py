@@ -261,13 +261,13 @@ def test_a_molecule_is_no_mesh(tmp_path: Path, option: dict[str, Any]) -> None:
     ("ask", "says"),
     [
         (lambda: BODY.energy, "no attribute 'energy'; kinetic_energy(omega) gives it"),
-        (lambda: BODY.com, "'com'; center_of_mass is it"),
-        (lambda: BODY.moments, "'moments'; principal_moments are they"),
-        (lambda: BODY.axes, "'axes'; principal.axes are they"),
+        (lambda: BODY.com, "'com'; use center_of_mass"),
+        (lambda: BODY.moments, "'moments'; use principal_moments"),
+        (lambda: BODY.axes, "'axes'; use principal.axes"),
         (lambda: BODY.moment_of_inertia, "inertia_about(point) that about another"),
         (lambda: BODY.simulate(*SPUN).energy, "'energy'; kinetic_energy() gives it"),
         (lambda: BODY.simulate(*SPUN).to_dataframe(), "'to_dataframe'; to_pandas() gives a DataFrame"),
-        (lambda: BODY.simulate(*SPUN).times, "'times'; t is it"),
+        (lambda: BODY.simulate(*SPUN).times, "'times'; use t"),
         (lambda: SOLIDS.cuboid, "module 'polhode.solids' has no attribute 'cuboid'; box((x, y, z)) is one"),
         (lambda: SOLIDS.ball, "'ball'; sphere(radius) is one"),
         (lambda: SOLIDS.disk, "'disk'; cylinder(radius, height) is one, laminae.disk(radius)"),
@@ -292,12 +292,12 @@ def test_a_molecule_is_no_mesh(tmp_path: Path, option: dict[str, Any]) -> None:
             lambda: TOP.heavy_top((0, 0, 1), gravity=(0, 0, -1)).energy,
             "'energy'; at(t).kinetic_energy() gives it",
         ),
-        (lambda: TOP.heavy_top((0, 0, 1), gravity=(0, 0, -1)).path, "'path'; mode is it"),
+        (lambda: TOP.heavy_top((0, 0, 1), gravity=(0, 0, -1)).path, "'path'; use mode"),
         (lambda: TOP.heavy_top((0, 0, 1), gravity=(0, 0, -1)).modde, "'modde'; did you mean mode?"),
         (lambda: BODY.free_motion((0, 0, 1)).energy, "'energy'; kinetic_energy() gives it, and its .total"),
         (
             lambda: BODY.gyrostat((0, 0, 1)).free_motion((0, 1, 1)).period,
-            "'period'; periods.rotation is it",
+            "'period'; use periods.rotation",
         ),
         (lambda: BODY.gyrostat((0, 0, 1)).equilibra, "'equilibra'; did you mean equilibria?"),
         (
@@ -312,7 +312,7 @@ def test_a_molecule_is_no_mesh(tmp_path: Path, option: dict[str, Any]) -> None:
         (lambda: POLHODE.symbolic.cone, "'cone'; shape(name) makes one"),
         (lambda: POLHODE.plot.trajectory, "'trajectory'; angular_velocity(trajectory) draws one"),
         (lambda: POLHODE.euler_angles.from_matrix, "from_quaternion takes a quaternion"),
-        (lambda: POLHODE.kinematics.velocity, "RigidBody.point_velocity(point, omega) is it"),
+        (lambda: POLHODE.kinematics.velocity, "use RigidBody.point_velocity(point, omega)"),
     ],
 )
 def test_other_names_lead_to_those_here(ask: Callable[[], object], says: str) -> None:

@@ -33,8 +33,8 @@ __all__ = [
     "motion_at",
     "one_chunk",
     "require_xarray",
-    "simulated",
-    "summed",
+    "simulate",
+    "sum_particles",
     "xarray_array",
 ]
 
@@ -351,7 +351,7 @@ _ROW: Final = re.compile(r"(?<=\bmasses\[)\d+|(?<=the element at \()\d+")
 """A row in an error of the core."""
 
 
-def summed(masses: Any, positions: Any, start: int) -> MassAccumulator | None:
+def sum_particles(masses: Any, positions: Any, start: int) -> MassAccumulator | None:
     """Sum the particles of one body.
 
     Parameters
@@ -489,7 +489,7 @@ _TIGHTEST: Final = 2.3e-15
 """Below this `rtol` "auto" takes no closed form."""
 
 
-def simulated(body: RigidBody, t: Any, omega: Any, attitude: Any, **options: Any) -> Any:
+def simulate(body: RigidBody, t: Any, omega: Any, attitude: Any, **options: Any) -> Any:
     """Return the states of runs as an `xarray.Dataset` of dask arrays.
 
     Parameters

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
         mode_probabilities,
     )
     from polhode.uncertainty.propagation import PropagationResult, propagate
-    from polhode.uncertainty.uncertain import InertialParameters, joined, to_ufloats
+    from polhode.uncertainty.uncertain import InertialParameters, join, to_ufloats
 else:
 
     def __getattr__(name):
@@ -41,7 +41,7 @@ _HOMES = {
         "probabilities",
     ),
     **dict.fromkeys(("PropagationResult", "propagate"), "propagation"),
-    **dict.fromkeys(("InertialParameters", "joined", "to_ufloats"), "uncertain"),
+    **dict.fromkeys(("InertialParameters", "join", "to_ufloats"), "uncertain"),
 }
 """The file of this room in which each public name stands."""
 
@@ -57,7 +57,7 @@ __all__ = [
     "Shares",
     "Sigmas",
     "axis_probabilities",
-    "joined",
+    "join",
     "ledger",
     "mode_probabilities",
     "propagate",

@@ -13,7 +13,7 @@ from polhode._format import short
 from polhode._hints import check_kind
 from polhode._progress import progress_bar
 from polhode.errors import PolhodeError
-from polhode.uncertainty.uncertain import joined
+from polhode.uncertainty.uncertain import join
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -490,7 +490,7 @@ class _Way:
 
 def _number(argument: Any, place: int) -> Uncertain:
     """Take an argument as `Uncertain`."""
-    number = argument if isinstance(argument, _core.Uncertain) else joined(argument)
+    number = argument if isinstance(argument, _core.Uncertain) else join(argument)
     if number is None:
         message = (
             f"arguments: number {place} is {type(argument).__name__} without a sigma; let the function know "

@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 
 __all__ = [
     "InertialParameters",
-    "joined",
+    "join",
     "to_ufloats",
     "ufloat_kinds",
     "ufloat_terms",
 ]
 
 
-def joined(values: Any) -> Any:
+def join(values: Any) -> Any:
     """Join numbers, some of them uncertain, into one `Uncertain`; None if none is uncertain.
 
     An argument that may be uncertain also accepts such a list, and joins it in this way.
@@ -56,9 +56,9 @@ def joined(values: Any) -> Any:
     Examples
     --------
     >>> from polhode import Uncertain, solids
-    >>> from polhode.uncertainty import joined
+    >>> from polhode.uncertainty import join
     >>> edge = Uncertain(1.0, 0.01)
-    >>> joined([edge, 2.0, edge]).covariance.round(6)
+    >>> join([edge, 2.0, edge]).covariance.round(6)
     array([[0.0001, 0.    , 0.0001],
            [0.    , 0.    , 0.    ],
            [0.0001, 0.    , 0.0001]])

@@ -431,7 +431,7 @@ pub(crate) fn value_of<'py>(
     }
 }
 
-/// RecursionGuard lists are looked at by `joined`.
+/// RecursionGuard lists are looked at by `join`.
 const NESTED: usize = 4;
 
 /// Whether an argument is an array, a number, or lists of such.
@@ -525,11 +525,11 @@ fn join_uncertain<'py>(object: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py,
     let found = object
         .py()
         .import("polhode.uncertainty")?
-        .call_method1("joined", (object,))?;
+        .call_method1("join", (object,))?;
     Ok(found.cast_into::<PyUncertain>().ok())
 }
 
-/// As [`joined`], of an argument that was refused for this fault.
+/// As `join`, of an argument that was refused for this fault.
 fn joined_or<'py>(object: &Bound<'py, PyAny>, fault: PyErr) -> PyResult<Bound<'py, PyUncertain>> {
     // Ctrl-C and lack of memory end the call at once.
     if is_about_values(&fault, object.py()) {

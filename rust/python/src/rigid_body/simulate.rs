@@ -170,7 +170,7 @@ impl PyRigidBody {
             let numbers = (rtol, atol, max_steps);
             let options = options_of(py, arrays, words, numbers, progress.as_ref())?;
             let given = (slf, t, omega, attitude);
-            if let Some(motion) = handed_over(py, "simulated", given, Some(&options))? {
+            if let Some(motion) = handed_over(py, "simulate", given, Some(&options))? {
                 return Ok(motion);
             }
         }

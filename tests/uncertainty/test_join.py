@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from polhode import Uncertain
-from polhode.uncertainty import joined
+from polhode.uncertainty import join
 from scipy.spatial.transform import Rotation
 from uncertain_bodies import RigidBody, laminae, rods, solids
 from uncertainties import ufloat
@@ -19,42 +19,42 @@ THEIRS = ufloat(3.0, 0.03)
 
 class TestNumbers:
     def test_of_one_source_stay_correlated(self) -> None:
-        found = joined([EDGE, 2.0, THEIRS, EDGE])
+        found = join([EDGE, 2.0, THEIRS, EDGE])
         assert found.value.tolist() == [2.0, 2.0, 3.0, 2.0]
         expected = np.diag([4e-4, 0.0, 9e-4, 4e-4])
         expected[0, 3] = expected[3, 0] = 4e-4
         assert found.covariance == pytest.approx(expected, rel=1e-14)
 
     def test_arrays_and_tuples_are_rows(self) -> None:
-        found = joined([PLACE, (0.0, EDGE, 1.0), np.array([7.0, 8.0, 9.0])])
+        found = join([PLACE, (0.0, EDGE, 1.0), np.array([7.0, 8.0, 9.0])])
         assert found.value.tolist() == [[1.0, 2.0, 3.0], [0.0, 2.0, 1.0], [7.0, 8.0, 9.0]]
         assert found.sigma == pytest.approx(np.array([[0.1] * 3, [0.0, 0.02, 0.0], [0.0] * 3]), rel=1e-14)
-        nested = joined([[[EDGE]], [[1.0]]])
+        nested = join([[[EDGE]], [[1.0]]])
         assert nested.value.shape == (2, 1, 1)
-        assert joined(EDGE).sigma == pytest.approx(0.02, rel=1e-15)
-        assert joined(THEIRS).value == 3.0
+        assert join(EDGE).sigma == pytest.approx(0.02, rel=1e-15)
+        assert join(THEIRS).value == 3.0
         for true in (True, np.True_):  # as in a list without numbers that have a sigma
-            assert joined([EDGE, true]).value.tolist() == [2.0, 1.0]
-            assert joined([EDGE, true]).sigma.tolist() == [pytest.approx(0.02, rel=1e-15), 0.0]
+            assert join([EDGE, true]).value.tolist() == [2.0, 1.0]
+            assert join([EDGE, true]).sigma.tolist() == [pytest.approx(0.02, rel=1e-15), 0.0]
 
     def test_none_is_none(self) -> None:
         for plain in ([1.0, 2.0], np.eye(3), "text", None, [[1.0], [2.0, 3.0]], []):
-            assert joined(plain) is None
+            assert join(plain) is None
 
     def test_refused(self) -> None:
         with pytest.raises(ValueError, match="different lengths"):
-            joined([[EDGE, 1.0], [2.0]])
+            join([[EDGE, 1.0], [2.0]])
         with pytest.raises(ValueError, match="different lengths"):
-            joined([EDGE, PLACE])
+            join([EDGE, PLACE])
         with pytest.raises(TypeError, match="rotation"):
-            joined([EDGE, Uncertain(Rotation.identity(), 0.1)])
+            join([EDGE, Uncertain(Rotation.identity(), 0.1)])
         for other in ("2", "a", None, 1j):
             with pytest.raises(TypeError, match="no number"):
-                joined([EDGE, other])
+                join([EDGE, other])
         itself: list[Any] = [EDGE]
         itself.append(itself)
         with pytest.raises(ValueError, match="itself"):
-            joined(itself)
+            join(itself)
 
 
 class TestArguments:
