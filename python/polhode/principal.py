@@ -257,7 +257,7 @@ class PrincipalAxes:
         return self.classify()
 
     def classify(self, rtol: ArrayLike | None = None) -> Any:
-        """Class of the top, as `top`, with another tolerance.
+        """Compute the class of the top, as `top`, with another tolerance.
 
         Moments that differ by less than `rtol` times the largest are taken as equal.
 

@@ -52,7 +52,7 @@ class NutationDamping(NamedTuple):
         return words if words.ndim else str(words)
 
     def angle(self, start_angle: ArrayLike, t: ArrayLike, *, degrees: bool = False) -> Any:
-        """θ at a time after it was `start_angle`, both from 0 to a right angle.
+        """Compute θ at a time after it was `start_angle`, both from 0 to a right angle.
 
         Parameters
         ----------

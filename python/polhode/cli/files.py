@@ -140,7 +140,7 @@ def check_outputs(outputs: Sequence[tuple[str, Path | None]], inputs: Iterable[P
 
 
 def _is_same(one: Path, other: Path) -> bool:
-    """Whether two names lead to one ordinary file; a pipe or a device may be named twice."""
+    """Return whether two names lead to one ordinary file; a pipe or a device may be named twice."""
     if DASH in (one, other):
         return False
     try:

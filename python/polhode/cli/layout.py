@@ -148,7 +148,7 @@ class Report:
         self.sections.append((title, list(fields)))
 
     def as_dict(self) -> dict[str, Any]:
-        """Every field by its key, ``"units"`` of those that have one, and ``"notes"``.
+        """Return every field by its key, ``"units"`` of those that have one, and ``"notes"``.
 
         Where numbers have sigmas these stand in ``"sigma"`` by the same keys, and in ``"linear"`` whether the
         first order is enough for them.
@@ -262,7 +262,7 @@ def _rows(item: Field) -> Iterator[list[str]]:
 
 
 def _rows_with_sigma(item: Field, matrix: NDArray[Any]) -> Iterator[list[str]]:
-    """Numbers beside their sigmas; those for which the first order is not enough are marked."""
+    """Return the numbers beside their sigmas; those for which the first order is not enough are marked."""
     sigmas = np.asarray(item.sigma, dtype=np.float64).reshape(matrix.shape)
     linear = np.broadcast_to(np.asarray(True if item.linear is None else item.linear).ravel(), matrix.size)
     for row, deviations, flags in zip(matrix, sigmas, linear.reshape(matrix.shape), strict=True):
@@ -486,7 +486,7 @@ def _as_text(value: Any) -> Any:
 
 
 def _difference(ours: Any, theirs: Any, size: float) -> float:
-    """Largest difference, relative to the largest component; infinite between values of different kinds."""
+    """Compute the largest difference, relative to the largest component; infinite between different kinds."""
     if isinstance(ours, str) or isinstance(theirs, str) or ours is None or theirs is None:
         return 0.0 if ours == theirs else math.inf
     try:

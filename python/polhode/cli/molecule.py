@@ -267,7 +267,7 @@ class _DerivedSigmas(NamedTuple):
 
 
 def _derive_sigmas(body: RigidBody, moments: _Moments, top: str) -> _DerivedSigmas:
-    """Sigmas of inertial defect, planar moments and Ray's kappa.
+    """Compute the sigmas of inertial defect, planar moments and Ray's kappa.
 
     Where first-order terms cancel, as those of kappa do for a molecule that is as symmetric as water, the
     moments' own flags tell nothing: draws along the body's covariance do. Numbers are raised by their scale,
@@ -301,7 +301,7 @@ def _derive_sigmas(body: RigidBody, moments: _Moments, top: str) -> _DerivedSigm
 
 
 def _moments(body: RigidBody, rtol: float | None = None) -> _Moments:
-    """Principal moments; of a linear molecule, from the positions of its atoms along the axis alone.
+    """Compute the principal moments; those of a linear molecule from positions along its axis alone.
 
     By the last digits of its file it may be bent. Then Ia is 0 and Ib = Ic is Paa, the sum of m a^2, which is
     what one straight line has; Ia = 0 beside the other two as they stand would be no body's.
@@ -329,7 +329,7 @@ def note_straightening(body: RigidBody, rtol: float | None = None) -> list[str]:
 
 
 def constant_fields(body: RigidBody, rtol: float | None = None) -> list[Field]:
-    """Rotational constants, and of an asymmetric top Ray's kappa."""
+    """Compute the rotational constants, and of an asymmetric top Ray's kappa."""
     moments = _moments(body, rtol)
     frequencies = rotational_constants(moments.values, "MHz")
     waves = rotational_constants(moments.values, "cm^-1")
@@ -347,7 +347,7 @@ def constant_fields(body: RigidBody, rtol: float | None = None) -> list[Field]:
 
 
 def rotation_fields(loaded: LoadedBody, rtol: float | None) -> list[Field]:
-    """Class of the top, moments, axes and constants of a molecule."""
+    """Compute the class of the top, moments, axes and constants of a molecule."""
     body = loaded.body
     moments = _moments(body, rtol)
     values, scale = moments.values, float(moments.values[2])

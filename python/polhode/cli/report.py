@@ -91,7 +91,7 @@ def check_alone(extra: ReportOptions, form: str | None) -> None:
 def _point(
     loaded: LoadedBody, options: BodyOptions, extra: ReportOptions
 ) -> tuple[float, float, float] | None:
-    """Where --about is, in the unit of the body."""
+    """Find where --about is, in the unit of the body."""
     if not extra.about:
         return None
     is_molecule = loaded.length == "angstrom"

@@ -576,7 +576,7 @@ class TopKind:
         ]
 
     def _energies(self, trajectory: Trajectory) -> tuple[Floats, Floats]:
-        """Kinetic energy, and that of the weight, zero at the height of the pivot."""
+        """Compute the kinetic energy, and that of the weight, zero at the height of the pivot."""
         height = -(trajectory.point("center_of_mass") @ self._motion.gravity)
         return trajectory.kinetic_energy().total, float(trajectory.body.mass) * height
 
@@ -794,7 +794,7 @@ def _clean(vector: Floats) -> list[float]:
 
 
 def of_start(motion: FreeMotion | HeavyTop | GyrostatMotion, axes: Floats, rate: float) -> Sigmas:
-    """Sigma of the angular velocity at the start, along these axes; `rate` units are one rad/s."""
+    """Compute the sigma of the angular velocity at the start, along these axes; `rate` units are 1 rad/s."""
     omega = None if isinstance(motion, _core.GyrostatMotion) else motion.uncertain_start[0]
     if omega is None:
         return {}
@@ -833,7 +833,7 @@ def of_end(motion: FreeMotion | HeavyTop | GyrostatMotion, end: float, axes: Flo
 
 
 def attitude_field(motion: FreeMotion | HeavyTop | GyrostatMotion, end: float) -> list[Field]:
-    """Sigmas of the small angles by which the body may be turned at the end."""
+    """Compute the sigmas of the small angles by which the body may be turned at the end."""
     found = _end(motion, end)
     if found is None:
         return []

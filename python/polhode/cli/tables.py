@@ -96,7 +96,7 @@ class FileUnits:
 def tensor_fields(
     loaded: LoadedBody, units: FileUnits, about: tuple[float, float, float] | None
 ) -> list[Field]:
-    """Inertia tensors about C, about O and about a point that was asked for."""
+    """Compute the inertia tensors about C, about O and about a point that was asked for."""
     body = loaded.body
     tensors = [
         ("center_of_mass", "about C", body.inertia, body.center_of_mass),
@@ -124,7 +124,7 @@ def tensor_fields(
 
 
 def body_fields(loaded: LoadedBody, units: FileUnits) -> list[Field]:
-    """Principal moments, axes and class of a body."""
+    """Compute the principal moments, axes and class of a body."""
     body = loaded.body
     principal = body.principal
     per_mass = principal.moments / body.mass
@@ -151,7 +151,7 @@ def body_fields(loaded: LoadedBody, units: FileUnits) -> list[Field]:
 
 
 def ellipsoid_fields(loaded: LoadedBody, units: FileUnits) -> list[Field]:
-    """Semi-axes of the homogeneous ellipsoid with the same mass and moments, and of that of equal volume."""
+    """Compute the semi-axes of the ellipsoid with the same mass and moments, and of that of equal volume."""
     plain = ellipsoid(loaded.body)
     fields = units.fields(
         "equivalent_ellipsoid.semi_axes",
@@ -173,7 +173,7 @@ def ellipsoid_fields(loaded: LoadedBody, units: FileUnits) -> list[Field]:
 
 
 def top_fields(loaded: LoadedBody, rtol: float | None = None) -> list[Field]:
-    """Class of the top, and of a molecule the tolerance at which it is decided, and why."""
+    """Compute the class of the top, and of a molecule the tolerance at which it is decided, and why."""
     principal, rounding = loaded.body.principal, float(loaded.body.provenance.rounding)
     top = Field("top", "top", str(principal.classify(rtol)))
     if isinstance(loaded.source, MeshSolid) or not loaded.source:
@@ -195,7 +195,7 @@ def top_fields(loaded: LoadedBody, rtol: float | None = None) -> list[Field]:
 
 
 def trust_fields(loaded: LoadedBody) -> list[Field]:
-    """Where the numbers come from and what rounding can have done to them."""
+    """Find where the numbers come from and what rounding can have done to them."""
     provenance, bound = loaded.body.provenance, loaded.body.error_bound
     return [
         Field("provenance", "made of", str(provenance)),
@@ -235,7 +235,7 @@ def sigmas_of_square(value: Floats, of_value: Sigmas) -> Sigmas:
 
 
 def about_point(body: RigidBody, point: Floats) -> Sigmas:
-    """Sigma of the tensor about a point that is known exactly."""
+    """Compute the sigma of the tensor about a point that is known exactly."""
     sigma = body.sigma_about(point)
     return {} if sigma is None else {"sigma": sigma.inertia, "linear": sigma.linear.inertia}
 
@@ -251,7 +251,7 @@ def moments_slopes(body: RigidBody) -> Floats | None:
 
 
 def angle_field(body: RigidBody) -> list[Field]:
-    """Sigmas of the small angles by which the principal axes may be turned."""
+    """Compute the sigmas of the small angles by which the principal axes may be turned."""
     if body.sigma is None:
         return []
     angles, linear = np.degrees(body.sigma.axes), np.asarray(body.sigma.linear.axes)

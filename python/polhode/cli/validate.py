@@ -125,7 +125,7 @@ def _period() -> Numbers:
 
 
 def _mean(a: float, b: float) -> float:
-    """Gauss's mean of two numbers."""
+    """Compute Gauss's mean of two numbers."""
     while abs(a - b) > 1e-15 * a:
         a, b = (a + b) / 2.0, math.sqrt(a * b)
     return a
@@ -246,7 +246,7 @@ _NEEDED: Final = ("numpy",)
 
 
 def machine_fields() -> list[Field]:
-    """Versions of what is installed, and what long runs use."""
+    """Return the versions of what is installed, and what long runs use."""
     level, threads = _core.machine()
     lock = "" if getattr(sys, "_is_gil_enabled", lambda: True)() else ", without the lock of the interpreter"
     libraries = ", ".join(f"{name} {found}" for name, found in _libraries().items())

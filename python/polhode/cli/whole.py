@@ -160,5 +160,5 @@ def check_moments_alone(options: BodyOptions, *taken: str) -> None:
 
 
 def _is_given(options: BodyOptions, name: str) -> bool:
-    """Whether an option differs from what holds without it."""
+    """Return whether an option differs from what holds without it."""
     return bool(getattr(options, name) != getattr(_PLAIN, name))

@@ -79,7 +79,7 @@ class Span(NamedTuple):
 
 
 def turns(t: Floats, omega: Floats) -> Floats:
-    """Angles by which a body turns from each time to the next, at the greater of both rates, shape (T - 1,).
+    """Compute the angle of turn from each time to the next, at the greater of both rates, shape (T - 1,).
 
     Parameters
     ----------

@@ -227,7 +227,7 @@ _LONGEST: Final = 3.0
 
 
 def inertia_semi_axes(moments: Floats) -> Floats:
-    """Semi-axes of r·I r = 1, shape (3,); those of zero moments are cut.
+    """Compute the semi-axes of r·I r = 1, shape (3,); those of zero moments are cut.
 
     Parameters
     ----------
@@ -244,7 +244,7 @@ def inertia_semi_axes(moments: Floats) -> Floats:
 
 
 def principal_circles() -> Floats:
-    """Circles of the unit sphere in the planes normal to its axes, shape (3, 181, 3)."""
+    """Return the circles of the unit sphere in the planes normal to its axes, shape (3, 181, 3)."""
     around = np.linspace(0.0, 2.0 * np.pi, 181)
     circles = np.zeros((3, 181, 3))
     for k, circle in enumerate(circles):

@@ -96,7 +96,7 @@ class Checkpoint:
             self.write()
 
     def _is_whole(self) -> bool:
-        """Whether the tree has the blocks of those chunks that are done, and no others."""
+        """Return whether the tree has the blocks of those chunks that are done, and no others."""
         bounds = [self.plan.bounds(index) for index in self.done]
         chunks = [(first // BLOCK, -(-(first + count) // BLOCK)) for first, count in bounds]
         return _merge_spans(self.tree.spans()) == _merge_spans(chunks)

@@ -74,7 +74,7 @@ def _words(value: Any, above: tuple[int, ...]) -> Iterator[bytes]:
 
 
 def _is_own(value: Any) -> bool:
-    """Whether what a function reads of its module is part of it: data, and functions of the user's."""
+    """Return whether what a function reads of its module is part of it: data, and functions of the user's."""
     if isinstance(value, FunctionType):
         return not value.__module__.startswith("polhode")
     plain = (bool, int, float, complex, str, bytes, tuple, list, dict, set, frozenset)

@@ -41,7 +41,7 @@ __all__ = [
 
 def body_of_particles(masses: Any, positions: Any) -> RigidBody | None:
     """Sum particles that are not in memory, for ``RigidBody.from_particles``."""
-    total = summed(masses, positions, 0)
+    total = sum_particles(masses, positions, 0)
     return None if total is None else total.finish()
 
 
@@ -66,7 +66,7 @@ def dask_array(array: Any) -> Any:
 
 
 def is_stored(array: Any) -> bool:
-    """Whether slices of an array are read from a file when they are asked for."""
+    """Return whether slices of an array are read from a file when they are asked for."""
     if xarray_array(array) is not None:
         return not getattr(array.variable, "_in_memory", True)
     return isinstance(array, np.memmap) or (

@@ -80,7 +80,7 @@ class NpzStore:
         return [index for index in range(self.plan.chunks) if not self._is_whole(index)]
 
     def _is_whole(self, index: int) -> bool:
-        """Whether the file of a chunk can be read to its end."""
+        """Return whether the file of a chunk can be read to its end."""
         try:
             with zipfile.ZipFile(self.file(index)) as archive:
                 names = {f"{name}.npy" for name in layout(self.plan)}
@@ -157,7 +157,7 @@ class ZarrStore:
         ]
 
     def _holds(self, name: str, index: int) -> bool:
-        """Whether the piece of an array is there, of a chunk that has been written."""
+        """Return whether the piece of an array is there, of a chunk that has been written."""
         array = self.group[name]
         piece = ".".join([str(index), *("0" for _ in array.shape[1:])])
         return (self.path / name / piece).is_file()

@@ -283,7 +283,7 @@ class _Walk:
             yield CadPart(own, moments, rotation, position, material, density, faces)
 
     def _moments(self, solid: Any, name: str) -> tuple[Moments, int]:
-        """Moments of a solid before it is placed: one that is placed again and again is computed once."""
+        """Compute the moments of a solid before it is placed: once, however often it is placed."""
         unplaced = solid.Located(occt("TopLoc").TopLoc_Location())
         key = hash(unplaced)
         if key not in self._known:
@@ -418,7 +418,7 @@ def _entities(text: str) -> Iterator[tuple[str, str]]:
 
 
 def _unit(number: str, entities: dict[str, str]) -> float | None:
-    """Kilograms per cubic metre in one of a unit."""
+    """Compute how many kilograms per cubic metre one of a unit is."""
     parts = set()
     for reference in re.findall(r"#(\d+)", entities.get(number, "")):
         element = _ELEMENT.search(entities.get(reference, ""))

@@ -97,14 +97,14 @@ def surface_of(face: Any) -> FaceSurface:
 
 
 def _frame(place: Any) -> tuple[Floats, Floats, Floats, Floats]:
-    """Origin and axes of a place, which may be left-handed."""
+    """Return the origin and axes of a place, which may be left-handed."""
     points = (place.Location(), place.XDirection(), place.YDirection(), place.Direction())
     origin, x, y, z = (np.array([p.X(), p.Y(), p.Z()]) for p in points)
     return origin, x, y, z
 
 
 def _turns(first: float, last: float) -> Floats:
-    """Multiples of a right angle within a range; an endless one has those of four turns around zero."""
+    """Return the multiples of a right angle within a range; an endless one has those of four turns."""
     low, high = max(first, -8.0 * np.pi), min(last, 8.0 * np.pi)
     return _QUARTER * np.arange(np.floor(low / _QUARTER) - 8.0, np.ceil(high / _QUARTER) + 9.0)
 
@@ -121,7 +121,7 @@ def _plane(origin: Floats, x: Floats, y: Floats, _: Floats) -> Surface:
 def _surface_of_revolution(
     origin: Floats, x: Floats, y: Floats, z: Floats, radius: float, angle: float
 ) -> Surface:
-    """Cylinder and cone: a straight line turned about z, at `angle` to it."""
+    """Return the cylinder and cone: a straight line turned about z, at `angle` to it."""
     sine, cosine = np.sin(angle), np.cos(angle)
 
     def at(u: Floats, v: Floats) -> tuple[Floats, Floats]:
@@ -135,7 +135,7 @@ def _surface_of_revolution(
 
 
 def _torus(origin: Floats, x: Floats, y: Floats, z: Floats, major: float, minor: float) -> Surface:
-    """Torus, and the sphere as one whose major radius is zero."""
+    """Compute the torus, and the sphere as one whose major radius is zero."""
 
     def at(u: Floats, v: Floats) -> tuple[Floats, Floats]:
         outward = np.cos(u)[:, None] * x + np.sin(u)[:, None] * y
@@ -165,7 +165,7 @@ def _query_surface(adaptor: Any) -> Surface:
 
 
 def _intervals(adaptor: Any, axis: str) -> Floats:
-    """Where a surface that OCCT is asked for stops being smooth, and right angles where it may turn."""
+    """Find where a surface that OCCT is asked for stops being smooth, and right angles where it may turn."""
     numbers = occt("collections")
     shapes = occt("GeomAbs").GeomAbs_Shape
     count = getattr(adaptor, f"Nb{axis}Intervals")(shapes.GeomAbs_CN)
@@ -234,7 +234,7 @@ def _within(t: Floats, knots: Floats, degree: int, period: float) -> Floats:
 
 
 def _basis(t: Floats, knots: Floats, degree: int) -> tuple[NDArray[np.int64], Floats, Floats]:
-    """Basis functions that are not zero, and their derivatives, by de Boor's recurrence.
+    """Compute the basis functions that are not zero, and their derivatives, by de Boor's recurrence.
 
     Returns the first of them for each parameter; beyond the ends the outermost polynomials go on.
     """
@@ -352,7 +352,7 @@ def moments_of_faces(faces: list[Any], about: Floats, reach: float) -> Moments:
 
 
 def _over_face(face: Any, about: Floats, reach: float, gaps: _Gaps) -> tuple[Floats, float]:
-    """Integrals over one face, in units of `reach`, and how well they are known."""
+    """Compute the integrals over one face, in units of `reach`, and how well they are known."""
     abs_ = occt("TopAbs").TopAbs_Orientation
     if occt("BRep").BRep_Tool.Surface_s(face) is None:
         raise ValueError("a face is a mesh of triangles without a surface")
@@ -381,7 +381,7 @@ def _over_face(face: Any, about: Floats, reach: float, gaps: _Gaps) -> tuple[Flo
 
 
 def _pieces(face: Any, surface: FaceSurface, gaps: _Gaps) -> Iterator[_Piece]:
-    """Stretches of the edges around a face within which the surface and the curves are smooth."""
+    """Return the stretches of the edges around a face within which the surface and the curves are smooth."""
     abs_ = occt("TopAbs")
     explorer = occt("TopExp").TopExp_Explorer
     shapes = occt("TopoDS").TopoDS
@@ -409,7 +409,7 @@ def _pieces(face: Any, surface: FaceSurface, gaps: _Gaps) -> Iterator[_Piece]:
 
 
 def _cuts(curve: Any, first: float, last: float, surface: FaceSurface) -> Floats:
-    """Parameters of a curve between which nothing changes its formula."""
+    """Return the parameters of a curve between which nothing changes its formula."""
     kinds = occt("GeomAbs")
     numbers = occt("collections")
     smooth = kinds.GeomAbs_Shape.GeomAbs_CN
@@ -432,7 +432,7 @@ def _cuts(curve: Any, first: float, last: float, surface: FaceSurface) -> Floats
 
 
 def _crossings(curve: Any, cuts: list[float], levels: Floats) -> list[float]:
-    """Where a curve passes parameters v at which the surface changes its formula."""
+    """Find where a curve passes parameters v at which the surface changes its formula."""
     fractions = np.linspace(0.0, 1.0, 17)
     found: list[float] = []
     for start, end in pairwise(cuts):

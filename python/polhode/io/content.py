@@ -115,7 +115,7 @@ class Content(NamedTuple):
 
 
 def is_molecule(path: Path) -> bool:
-    """Whether a file is a molecule, by its name; packed or not."""
+    """Return whether a file is a molecule, by its name; packed or not."""
     suffix = path.suffix.lower()
     return (Path(path.stem).suffix.lower() if suffix == _PACKED else suffix) in MOLECULE_SUFFIXES
 

@@ -18,7 +18,7 @@ __all__ = ["hull"]
 
 
 def hull(vertices: ArrayLike, faces: ArrayLike) -> NDArray[np.int64]:
-    """Triangles of the convex hull of the vertices that faces use, wound alike.
+    """Return the triangles of the convex hull of the vertices that faces use, wound alike.
 
     Parameters
     ----------

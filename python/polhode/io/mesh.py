@@ -97,7 +97,7 @@ def weld_within(mesh: Mesh, length: float) -> Mesh:
 
 
 def _merge_equal(mesh: Mesh, keys: Floats | Integers) -> Mesh:
-    """Vertices with equal keys made the first of them."""
+    """Return the vertices with equal keys made the first of them."""
     first, of = equal_rows(keys)
     if len(first) == len(mesh.vertices):
         return mesh

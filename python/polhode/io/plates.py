@@ -21,7 +21,7 @@ __all__ = ["is_numbered_plates", "read_numbered_plates"]
 
 
 def is_numbered_plates(lines: list[str]) -> bool:
-    """Whether the first lines of a text are those of such a file."""
+    """Return whether the first lines of a text are those of such a file."""
     rows = [words for line in lines[:8] if (words := line.split())][:3]
     if len(rows) < 3 or len(rows[0]) != 1 or not rows[0][0].isdecimal():
         return False

@@ -117,7 +117,7 @@ def body_from_file(
 
 
 def is_whole(path: str | os.PathLike[str]) -> bool:
-    """Whether a file holds a body that needs no shape, by its name."""
+    """Return whether a file holds a body that needs no shape, by its name."""
     return Path(path).suffix.lower() in (*SAVED_SUFFIXES, ASSEMBLY_SUFFIX)
 
 

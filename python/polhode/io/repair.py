@@ -125,7 +125,7 @@ def _count(number: int, word: str) -> str:
 
 
 def _find_needed(faces: Integers) -> NDArray[np.bool_]:
-    """Which faces to keep: of those with the same corners one if its edges need it, of lines none."""
+    """Find which faces to keep: of those with the same corners one if its edges need it, of lines none."""
     ordered = np.sort(faces, axis=1)
     is_line = (ordered[:, 0] == ordered[:, 1]) | (ordered[:, 1] == ordered[:, 2])
     kept: NDArray[np.bool_] = ~is_line
@@ -151,12 +151,12 @@ def _find_needed(faces: Integers) -> NDArray[np.bool_]:
 
 
 def _edges(faces: Integers) -> Integers:
-    """Directed edges, three of each face after the other."""
+    """Return the directed edges, three of each face after the other."""
     return np.stack([faces, np.roll(faces, -1, axis=1)], axis=-1).reshape(-1, 2)
 
 
 def _to_turn(faces: Integers) -> NDArray[np.bool_]:
-    """Which faces to turn so that neighbours run along their edge opposite ways; of each part the fewer."""
+    """Find which faces to turn so that neighbours run along their edge in opposite ways."""
     edges = _edges(faces)
     _, inverse, counts = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True)
     group = inverse.reshape(-1)

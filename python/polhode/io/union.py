@@ -118,7 +118,7 @@ def _manifold(surface: Surface) -> Any:
 
 
 def is_closed(faces: Integers) -> bool:
-    """Whether each edge is gone along as often one way as the other."""
+    """Return whether each edge is gone along as often one way as the other."""
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).astype(np.int64)
     count = int(ends.max(initial=0)) + 1
     there, back = ends[:, 0] * count + ends[:, 1], ends[:, 1] * count + ends[:, 0]

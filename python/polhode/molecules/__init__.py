@@ -84,7 +84,7 @@ def body_of_atoms(
 
 
 def rotational_constants(moments: ArrayLike, unit: Literal["MHz", "cm^-1"] = "MHz") -> Floats:
-    r"""Rotational constants A >= B >= C of principal moments.
+    r"""Compute the rotational constants A >= B >= C of principal moments.
 
     .. math:: A = \frac{h}{8 \pi^2 I_1}\ \text{(frequency)},\qquad
               \frac{A}{c} = \frac{h}{8 \pi^2 c\, I_1}\ \text{(wave number)}
@@ -193,7 +193,7 @@ def ray_kappa(constants: ArrayLike) -> Any:
 
 
 def inertial_defect(moments: ArrayLike) -> Any:
-    r"""Inertial defect of principal moments; it is zero for matter in a plane.
+    r"""Compute the inertial defect of principal moments; it is zero for matter in a plane.
 
     .. math:: \Delta = I_c - I_a - I_b = -2 \sum_i m_i c_i^2
 
@@ -219,7 +219,7 @@ def inertial_defect(moments: ArrayLike) -> Any:
 
 
 def planar_moments(moments: ArrayLike) -> Floats:
-    r"""Planar moments of principal moments: the spread of matter along each axis.
+    r"""Compute the planar moments of principal moments: the spread of matter along each axis.
 
     .. math:: P_{aa} = \tfrac12 (I_b + I_c - I_a) = \sum_i m_i a_i^2,\ \ldots
 

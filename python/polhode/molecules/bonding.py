@@ -326,7 +326,7 @@ def uncertain_positions(
     sigma: ArrayLike,
     bonds: ArrayLike | None = None,
 ) -> _core.Uncertain:
-    """Positions of atoms whose bond lengths are uncertain.
+    """Return the positions of atoms whose bond lengths are uncertain.
 
     Each bond length has its own independent error. If the length of a bond (i, j) changes, the part of the
     molecule with atom j moves along the bond, and all angles stay the same. If the other part moved instead,

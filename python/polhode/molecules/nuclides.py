@@ -165,7 +165,7 @@ def _sigma(of: Any) -> float | None:
 
 
 def uncertain_masses(labels: Sequence[str | Isotope], masses: Masses = "most_common") -> _core.Uncertain:
-    """Masses of nuclides with their standard deviations. Atoms of the same nuclide share one error.
+    """Return masses of nuclides with their standard deviations. Atoms of the same nuclide share one error.
 
     Parameters
     ----------

@@ -186,7 +186,7 @@ class Trajectory(metaclass=Hinting):
         return rotation
 
     def kinetic_energy(self) -> KineticEnergy:
-        """Kinetic energy at every time, in parts that refer to the point `about`.
+        """Compute the kinetic energy at every time, in parts that refer to the point `about`.
 
         Returns
         -------
@@ -206,7 +206,7 @@ class Trajectory(metaclass=Hinting):
         )
 
     def angular_momentum(self, frame: Literal["space", "body"] = "space") -> AngularMomentum:
-        """Angular momentum about the origin of space at every time.
+        """Compute the angular momentum about the origin of space at every time.
 
         Parameters
         ----------
@@ -350,7 +350,7 @@ class Trajectory(metaclass=Hinting):
         unwrap: bool = False,
         degrees: bool = False,
     ) -> Floats:
-        """Euler angles of the attitude at every time.
+        """Compute the Euler angles of the attitude at every time.
 
         Parameters
         ----------
@@ -384,7 +384,7 @@ class Trajectory(metaclass=Hinting):
         *,
         degrees: bool = False,
     ) -> Floats:
-        """Rates of the Euler angles at every time.
+        """Compute the rates of the Euler angles at every time.
 
         Parameters
         ----------
@@ -405,7 +405,7 @@ class Trajectory(metaclass=Hinting):
         return np.rad2deg(rates) if degrees else rates
 
     def torque(self) -> Floats:
-        """Torque of the load about the point `about` at every time, components in the body frame.
+        """Compute the torque of the load about the point `about` at every time, components in the body frame.
 
         The torque of wheels is ``I ω̇ + ω × I ω``, where I includes the wheels as if they were locked.
 
@@ -436,7 +436,7 @@ class Trajectory(metaclass=Hinting):
         return self._over_time(self.load).force(*self._states(), **self._subject(), states=self._own_states())
 
     def angular_acceleration(self) -> Floats:
-        """Angular acceleration at every time by Euler's equations, components in the body frame.
+        """Compute the angular acceleration at every time by Euler's equations, components in the body frame.
 
         Returns
         -------
@@ -445,7 +445,7 @@ class Trajectory(metaclass=Hinting):
         return self._bodies().angular_acceleration(self.omega, self.torque(), about=self._reference())
 
     def potential_energy(self) -> Floats:
-        """Potential energy in the field of the load at every time.
+        """Compute the potential energy in the field of the load at every time.
 
         Returns
         -------
@@ -1027,7 +1027,7 @@ class Trajectory(metaclass=Hinting):
         return self.body.gyrostat(besides, wheels=now).free_motion(self.omega[0], self.quaternion[0])
 
     def _torque_of_rotor(self) -> Floats:
-        """Torque of the momentum inside a gyrostat: its own ``(I − F) ω̇ + ω × ((I − F) ω + h) = 0``."""
+        """Compute the torque of the momentum inside a gyrostat: ``(I − F) ω̇ + ω × ((I − F) ω + h) = 0``."""
         momentum, free = self._rotor_inside()
         tensor = self._bodies().inertia_about(self._reference())
         inertias = free[(..., *self._time_axes(), slice(None), slice(None))]

@@ -273,7 +273,7 @@ class GeometryReader:
         return _MeshOrSolids(mesh, corners)
 
     def _box(self, shape: Shape, folder: Path, notes: dict[str, str]) -> tuple[Floats, Floats] | None:
-        """Opposite corners of the box along the axes of the link around a shape."""
+        """Return the opposite corners of the box along the axes of the link around a shape."""
         rotation, position = shape.place
         if shape.problem:
             notes.setdefault(Note(shape.problem, "; this visual shape is left out"), "")

@@ -433,7 +433,7 @@ def _with_real(folders: Sequence[Path]) -> Iterator[Path]:
 
 
 def _kind(path: Path) -> tuple[bool | None, str]:
-    """Whether a path is a file or a folder (None: nothing is there), and why it is not read otherwise."""
+    """Return whether a path is a file or a folder (None: nothing is there), and why it is not read."""
     try:
         mode = path.stat().st_mode
     except (FileNotFoundError, NotADirectoryError):

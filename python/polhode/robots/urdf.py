@@ -129,7 +129,7 @@ def forms(link: Element) -> Iterator[tuple[Literal["collision", "visual"], Eleme
 
 
 def roll_pitch_yaw(angles: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Rotation matrix of turns about the fixed axes x, then y, then z."""
+    """Compute the rotation matrix of turns about the fixed axes x, then y, then z."""
     quaternion = euler_angles.to_quaternion(angles, "xyz")
     matrix: NDArray[np.float64] = np.stack([rotate(quaternion, axis) for axis in np.eye(3)], axis=-1)
     return matrix

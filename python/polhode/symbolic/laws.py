@@ -23,7 +23,7 @@ _NAMES: Final = {"goldstein": "ZXZ", "landau": "ZXZ", "aerospace": "ZYX"}
 
 
 def parallel_axis(inertia: Any = None, mass: Any = None, displacement: Any = None) -> Any:
-    """Tensor about a point from the tensor about the centre of mass: ``I + M (d² 1 − d dᵀ)``.
+    """Compute the tensor about a point from the tensor about the centre of mass: ``I + M (d² 1 − d dᵀ)``.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def parallel_axis(inertia: Any = None, mass: Any = None, displacement: Any = Non
 
 
 def particles(masses: Any, positions: Any) -> tuple[Any, Any, Any]:
-    """Mass, centre of mass and tensor about the centre of mass of particles.
+    """Compute the mass, centre of mass and tensor about the centre of mass of particles.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def particles(masses: Any, positions: Any) -> tuple[Any, Any, Any]:
 def kinetic_energy(
     inertia: Any = None, mass: Any = None, omega: Any = None, velocity: Any = None, center: Any = None
 ) -> Any:
-    """Kinetic energy: ``½ M v² + M v·(ω×c) + ½ ω·I ω``.
+    """Compute the kinetic energy: ``½ M v² + M v·(ω×c) + ½ ω·I ω``.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def angular_momentum(
     position: Any = None,
     center: Any = None,
 ) -> Any:
-    """Angular momentum about the origin of space: ``M X×v + M (X×(ω×c) + c×v) + I ω``.
+    """Compute the angular momentum about the origin of space: ``M X×v + M (X×(ω×c) + c×v) + I ω``.
 
     Parameters
     ----------
@@ -160,7 +160,7 @@ def torque(inertia: Any = None, omega: Any = None, angular_acceleration: Any = N
 
 
 def angular_acceleration(inertia: Any = None, omega: Any = None, torque: Any = None) -> Any:
-    """Euler's equations for the motion: ``ω̇ = I⁻¹ (N − ω × I ω)``.
+    """Compute the angular acceleration by Euler's equations: ``ω̇ = I⁻¹ (N − ω × I ω)``.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ def angular_acceleration(inertia: Any = None, omega: Any = None, torque: Any = N
 
 
 def effective_potential(inclination: Any = None) -> Any:
-    """Effective potential of a heavy symmetric top: ``(L_z − L_s cos θ)²/(2 I_t sin²θ) + M g l cos θ``.
+    """Compute the effective potential of a heavy top: ``(L_z − L_s cos θ)²/(2 I_t sin²θ) + M g l cos θ``.
 
     Parameters
     ----------
@@ -205,7 +205,7 @@ def effective_potential(inclination: Any = None) -> Any:
 
 
 def rotation(sequence: str = "ZXZ", angles: Any = None) -> Any:
-    """Matrix R_NB of Euler angles: ``v_N = R v_B``.
+    """Compute the matrix R_NB of Euler angles: ``v_N = R v_B``.
 
     Parameters
     ----------
@@ -226,7 +226,7 @@ def rotation(sequence: str = "ZXZ", angles: Any = None) -> Any:
 def angular_velocity(
     sequence: str = "ZXZ", frame: str = "body", angles: Any = None, rates: Any = None
 ) -> Any:
-    r"""Angular velocity by Euler angles and their rates.
+    r"""Compute the angular velocity by Euler angles and their rates.
 
     Parameters
     ----------
@@ -251,7 +251,7 @@ def angular_velocity(
 
 
 def euler_rates(sequence: str = "ZXZ", frame: str = "body", angles: Any = None, omega: Any = None) -> Any:
-    """Rates of Euler angles by the angles and the angular velocity.
+    """Compute the rates of Euler angles by the angles and the angular velocity.
 
     Parameters
     ----------

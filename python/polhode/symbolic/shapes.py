@@ -92,7 +92,7 @@ class Shape:
         return axes
 
     def inertia_about(self, point: Any) -> Any:
-        """Tensor about a point.
+        """Compute the tensor about a point.
 
         Parameters
         ----------
@@ -146,7 +146,7 @@ class Shape:
         return f"$\\displaystyle {self.latex()}$"
 
     def _pair(self) -> tuple[int, int] | None:
-        """Which two axes have a product of inertia."""
+        """Find which two axes have a product of inertia."""
         return next((pair for pair in ((0, 1), (0, 2), (1, 2)) if self.inertia[pair] != 0), None)
 
 

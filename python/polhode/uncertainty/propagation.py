@@ -201,7 +201,7 @@ def slopes_of(f: Function, around: Neighbours, shape: tuple[int, ...]) -> Floats
 
 
 def _is_linear(f: Function, around: Neighbours, value: Floats, slopes: Floats) -> NDArray[np.bool_]:
-    """Whether terms of higher order stay small along some directions, those of the body itself among them."""
+    """Return whether terms of higher order stay small along some directions, those of the body among them."""
     directions = np.random.default_rng(20).normal(size=(PROBES, around.rank))
     even, firsts, changes = [], [], []
     for direction in directions:
@@ -238,7 +238,7 @@ def is_enough(
 
 
 def _is_rounding(value: Floats, first: Floats, change: Floats) -> NDArray[np.bool_]:
-    """Whether a number of an array is zero except for rounding; its changes have no meaning then."""
+    """Return whether a number of an array is zero except for rounding; its changes have no meaning then."""
     size = SMALL * np.abs(value[np.isfinite(value)]).max(initial=0.0)
     products = np.abs((first * change).sum(axis=0))
     follows = products**2 > 0.25 * (first**2).sum(axis=0) * (change**2).sum(axis=0)
@@ -247,7 +247,7 @@ def _is_rounding(value: Floats, first: Floats, change: Floats) -> NDArray[np.boo
 
 
 def _follows(f: Function, around: Neighbours, value: Floats, variance: Floats) -> NDArray[np.bool_]:
-    """Whether the steps from body to body agree with the body's own second-order terms."""
+    """Return whether the steps from body to body agree with the body's own second-order terms."""
     missed, count = np.zeros(value.size), 0
     for probe in around.probes(NEAR):
         here, there = (sum(_numbers(f, given, value.shape).ravel() for given in pair) / 2 for pair in probe)

@@ -86,7 +86,7 @@ class _Number:
 
 
 def _holds(values: Any, kinds: tuple[type, ...]) -> bool:
-    """Whether an uncertain number is among the values; other objects are not touched."""
+    """Return whether an uncertain number is among the values; other objects are not touched."""
     rest: list[Any] = [values]
     seen: dict[int, Any] = {}  # a list may hold itself
     while rest:

@@ -87,7 +87,7 @@ def body(
     surface.set_zorder(2)
 
     def depth(z: Floats, axis: int) -> Floats:
-        """Depths of the pieces; the outline is moved half a piece nearer, to lie on the surface."""
+        """Compute the depths of pieces; the outline is moved half a piece nearer, to lie on the surface."""
         middle: Floats = z.mean(axis=axis)
         middle[len(pieces) :] -= 0.5 * np.ptp(z, axis=axis).max()
         return middle
@@ -145,7 +145,7 @@ def principal_axes(
 
 
 def _outline(points: Floats, faces: NDArray[np.int64], normals: Floats, size: float) -> Floats:
-    """Edges at which the surface turns sharply, as flat triangles slightly outside the surface."""
+    """Return the edges at which the surface turns sharply, as flat triangles slightly outside the surface."""
     edges = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     owner = np.repeat(np.arange(len(faces)), 3)
     order = np.lexsort((edges[:, 1], edges[:, 0]))

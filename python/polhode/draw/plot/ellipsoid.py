@@ -436,7 +436,7 @@ def _on_ellipsoid(
 
 
 def angle_covariance(body: RigidBody) -> Floats | None:
-    """Covariance of the small rotation φ of the principal axes, about themselves, in rad², shape (3, 3).
+    """Compute the covariance of the small rotation φ of the principal axes about them, in rad², shape (3, 3).
 
     Not numbers where an angle is not determined, as in ``body.sigma.axes``; None where nothing is uncertain.
 
@@ -463,7 +463,7 @@ def angle_covariance(body: RigidBody) -> Floats | None:
 
 
 def axis_scatter(covariance: Floats, k: int) -> Floats:
-    """Covariance of the direction of axis k, along axes k + 1 and k + 2, shape (2, 2).
+    """Compute the covariance of the direction of axis k, along axes k + 1 and k + 2, shape (2, 2).
 
     Parameters
     ----------

@@ -174,7 +174,7 @@ def _readable(turn: float) -> float:
 
 
 def _is_within(width: float, height: float, turn: float, opening: float, inner: float) -> bool:
-    """Whether a box in the middle of a wedge, turned against its radius, lies within it; in degrees."""
+    """Return whether a box in the middle of a wedge, turned against its radius, lies in it; in degrees."""
     along = np.linspace(-0.5, 0.5, 9)
     edge = np.full(9, 0.5)
     x = width * np.concatenate([along, along, edge, -edge])
