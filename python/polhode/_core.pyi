@@ -410,7 +410,7 @@ class RigidBody:
     @staticmethod
     def _from_mesh(
         vertices: ArrayLike,
-        faces: ArrayLike,
+        faces: ArrayLike | None = None,
         *,
         density: _Number | None = None,
         mass: _Number | None = None,

@@ -348,8 +348,11 @@ class TestOneSolve:
         solves: list[str] = []
 
         def counting(name: str) -> Any:
-            summed = getattr(RigidBody, name)
-            return lambda *arguments, **options: solves.append(name) or summed(*arguments, **options)
+            def counted(*arguments: Any, **options: Any) -> Any:
+                solves.append(name)
+                return getattr(RigidBody, name)(*arguments, **options)
+
+            return counted
 
         names = ("from_mesh", "_from_mesh")
         body = SimpleNamespace(**{name: counting(name) for name in names})

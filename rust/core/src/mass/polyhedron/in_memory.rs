@@ -358,13 +358,11 @@ mod tests {
         let vertices = [corners, within].concat();
         let turn = |faces: [[usize; 3]; 4]| faces.map(|[a, b, c]| [a, c, b]);
         let inside = outside.map(|face| face.map(|k| k + 4));
-        let (options, go_on) = (
-            Options {
-                orient: true,
-                check: true,
-            },
-            &mut |_| ControlFlow::Continue(()),
-        );
+        let go_on = &mut |_| ControlFlow::Continue(());
+        let options = Options {
+            orient: true,
+            ..Options::default()
+        };
         for faces in [
             [outside, turn(inside)],
             [turn(outside), turn(inside)],
