@@ -44,9 +44,15 @@ SIZELESS = {
     "RigidBody.stack",
     "RigidBody.view",
     "RigidBody.with_error_bound",
+    "FreeMotion.angular_momentum",
     "FreeMotion.animate",
+    "FreeMotion.kinetic_energy",
     "FreeMotion.plot",
+    "FreeMotion.stability",
+    "GyrostatMotion.angular_momentum",
     "GyrostatMotion.animate",
+    "GyrostatMotion.equilibria",
+    "GyrostatMotion.kinetic_energy",
     "GyrostatMotion.plot",
     "HeavyTop.animate",
     "HeavyTop.plot",
@@ -66,6 +72,7 @@ CLASSES = (
     "MassAccumulator",
     "Region",
     "Slabs",
+    "Wheel",
 )
 
 LIMITED = """

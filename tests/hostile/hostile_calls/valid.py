@@ -173,6 +173,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "with_states": {"rates": None, "name": "mine"},
     "Load.carried": {"t": 0.5},
     "Gyrostat.equilibria": {"momentum": 2.0},
+    "GyrostatMotion.equilibria": {"self": [TUMBLER.gyrostat((0.0, 0.5, 2.0)).free_motion(OMEGA)]},
     "Trajectory.sensitivity": {"method": "series"},
     "schedule": {"load": loads.constant_torque((0.5, 0.0, 0.25))},
     "callback": {"function": push},
@@ -285,6 +286,7 @@ def receivers() -> dict[str, tuple[Any, ...]]:
         "MassAccumulator": (accumulator,),
         "PrincipalAxes": (TUMBLER.principal, STACK.principal),
         "Trajectory": (motion, TUMBLER.free_motion(OMEGA).at([0.0, 0.5])),
+        "Wheel": (polhode.wheel(axis=[0.0, 0.5, 1.0], inertia=[0.25, 0.125], rate=2.0),),
     }
 
 
