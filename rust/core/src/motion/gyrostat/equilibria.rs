@@ -117,7 +117,7 @@ pub struct Equilibria {
 impl Equilibria {
     /// With all directions in the frame in which these axes (columns) are given.
     #[must_use]
-    pub fn rotate(mut self, axes: &Matrix3<f64>) -> Self {
+    pub(super) fn rotate(mut self, axes: &Matrix3<f64>) -> Self {
         let turn = |v: &mut [f64; 3]| *v = (axes * Vector3::from(*v)).into();
         for one in &mut self.found {
             turn(&mut one.direction);

@@ -1,7 +1,5 @@
 //! What every analytic law of a load is asked.
 
-use std::ops::Range;
-
 use nalgebra::Vector3;
 
 use super::body_at_point::BodyAtPoint;
@@ -9,6 +7,7 @@ use super::carried::Carried;
 use super::law_switches::Switch;
 use super::principal_frame::{LawNumber, PrincipalFrame};
 use super::series_terms::SeriesTerms;
+use super::variables::Parameter;
 use super::wrench::Wrench;
 use crate::error::Error;
 use crate::motion::state::Phase;
@@ -147,74 +146,5 @@ pub(super) trait Law: Sized {
     /// What it carries along in the body. [`Self::wrench`] of a law with states is that where a motion starts.
     fn carried(&self) -> Option<&dyn Carried> {
         None
-    }
-}
-
-/// Numbers of a term of a load, under the name and with the shape that they have where the term is made.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Parameter {
-    /// The name.
-    pub name: &'static str,
-    /// How many in each direction; in C order.
-    pub shape: Vec<usize>,
-}
-
-impl Parameter {
-    /// Of this name and shape.
-    pub(super) fn new(name: &'static str, shape: &[usize]) -> Self {
-        Self {
-            name,
-            shape: shape.to_vec(),
-        }
-    }
-
-    /// How many numbers they are.
-    #[must_use]
-    pub fn count(&self) -> usize {
-        self.shape.iter().product()
-    }
-}
-
-/// The columns of the numbers of a term among the variables of a motion, by their names. Without names where nothing is varied.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct ParameterColumns {
-    first: usize,
-    parameters: Vec<Parameter>,
-}
-
-impl ParameterColumns {
-    /// Where nothing is varied.
-    pub(crate) const NONE: &'static Self = &Self {
-        first: 0,
-        parameters: Vec::new(),
-    };
-
-    /// Of a term whose first number has the column `first`.
-    pub(crate) fn new(first: usize, parameters: Vec<Parameter>) -> Self {
-        Self { first, parameters }
-    }
-
-    /// The first of them.
-    pub(crate) fn first(&self) -> usize {
-        self.first
-    }
-
-    /// How many there are.
-    pub(super) fn count(&self) -> usize {
-        self.parameters.iter().map(Parameter::count).sum()
-    }
-
-    /// Those of the numbers of this name.
-    pub(super) fn of(&self, name: &str) -> Range<usize> {
-        let mut start = self.first;
-        for parameter in &self.parameters {
-            let end = start + parameter.count();
-            if parameter.name == name {
-                return start..end;
-            }
-            start = end;
-        }
-        debug_assert!(self.parameters.is_empty(), "no number {name}");
-        start..start
     }
 }

@@ -29,12 +29,12 @@ pub use self::wheel::{Drive, Wheel};
 
 use super::body_at_point::BodyAtPoint;
 use super::carried::Carried;
-use super::law::Parameter;
 use super::law::{Kept, Law, Traits};
 use super::law_switches::Switch;
 use super::principal_frame::{LawNumber, PrincipalFrame};
 use super::schedule::Windows;
 use super::series_terms::SeriesTerms;
+use super::variables::Parameter;
 use super::wrench::Wrench;
 use crate::error::{Error, MotionFault, finite};
 use crate::motion::kinematics::Frame;

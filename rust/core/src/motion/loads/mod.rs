@@ -85,8 +85,6 @@ pub use self::body_at_point::BodyAtPoint;
 pub use self::callback::Callback;
 pub use self::carried::Carried;
 pub use self::law::Kept;
-pub use self::law::Parameter;
-pub(crate) use self::law::ParameterColumns;
 pub use self::law_switches::{LawSwitch, Switch};
 pub use self::laws::*;
 pub use self::load::{Load, wrench_at};
@@ -102,5 +100,7 @@ pub(crate) use self::series_terms::{InternalState, SeriesStructure, SeriesTerms}
 pub(crate) use self::series_terms::{OMEGA, Steps};
 pub use self::stiction::Bearing;
 pub(in crate::motion) use self::stiction::Stiction;
+pub use self::variables::Parameter;
+pub(crate) use self::variables::ParameterColumns;
 pub use self::wrench::Wrench;
 pub use super::kinematics::Frame;

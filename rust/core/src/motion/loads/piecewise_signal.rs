@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::law::Parameter;
 use super::principal_frame::{LawNumber, PrincipalFrame};
 use super::spline::check_ascending;
+use super::variables::Parameter;
 use crate::error::{Error, MotionFault, all_finite, finite};
 
 /// A number that changes at known times.

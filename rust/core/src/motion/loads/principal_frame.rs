@@ -3,8 +3,7 @@
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::body_at_point::BodyAtPoint;
-use super::law::ParameterColumns;
-use super::variables::{Block, CENTER, Fixed, MASS, Variables, Varied};
+use super::variables::{Block, CENTER, Fixed, MASS, ParameterColumns, Variables, Varied};
 use crate::motion::attitude::components;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::number::Real;

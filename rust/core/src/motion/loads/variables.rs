@@ -9,7 +9,6 @@ use std::ops::Range;
 use nalgebra::{Matrix3, Vector3};
 
 use super::kepler::Orbit;
-use super::law::{Parameter, ParameterColumns};
 use crate::numerics::jet::Jet;
 use crate::numerics::number::Real;
 use crate::numerics::quaternion::product;
@@ -138,5 +137,74 @@ impl Variables<Varied> for Block {
             self.number(value, column)
         };
         orbit.at_with_derivatives(elapsed, number)
+    }
+}
+
+/// Numbers of a term of a load, under the name and with the shape that they have where the term is made.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Parameter {
+    /// The name.
+    pub name: &'static str,
+    /// How many in each direction; in C order.
+    pub shape: Vec<usize>,
+}
+
+impl Parameter {
+    /// Of this name and shape.
+    pub(super) fn new(name: &'static str, shape: &[usize]) -> Self {
+        Self {
+            name,
+            shape: shape.to_vec(),
+        }
+    }
+
+    /// How many numbers they are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.shape.iter().product()
+    }
+}
+
+/// The columns of the numbers of a term among the variables of a motion, by their names. Without names where nothing is varied.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ParameterColumns {
+    first: usize,
+    parameters: Vec<Parameter>,
+}
+
+impl ParameterColumns {
+    /// Where nothing is varied.
+    pub(crate) const NONE: &'static Self = &Self {
+        first: 0,
+        parameters: Vec::new(),
+    };
+
+    /// Of a term whose first number has the column `first`.
+    pub(crate) fn new(first: usize, parameters: Vec<Parameter>) -> Self {
+        Self { first, parameters }
+    }
+
+    /// The first of them.
+    pub(crate) fn first(&self) -> usize {
+        self.first
+    }
+
+    /// How many there are.
+    pub(super) fn count(&self) -> usize {
+        self.parameters.iter().map(Parameter::count).sum()
+    }
+
+    /// Those of the numbers of this name.
+    pub(super) fn of(&self, name: &str) -> Range<usize> {
+        let mut start = self.first;
+        for parameter in &self.parameters {
+            let end = start + parameter.count();
+            if parameter.name == name {
+                return start..end;
+            }
+            start = end;
+        }
+        debug_assert!(self.parameters.is_empty(), "no number {name}");
+        start..start
     }
 }

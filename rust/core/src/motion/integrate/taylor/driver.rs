@@ -12,11 +12,11 @@ use std::ops::ControlFlow;
 
 use super::batch::{Batch, plus};
 use super::directions::direction_in_body;
+use super::equations::LinearTerms;
 use super::equations::{AuxiliaryState, PiecewiseEquations, Precision};
 use super::internal_states::InternalStates;
-use super::linear_terms::LinearTerms;
 use super::nonlinear::NonlinearTerms;
-use super::orbit_series::OrbitSeriesCache;
+use super::orbit_cache::OrbitSeriesCache;
 use super::series::{Coefficient, MAX_COUNT, Series};
 use super::step::{Compensated, Observer, Step, longest_step};
 use super::translation::Translation;

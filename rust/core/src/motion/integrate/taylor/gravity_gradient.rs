@@ -5,8 +5,8 @@ use std::marker::PhantomData;
 use nalgebra::{Matrix3, Vector3};
 
 use super::batch::{Batch, CacheAligned, plus};
+use super::equations::LinearTerms;
 use super::equations::quaternion_of_matrix;
-use super::linear_terms::LinearTerms;
 use super::orbit_series::OrbitSeries;
 use super::series::{MAX_COUNT, Series};
 use crate::motion::loads::OnOrbit;

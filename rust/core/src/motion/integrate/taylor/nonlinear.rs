@@ -4,10 +4,11 @@
 use nalgebra::Vector3;
 
 use super::batch::{Batch, CacheAligned, plus};
+use super::equations::CacheKey;
+use super::equations::LinearTerms;
 use super::equations::Precision;
 use super::gravity_gradient::GravityGradientSeries;
-use super::linear_terms::LinearTerms;
-use super::orbit_series::{CacheKey, OrbitSeriesCache, round_step_end};
+use super::orbit_cache::{OrbitSeriesCache, round_step_end};
 use super::series::{MAX_COUNT, Series};
 use crate::motion::loads::{Forcing, FormulaStep, OnOrbit, SeriesStructure, TorqueFormula};
 use crate::numerics::dispatch::{Kernel, dispatch};
@@ -740,7 +741,7 @@ mod tests {
 
     use super::*;
     use crate::motion::integrate::taylor::gravity_gradient::INITIAL_NUMBERS;
-    use crate::motion::integrate::taylor::orbit_series::ENTRIES;
+    use crate::motion::integrate::taylor::orbit_cache::ENTRIES;
     use crate::motion::integrate::taylor::series::{Coefficient, Coefficients};
     use crate::motion::integrate::taylor::single::SingleMotionSeries;
     use crate::motion::loads::{OMEGA, Steps};

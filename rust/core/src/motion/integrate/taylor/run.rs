@@ -5,11 +5,11 @@ use std::ops::{ControlFlow, Range};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use super::batch::BatchSeries;
+use super::batch_series::BatchSeries;
 use super::double_double::DoubleDoubleSeries;
 use super::driver::{Job, SampleSink, Settings, drive};
 use super::equations::{PiecewiseEquations, Precision, parts};
-use super::orbit_series::OrbitSeriesCache;
+use super::orbit_cache::OrbitSeriesCache;
 use super::series;
 use super::single::SingleMotionSeries;
 use super::step::{Observer, Step};

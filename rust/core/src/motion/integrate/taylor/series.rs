@@ -18,9 +18,10 @@
 //! its parts are the first less the second, and the first plus the third.
 //! (Gauss's way; Knuth, The Art of Computer Programming 2, §4.6.4.)
 //!
-//! The recursion stands here once, for any numbers: [`Coefficients`] are stored, and their products added up, in the way of each kind. In doubles the sums are computed in two ways. [`BatchSeries`](super::batch::BatchSeries) puts
+//! The recursion stands here once, for any numbers: [`Coefficients`] are stored, and their products added up, in the way of
+//! each kind. In doubles the sums are computed in two ways. [`BatchSeries`](super::batch_series::BatchSeries) puts
 //! the same component of several motions in the lanes. [`SingleMotionSeries`](super::single::SingleMotionSeries) puts the
-//! components of one motion in the lanes, and all of its recursion with them: in half the time of a batch of one.
+//! components of one motion in the lanes, and has a recursion of its own.
 //! Both add the same products in the same order, so a motion has the same bits in both.
 //! [`DoubleDoubleSeries`](super::double_double::DoubleDoubleSeries) and
 //! [`VariationalSeries`](super::variational::VariationalSeries) compute all twelve products.

@@ -1,7 +1,7 @@
 //! The translation of a free body under forces: `m v̇ = F`, with parts of F constant in space and in the body.
 
 use super::batch::Batch;
-use super::linear_terms::LinearTerms;
+use super::equations::LinearTerms;
 use super::series;
 use super::series::Series;
 use super::step::compensate;

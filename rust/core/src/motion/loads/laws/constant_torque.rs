@@ -5,10 +5,10 @@ use nalgebra::{Matrix3, Vector3};
 use crate::error::{Error, all_finite};
 use crate::motion::kinematics::Frame;
 use crate::motion::loads::body_at_point::BodyAtPoint;
-use crate::motion::loads::law::Parameter;
 use crate::motion::loads::law::{Kept, Law, Traits};
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
 use crate::motion::loads::series_terms::SeriesTerms;
+use crate::motion::loads::variables::Parameter;
 use crate::motion::loads::wrench::{Wrench, in_body, times};
 use crate::motion::state::Phase;
 

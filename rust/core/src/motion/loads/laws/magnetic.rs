@@ -7,12 +7,12 @@ use nalgebra::Vector3;
 
 use crate::error::{Error, MotionFault, all_finite, finite};
 use crate::motion::loads::body_at_point::BodyAtPoint;
-use crate::motion::loads::law::Parameter;
 use crate::motion::loads::law::{Kept, Law, Traits};
 use crate::motion::loads::orbit_model::OrbitModel;
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
 use crate::motion::loads::series_terms::SeriesTerms;
 use crate::motion::loads::spline::Spline;
+use crate::motion::loads::variables::Parameter;
 use crate::motion::loads::wrench::{Wrench, times};
 use crate::motion::state::Phase;
 use crate::numerics::quaternion::cross_matrix;

@@ -6,10 +6,10 @@ use crate::error::{Error, MotionFault, finite};
 use crate::motion::loads::body_at_point::BodyAtPoint;
 use crate::motion::loads::carried::Carried;
 use crate::motion::loads::carried::Now;
-use crate::motion::loads::law::Parameter;
 use crate::motion::loads::law::{Kept, Law, Traits};
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
 use crate::motion::loads::series_terms::{InternalState, SeriesTerms};
+use crate::motion::loads::variables::Parameter;
 use crate::motion::loads::wrench::Wrench;
 use crate::motion::state::Phase;
 

@@ -7,11 +7,12 @@ use super::slug::{not_negative, positive};
 use crate::error::{Error, MotionFault, finite};
 use crate::motion::loads::body_at_point::BodyAtPoint;
 use crate::motion::loads::carried::{Carried, Now};
-use crate::motion::loads::law::{Kept, Law, Parameter, ParameterColumns, Traits};
+use crate::motion::loads::law::{Kept, Law, Traits};
 use crate::motion::loads::law_switches::Switch;
 use crate::motion::loads::piecewise_signal::PiecewiseSignal;
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame, exact};
 use crate::motion::loads::series_terms::{InternalState, SeriesTerms};
+use crate::motion::loads::variables::{Parameter, ParameterColumns};
 use crate::motion::loads::wrench::Wrench;
 use crate::motion::state::Phase;
 

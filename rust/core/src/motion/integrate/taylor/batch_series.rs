@@ -1,0 +1,277 @@
+//! The series of several motions in doubles, one motion in each lane.
+
+use super::batch::{Batch, CacheAligned};
+use super::directions::{add_squares, axis, from_squares, halve, roots};
+use super::series::{AnyNumber, COUNT, Coefficient, Coefficients};
+use crate::numerics::dispatch::{Kernel, dispatch};
+use crate::numerics::lane::Lane;
+
+/// The series of `R` motions, one in each lane.
+#[derive(Clone, Debug)]
+#[repr(align(64))] // see Batch
+pub(super) struct BatchSeries<L, const B: usize, const R: usize> {
+    orders: [Order<Batch<L, R>>; COUNT],
+    directions: [[[Batch<L, R>; 3]; B]; COUNT],
+    /// Index of the component of ω that is constant in all motions, or [`NONE`].
+    constant: usize,
+}
+
+/// No component of ω is constant in all motions.
+const NONE: usize = 3;
+
+/// The sums of products of [`BatchSeries`]: ω₂ω₃, ω₃ω₁, ω₁ω₂ and q∘ω.
+pub(super) struct BatchSums<T> {
+    spins: [T; 3],
+    turned: [T; 4],
+}
+
+/// Sums of real products, from which [`BatchSums`] are computed: components of ω; α and β with ω₁ + iω₂; q with ω₃. See
+/// [`series`](super::series).
+struct Products<T> {
+    spins: [T; 3],
+    alpha: [T; 3],
+    beta: [T; 3],
+    third: [T; 4],
+}
+
+/// The coefficients of one order.
+#[derive(Clone, Copy, Debug)]
+struct Order<T> {
+    w: [T; 3],
+    q: [T; 4],
+}
+
+impl<L: Lane, const R: usize> Products<Batch<L, R>> {
+    #[inline(always)]
+    fn new() -> Self {
+        let zero = Batch::new(0.0);
+        Self {
+            spins: [zero; 3],
+            alpha: [zero; 3],
+            beta: [zero; 3],
+            third: [zero; 4],
+        }
+    }
+
+    /// Add the products of `a` with ω of `b`. Products with component `CONSTANT` of ω are zero and are left out. Sums of two
+    /// coefficients are computed here each time: additions run beside multiplications, and a stored sum would have to be loaded.
+    #[inline(always)]
+    fn add<const CONSTANT: usize>(&mut self, a: &Order<Batch<L, R>>, b: &Order<Batch<L, R>>) {
+        // Written out, since a loop would keep the sums in memory.
+        let ([_, a1, a2], [x, y, z, w]) = (a.w, a.q);
+        let [b0, b1, b2] = b.w;
+        let (sum, difference) = (b0 + b1, b1 - b0);
+        if CONSTANT == NONE {
+            self.spins[0] = a1.mul_add(b2, self.spins[0]);
+            self.spins[1] = a2.mul_add(b0, self.spins[1]);
+            self.spins[2] = a1.mul_add(b0, self.spins[2]);
+        }
+        if CONSTANT != 0 {
+            self.alpha[0] = (w + z).mul_add(b0, self.alpha[0]);
+            self.beta[0] = (x + y).mul_add(b0, self.beta[0]);
+        }
+        self.alpha[1] = w.mul_add(difference, self.alpha[1]);
+        self.alpha[2] = z.mul_add(sum, self.alpha[2]);
+        self.beta[1] = x.mul_add(sum, self.beta[1]);
+        self.beta[2] = y.mul_add(difference, self.beta[2]);
+        if CONSTANT != 2 {
+            self.third[0] = x.mul_add(b2, self.third[0]);
+            self.third[1] = y.mul_add(b2, self.third[1]);
+            self.third[2] = z.mul_add(b2, self.third[2]);
+            self.third[3] = w.mul_add(b2, self.third[3]);
+        }
+    }
+
+    #[inline(always)]
+    fn sums(self) -> BatchSums<Batch<L, R>> {
+        let ([a0, a1, a2], [b0, b1, b2]) = (self.alpha, self.beta);
+        let [x, y, z, w] = self.third;
+        BatchSums {
+            spins: self.spins,
+            turned: [a0 - a2 + y, a0 + a1 - x, b1 - b0 + w, -b0 - b2 - z],
+        }
+    }
+}
+
+impl<L: Lane, const B: usize, const R: usize> Coefficients<Batch<L, R>, B>
+    for BatchSeries<L, B, R>
+{
+    #[inline(always)]
+    fn new() -> Self {
+        let zero = Batch::new(0.0);
+        Self {
+            orders: [Order {
+                w: [zero; 3],
+                q: [zero; 4],
+            }; COUNT],
+            directions: [[[zero; 3]; B]; COUNT],
+            constant: NONE,
+        }
+    }
+
+    fn set_constant_component(&mut self, constant: Option<usize>) {
+        self.constant = constant.unwrap_or(NONE);
+    }
+
+    #[inline(always)]
+    fn get(&self, k: usize) -> Coefficient<Batch<L, R>, B> {
+        let Order { w, q } = self.orders[k];
+        Coefficient {
+            w,
+            q,
+            g: self.directions[k],
+        }
+    }
+
+    type Sums = BatchSums<Batch<L, R>>;
+
+    #[inline(always)]
+    fn sums(&mut self, k: usize) -> Self::Sums {
+        match self.constant {
+            0 => dispatch(Sum::<_, B, R, 0>(self, k)).0,
+            2 => dispatch(Sum::<_, B, R, 2>(self, k)).0,
+            _ => dispatch(Sum::<_, B, R, NONE>(self, k)).0,
+        }
+    }
+
+    #[inline(always)]
+    fn spins(sums: &Self::Sums) -> [Batch<L, R>; 3] {
+        sums.spins
+    }
+}
+
+impl<L: Lane, const B: usize, const R: usize> AnyNumber<Batch<L, R>, B> for BatchSeries<L, B, R> {
+    #[inline(always)]
+    fn put_omega(&mut self, k: usize, i: usize, x: Batch<L, R>) {
+        self.orders[k].w[i] = x;
+    }
+
+    #[inline(always)]
+    fn put_attitude(&mut self, k: usize, i: usize, x: Batch<L, R>) {
+        self.orders[k].q[i] = x;
+    }
+
+    #[inline(always)]
+    fn put_direction(&mut self, k: usize, b: usize, i: usize, x: Batch<L, R>) {
+        self.directions[k][b][i] = x;
+    }
+
+    #[inline(always)]
+    fn attitude_sum(sums: &Self::Sums, i: usize) -> Batch<L, R> {
+        sums.turned[i]
+    }
+
+    #[inline(always)]
+    fn direction_sum(_: &Self::Sums, _: usize, _: usize) -> Option<Batch<L, R>> {
+        None
+    }
+}
+
+impl<L: Lane, const B: usize, const R: usize> BatchSeries<L, B, R> {
+    /// Compute the sums of order `k`. Component `CONSTANT` of ω is constant: its coefficients of orders above zero are zero, and
+    /// their products are left out.
+    #[inline(always)]
+    fn products<const CONSTANT: usize>(&mut self, k: usize) -> BatchSums<Batch<L, R>> {
+        let mut products = Products::new();
+        let orders = &self.orders[..=k];
+        if k == 0 {
+            products.add::<NONE>(&orders[0], &orders[0]);
+            return products.sums();
+        }
+        let mut squares = Squares::new();
+        if k.is_multiple_of(2) {
+            products.add::<CONSTANT>(&orders[k / 2], &orders[k / 2]);
+            squares.add_middle(&orders[k / 2]);
+        }
+        let inner = usize::from(CONSTANT != NONE);
+        let early = orders[inner..k.div_ceil(2)].iter().rev();
+        for (early, late) in early.zip(&orders[k / 2 + 1..=k - inner]) {
+            products.add::<CONSTANT>(early, late);
+            products.add::<CONSTANT>(late, early);
+            squares.add(early, late);
+        }
+        if CONSTANT != NONE {
+            products.add::<NONE>(&orders[0], &orders[k]);
+            products.add::<NONE>(&orders[k], &orders[0]);
+            squares.add(&orders[0], &orders[k]);
+        }
+        self.directions[k] = squares.directions();
+        products.sums()
+    }
+}
+
+/// Computes the sums of one order. A separate function: within a larger one the sums are not kept in registers.
+struct Sum<'a, L, const B: usize, const R: usize, const CONSTANT: usize>(
+    &'a mut BatchSeries<L, B, R>,
+    usize,
+);
+
+impl<N: Lane, const B: usize, const R: usize, const CONSTANT: usize> Kernel
+    for Sum<'_, N, B, R, CONSTANT>
+{
+    type Output = CacheAligned<BatchSums<Batch<N, R>>>;
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> Self::Output {
+        CacheAligned(self.0.products::<CONSTANT>(self.1))
+    }
+}
+
+/// Sums of squares for the directions: see [`series`](super::series).
+struct Squares<T, const B: usize>([[T; 6]; B]);
+
+impl<L: Lane, const R: usize, const B: usize> Squares<Batch<L, R>, B> {
+    #[inline(always)]
+    fn new() -> Self {
+        Self([[Batch::new(0.0); 6]; B])
+    }
+
+    // One axis after the other, written out: a loop would keep the sums in memory.
+
+    #[inline(always)]
+    fn add(&mut self, one: &Order<Batch<L, R>>, other: &Order<Batch<L, R>>) {
+        self.add_along(0, one, other);
+        self.add_along(1, one, other);
+        self.add_along(2, one, other);
+    }
+
+    #[inline(always)]
+    fn add_along(&mut self, b: usize, one: &Order<Batch<L, R>>, other: &Order<Batch<L, R>>) {
+        if let Some(sums) = self.0.get_mut(b) {
+            let n = axis::<B>(b);
+            *sums = add_squares(*sums, &roots(n, &one.q), &roots(n, &other.q));
+        }
+    }
+
+    #[inline(always)]
+    fn add_middle(&mut self, middle: &Order<Batch<L, R>>) {
+        self.add_middle_along(0, middle);
+        self.add_middle_along(1, middle);
+        self.add_middle_along(2, middle);
+    }
+
+    #[inline(always)]
+    fn add_middle_along(&mut self, b: usize, middle: &Order<Batch<L, R>>) {
+        if let Some(sums) = self.0.get_mut(b) {
+            let roots = roots(axis::<B>(b), &middle.q);
+            *sums = add_squares(*sums, &halve(&roots), &roots);
+        }
+    }
+
+    #[inline(always)]
+    fn directions(&self) -> [[Batch<L, R>; 3]; B] {
+        let mut directions = [[Batch::new(0.0); 3]; B];
+        self.put_direction(0, &mut directions);
+        self.put_direction(1, &mut directions);
+        self.put_direction(2, &mut directions);
+        directions
+    }
+
+    #[inline(always)]
+    fn put_direction(&self, b: usize, directions: &mut [[Batch<L, R>; 3]; B]) {
+        if let (Some(&[s, t, u, v, w, x]), Some(direction)) = (self.0.get(b), directions.get_mut(b))
+        {
+            *direction = from_squares(axis::<B>(b), [s + t, u + v, w + x]);
+        }
+    }
+}
