@@ -96,7 +96,8 @@ impl PyMassAccumulator {
         let start = start.map(number_of_particle).transpose()?;
         if is_any(&[Some(masses), Some(positions)]) {
             let first = start.unwrap_or_else(|| py.detach(|| this.lock().end()));
-            if let Some(chunk) = handed_over(py, "sum_particles", (masses, positions, first), None)? {
+            if let Some(chunk) = handed_over(py, "sum_particles", (masses, positions, first), None)?
+            {
                 let chunk = chunk.cast_into::<Self>()?;
                 let chunk = chunk.get();
                 let merged = py.detach(|| {
