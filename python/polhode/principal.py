@@ -193,7 +193,8 @@ class PrincipalAxes:
         shape, axis = self.moments.shape[:-1], operator.index(axis)
         if not -len(shape) <= axis < len(shape):
             raise ValueError(f"axis: {axis} is no axis of a stack of shape {shape}")
-        if rtol is not None and not 0.0 <= float(rtol) < math.inf:
+        tolerance = None if rtol is None else _core.real_numbers(rtol, "rtol")
+        if tolerance is not None and not (tolerance.ndim == 0 and 0.0 <= tolerance < math.inf):
             raise ValueError(f"rtol: {rtol} is not a tolerance; give a number such as 1e-6")
         axis %= len(shape)
         moments, axes = np.moveaxis(self.moments, axis, 0), np.moveaxis(self.axes, axis, 0)
@@ -201,12 +202,13 @@ class PrincipalAxes:
         rows = math.prod(rest)
         moments = moments.reshape(count, rows, 3)
         axes = axes.reshape(count, rows, 3, 3).copy()
-        near = self.top_rtol if rtol is None else rtol
+        near = self.top_rtol if tolerance is None else tolerance
         if np.ndim(near):
             near = np.moveaxis(np.broadcast_to(near, self.moments.shape), axis, 0).reshape(count, rows, 3)[
                 ..., 1:
             ]
-        close = np.diff(moments, axis=-1) <= near * moments[..., 2:]
+        with np.errstate(over="ignore"):  # of a tolerance at which all are equal
+            close = np.diff(moments, axis=-1) <= near * moments[..., 2:]
         order = np.tile(np.arange(3), (count, rows, 1))
         overlap = np.ones((count, rows))
         for k in range(1, count):

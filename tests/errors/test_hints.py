@@ -185,6 +185,12 @@ MISTAKES: list[tuple[str, Callable[[], object], type[Exception], str]] = [
         "expected a number that a float can be, at most 1.8e308 in size",
     ),
     (
+        "a mass beyond floats",
+        lambda: MADE.from_curve([[0, 0, 0], [1, 0, 0]], mass=10**400),
+        TypeError,
+        "expected a number that a float can be, at most 1.8e308 in size",
+    ),
+    (
         "a whole number beyond all",
         lambda: BODY.simulate(*SPUN, max_steps=10**400),
         TypeError,
@@ -285,7 +291,7 @@ def test_a_molecule_is_no_mesh(tmp_path: Path, option: dict[str, Any]) -> None:
         (lambda: BODY.principal_momnts, "'principal_momnts'; did you mean principal_moments?"),
         (
             lambda: BODY.free_motion((0, 0, 1)).omega_at(3),
-            "'FreeMotion' object has no attribute 'omega_at'; at(t)",
+            "'FreeMotion' object has no attribute 'omega_at'; use at(t)",
         ),
         (lambda: BODY.free_motion((0, 0, 1)).modde, "'modde'; did you mean mode?"),
         (

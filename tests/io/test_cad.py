@@ -27,7 +27,7 @@ MM = 1e-3
 def _in_this_process(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Read in this process, which is sooner, but in the tests of the other one."""
     if request.cls is not TestApart:
-        monkeypatch.setattr(cad_process, "read_cad_apart", read_cad)
+        monkeypatch.setattr(cad_process, "read_cad_apart", lambda path, _packed: read_cad(path))
 
 
 class TestClosedForms:

@@ -224,6 +224,11 @@ def dipole(r: np.ndarray) -> np.ndarray:
 
 
 class TestMagnetic:
+    @pytest.mark.parametrize("position", [(0.0, 0.0, 0.0), [(1.0, 0.0, 0.0), (0.0, 1e-200, 0.0)]])
+    def test_the_centre_of_the_dipole(self, position: Any) -> None:
+        with pytest.raises(ValueError, match="position: the field of a dipole is infinite at its centre"):
+            _core.dipole_field((0.0, 0.0, 1.0), position)
+
     @pytest.mark.parametrize("gain", [None, 0.7])
     @pytest.mark.parametrize("source", ["uniform", "dipole", "sampled"])
     @pytest.mark.parametrize("method", ["auto", "dop853", "radau"])

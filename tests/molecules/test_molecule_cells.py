@@ -309,3 +309,11 @@ class TestWhereItIsSaid:
             says = "atoms: 1 bond crosses a side of the cell"
             assert [str(w.message)[: len(says)] for w in caught] == [says] * (2 * warned)
             assert all(w.filename == __file__ for w in caught)
+
+
+def test_a_cell_of_very_different_sides() -> None:
+    """The heights of (4, 0, 1e16) and (0, 5, 0) are 1e16 and 5: atoms cross neither."""
+    found = cell_crossings(
+        ["O", "H", "H"], [(0, 0, 0), (0.75, 0, 0.5), (-0.75, 0, 0.5)], [(4, 0, 1e16), (0, 5, 0)]
+    )
+    assert (found.bonds, found.fragments, found.is_endless) == ((), 1, False)

@@ -91,6 +91,7 @@ def test_conversion_factor() -> None:
     moments = [1.0, 1.0, 2.0]
     np.testing.assert_allclose(rotational_constants(moments), np.array([1, 1, 0.5]) * 505379.0, rtol=2e-7)
     np.testing.assert_allclose(rotational_constants(moments, "cm^-1")[0], 16.857629, rtol=2e-8)
+    assert rotational_constants([1e-310, 1.0, 1.0])[0] == np.inf  # as of zero, without a warning
 
 
 def test_zero_moment_is_an_infinite_constant() -> None:

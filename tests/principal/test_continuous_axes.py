@@ -119,3 +119,14 @@ def test_refused() -> None:
         principal_axes([np.eye(3)]).continuous(-2)
     with pytest.raises(ValueError, match="is not a tolerance"):
         principal_axes([np.eye(3)]).continuous(rtol=-1.0)
+
+
+@pytest.mark.parametrize("rtol", [10**400, [1e-6, 1e-6], -1.0, np.nan, np.inf])
+def test_what_is_no_tolerance(rtol: Any) -> None:
+    with pytest.raises((TypeError, ValueError), match="rtol: "):
+        principal_axes([np.eye(3), np.eye(3)]).continuous(rtol=rtol)
+
+
+def test_a_tolerance_at_which_all_moments_are_equal() -> None:
+    frames = principal_axes([np.diag((1.0, 2.0, 3.0)), np.diag((2.0, 1.0, 3.0))])
+    assert not frames.continuous(rtol=1e308).determined.any()

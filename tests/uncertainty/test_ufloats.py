@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from polhode import RigidBody, Uncertain, laminae, solids
 from polhode.errors import PolhodeError
-from polhode.uncertainty import joined, propagate, to_ufloats
+from polhode.uncertainty import join, propagate, to_ufloats
 from uncertainties import ufloat
 from uncertainties.umath import sqrt
 
@@ -43,7 +43,7 @@ def test_their_arithmetic_and_ours_agree() -> None:
 
 def test_correlated_numbers_stay_correlated() -> None:
     x = ufloat(1.0, 0.1)
-    given: Any = joined([x, 2 * x, 3.0])
+    given: Any = join([x, 2 * x, 3.0])
     assert given.covariance == pytest.approx(
         np.array([[0.01, 0.02, 0.0], [0.02, 0.04, 0.0], [0.0, 0.0, 0.0]])
     )
@@ -79,12 +79,12 @@ def test_files_of_meshes_keep_it(tmp_path: Path) -> None:
 
 
 def test_what_has_none_is_none() -> None:
-    assert joined([1.0, 2.0]) is None
-    assert joined("text") is None
-    assert joined([[1.0], [2.0, 3.0]]) is None
+    assert join([1.0, 2.0]) is None
+    assert join("text") is None
+    assert join([[1.0], [2.0, 3.0]]) is None
     itself: list[Any] = [1.0]
     itself += [itself, itself]
-    assert joined(itself) is None
+    assert join(itself) is None
     with pytest.raises(TypeError, match="radius"):
         solids.sphere(["a"], mass=1.0)
 

@@ -116,7 +116,7 @@ def rotational_constants(moments: ArrayLike, unit: Literal["MHz", "cm^-1"] = "MH
         raise ValueError(f"unit: expected 'MHz' or 'cm^-1', got {unit!r}")
     inertia = np.moveaxis(_components(moments), 0, -1)
     numerator = scale * PLANCK_CONSTANT / (8.0 * np.pi**2 * ATOMIC_MASS_CONSTANT * _ANGSTROM**2)
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", over="ignore"):
         constants: Floats = np.divide(numerator, inertia)
     return constants
 

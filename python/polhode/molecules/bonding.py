@@ -269,7 +269,7 @@ def _in_cell(places: Floats, cell: ArrayLike) -> tuple[Floats, Floats]:
             raise PolhodeError(
                 f"cell: opposite sides are {least:.3g} angstrom apart, less than an atom; check the unit"
             )
-        fractions = places @ np.linalg.pinv(vectors)
+        fractions = places @ _inverse(vectors)
     if not (np.abs(fractions) < 1e9).all():
         raise PolhodeError("positions: an atom is more than 1e9 cells away; check the unit")
     return vectors, fractions
@@ -277,8 +277,15 @@ def _in_cell(places: Floats, cell: ArrayLike) -> tuple[Floats, Floats]:
 
 def _heights(vectors: Floats) -> Floats:
     """Return the distances between opposite sides of a cell."""
-    heights: Floats = 1.0 / np.linalg.norm(np.linalg.pinv(vectors), axis=0)
+    heights: Floats = 1.0 / np.linalg.norm(_inverse(vectors), axis=0)
     return heights
+
+
+def _inverse(vectors: Floats) -> Floats:
+    """Return the pseudo-inverse of independent vectors, however different their lengths are."""
+    lengths = np.linalg.norm(vectors, axis=-1)
+    inverse: Floats = np.linalg.pinv(vectors / lengths[:, None]) / lengths
+    return inverse
 
 
 def _fragments(count: int, pairs: Sequence[CellBond]) -> tuple[int, bool]:

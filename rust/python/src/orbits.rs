@@ -6,7 +6,7 @@ use polhode::motion::attitude::components;
 use polhode::motion::loads::kepler::Orbit;
 use polhode::motion::loads::magnetic::field_and_rate;
 use polhode::motion::loads::{Oblate, OrbitModel};
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::arrays::{list_floats, read, samples, try_rows, try_series, write, write_of};
@@ -314,6 +314,12 @@ pub(crate) fn dipole_field<'py>(
 ) -> PyResult<Floats<'py>> {
     let strength: Stack<Vector3<f64>> = read(strength, "strength")?;
     let position: Stack<Vector3<f64>> = read(position, "position")?;
+    // Of the shortest vectors too, whose squares vanish.
+    if position.rows.iter().any(|r| r.norm() == 0.0) {
+        return Err(PyValueError::new_err(
+            "position: the field of a dipole is infinite at its centre; give a position outside of the planet",
+        ));
+    }
     let found = Broadcast::of(["strength", "position"], [&strength.shape, &position.shape])?
         .try_map(py, |[m, r]| {
             Ok(field_and_rate(&strength[m], &position[r], &Vector3::zeros())[0])

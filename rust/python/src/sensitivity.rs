@@ -25,6 +25,11 @@ use crate::memory;
 use crate::stack::{Broadcast, Stack};
 use crate::times::read_times;
 
+/// Names, item by item: what an object says of its length is not relied on.
+fn read_names(object: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
+    object.try_iter()?.map(|name| name?.extract()).collect()
+}
+
 /// The derivatives of motions from states at the first of the times; `given` names the states of the load that do not follow from its
 /// numbers.
 #[pyfunction]
@@ -39,7 +44,7 @@ pub(crate) fn motion_sensitivity<'py>(
     load: Option<&Bound<'py, PyLoad>>,
     #[pyo3(from_py_with = read_scalar)] about: &str,
     states: Option<&Bound<'py, PyAny>>,
-    given: Vec<String>,
+    #[pyo3(from_py_with = read_names)] given: Vec<String>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let nothing = PyLoad::default();
     let load = load.map_or(&nothing, Bound::get);

@@ -383,7 +383,7 @@ impl<'py> FromPyObject<'_, 'py> for Weight {
     type Error = PyErr;
 
     fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        let uncertain = match object.extract::<f64>() {
+        let uncertain = match read_scalar::<f64>(&object) {
             Ok(value) => {
                 return Ok(Self {
                     value,

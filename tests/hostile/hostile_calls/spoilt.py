@@ -146,7 +146,7 @@ def shapes(values: Any, rng: np.random.Generator) -> Any:
             lambda: plain[..., :-1],
             lambda: plain[:0],
             lambda: np.concatenate([plain, plain]),
-            lambda: plain[0],
+            lambda: plain[0] if len(plain) else plain[None],
             lambda: plain.tolist()[:-1],
             lambda: [*plain.tolist(), [1.0]],
         ]

@@ -125,13 +125,13 @@ impl MeshSolid {
     /// ```
     /// use std::ops::ControlFlow;
     /// use polhode::mass::Amount;
-    /// use polhode::mass::polyhedron::{Options, polyhedron_watched};
+    /// use polhode::mass::polyhedron::{MeshSolid, Options, polyhedron_watched};
     ///
     /// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     /// let inverted = [[0_u32, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]];
     /// let options = Options { orient: true, ..Options::default() };
     /// let go_on = &mut |_| ControlFlow::Continue(());
-    /// let solid = polyhedron_watched(&vertices, &inverted, Amount::Mass(2.0), options, go_on)?;
+    /// let solid: MeshSolid = polyhedron_watched(&vertices, &inverted, Amount::Mass(2.0), options, go_on)?;
     /// assert_eq!(solid.outward(&inverted)[0], [0, 2, 1]);
     /// assert!((solid.volume - 1.0 / 6.0).abs() < 1e-15);
     /// # Ok::<(), polhode::parallel::Halt<polhode::Error>>(())

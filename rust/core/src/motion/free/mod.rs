@@ -38,6 +38,7 @@
 //! // What it keeps: L, T and what follows from them.
 //! let kept: Invariants = motion.invariants();
 //! assert!((kept.angular_momentum() - Vector3::new(0.2_f64, 0.2, 2.5).norm()).abs() < 1e-15);
+//! assert!((motion.angular_momentum_in_body() - Vector3::new(0.2, 0.2, 2.5)).norm() < 1e-15);
 //! assert!((kept.energy_ratio() - 2.0 * kept.kinetic_energy() * 2.5 / kept.angular_momentum().powi(2)).abs() < 1e-14);
 //! assert!((kept.steady_rates()[2] - kept.angular_momentum() / 2.5).abs() < 1e-15);
 //! assert_eq!((kept.mode, kept.circled_axis(), kept.is_steady()), (Mode::ShortAxis, 2, false));

@@ -37,6 +37,7 @@
 //! let satellite = Gyrostat::of(&body, &inside)?;
 //! let motion: GyrostatMotion = satellite.free_motion(&omega, &UnitQuaternion::identity())?;
 //! assert!(motion.as_free().is_none()); // with momentum inside it is no free motion of a body
+//! assert!((motion.angular_momentum_in_body() - Vector3::new(30.4, -0.2, 1.2)).norm() < 1e-13);
 //! let (mut attitudes, mut omegas) = ([[0.0; 4]; 1], [[0.0; 3]; 1]);
 //! motion.sample(&[motion.period.rounded()], &mut attitudes, &mut omegas);
 //! assert!((Vector3::from(omegas[0]) - omega).amax() < 1e-12);
