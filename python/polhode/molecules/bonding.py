@@ -264,7 +264,8 @@ def _in_cell(places: Floats, cell: ArrayLike) -> tuple[Floats, Floats]:
             raise PolhodeError(
                 "cell: its vectors do not span a cell; correct them, or leave out those that are none"
             )
-        least = _heights(vectors).min()
+        least = lengths.min()
+        least = least if least < _LEAST_HEIGHT else _heights(vectors).min()
         if not least >= _LEAST_HEIGHT:
             raise PolhodeError(
                 f"cell: opposite sides are {least:.3g} angstrom apart, less than an atom; check the unit"
