@@ -7,6 +7,7 @@ from typing import Any, Literal, Self, TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from typing_extensions import disjoint_base
 
 from polhode._typing import SupportsQuaternion, SupportsSigma
 from polhode.motion.free import Cones, ErrorBar, Periods, Poinsot, Sensitivity
@@ -609,6 +610,7 @@ class HeavyTop:
     def __copy__(self) -> HeavyTop: ...
     def __deepcopy__(self, memo: object, /) -> HeavyTop: ...
 
+@disjoint_base
 class Load:
     __array_ufunc__: None
     def torque(

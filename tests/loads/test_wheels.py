@@ -430,7 +430,7 @@ class TestOneWheel:
         assert isinstance(wheel, loads.Load)
         assert wheel.shape == (2,)
         assert wheel[1] == polhode.wheel(axis=(0, 0, 1), inertia=0.3, rate=5.0, name="z")
-        total = sum([wheel, loads.constant_torque((0.1, 0, 0)), wheel])
+        total: Any = sum([wheel, loads.constant_torque((0.1, 0, 0)), wheel])
         run = BODY.simulate([0, 1], OMEGA, load=total)
         assert list(run.states) == ["z", "z_2"]
         assert run.torque().shape == (2, 2, 3)
@@ -439,7 +439,7 @@ class TestOneWheel:
         held = polhode.wheel(axis=(0, 0, 1), inertia=0.1, rate=[1.0, 2.0], mode="held")
         again = pickle.loads(pickle.dumps(held))
         runs = [BODY.simulate([0, 1], OMEGA, load=wheel).omega for wheel in (held, again)]
-        assert np.array_equal(*runs)
+        assert np.array_equal(runs[0], runs[1])
         other = polhode.wheel(axis=(0, 0, 1), inertia=0.1, rate=2.0, mode="held")
         assert np.array_equal(runs[0][1], BODY.simulate([0, 1], OMEGA, load=other).omega)
 

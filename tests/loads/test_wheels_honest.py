@@ -289,8 +289,8 @@ class TestErrors:
     def test_radau_at_small_scales(self) -> None:
         s, u = 1e-40, 1e-40
         body = RigidBody.from_principal(s, np.multiply((1.0, 2.0, 2.5), s))
-        load = loads.wheel((0, 3, 4), 0.1 * s, 5.0 * u, friction=0.05 * s * u, torque=0.2 * s * u * u)
-        load = load + loads.slug(0.3 * s, 0.4 * s * u)
+        wheel = loads.wheel((0, 3, 4), 0.1 * s, 5.0 * u, friction=0.05 * s * u, torque=0.2 * s * u * u)
+        load = wheel + loads.slug(0.3 * s, 0.4 * s * u)
         run = body.simulate(np.array([0, 1, 3]) / u, OMEGA * u, load=load, method="radau")
         assert np.isfinite(run.omega).all()
 

@@ -236,15 +236,17 @@ def unknown_option(arguments: list[str]) -> str | None:
 
 def run(arguments: list[str]) -> int:
     """Run one command and turn every foreseen error into one line and an exit code."""
+    is_overview = arguments in ([], ["--help"], ["-h"])
+    is_help = not is_overview and any(flag in arguments for flag in app.help_flags)
     command: Callable[[], object] = partial(
         app,
         [_as_value(argument) for argument in arguments],
-        console=_console() if any(flag in arguments for flag in app.help_flags) else None,
+        console=_console() if is_help else None,
         exit_on_error=False,
         print_error=False,
         result_action="return_value",
     )
-    if arguments in ([], ["--help"], ["-h"]):
+    if is_overview:
         command = partial(print, overview())
     if sorted(arguments) == ["--verbose", "--version"]:
         command = _version_in_full
