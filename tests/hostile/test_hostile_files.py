@@ -163,6 +163,8 @@ def test_the_process_of_occt_ends_with_its_parent(tmp_path: Path) -> None:
 
 def test_the_seconds_of_occt() -> None:
     """A megabyte has seven seconds to be read, eight with what its solids share; a second is always left."""
+    sizes = [(45_000_000, None), (45_000_000, 900_000), (45_000_000, 2_000_000), (225_000, 40_000)]
+    assert [cad_process._megabytes(*each) for each in sizes] == [45.0, 1.0, 2.0, 0.225]
     assert [cad_process._reading(size) for size in (0.0, 1.0, 10.0)] == [4.0, 7.0, 34.0]
     assert [cad_process._sharing(1.0, elapsed) for elapsed in (0.0, 3.0, 3.1, 6.9, 7.1, 20.0)] == [
         5.0, 5.0, 4.9, 1.1, 1.0, 1.0

@@ -415,8 +415,8 @@ class TestOneWheel:
     @pytest.mark.parametrize("mode", ["free", "held"])
     def test_it_serves_both_sides(self, mode: Any) -> None:
         wheel = polhode.wheel(axis=3.0 * self.AXIS, inertia=0.2, rate=5.0, mode=mode)
-        given = {"rate": 5.0} if mode == "free" else {"speed": 5.0}
-        same = loads.wheel(3.0 * self.AXIS, 0.2, **given)  # type: ignore[arg-type]
+        given: dict[str, Any] = {"rate": 5.0} if mode == "free" else {"speed": 5.0}
+        same = loads.wheel(3.0 * self.AXIS, 0.2, **given)
         assert wheel == same
         assert (same.mode, same.inertia, same.rate, same.momentum) == (mode, 0.2, 5.0, 1.0)
         times = [0.0, 2.0, 5.0]

@@ -50,12 +50,9 @@ def read_cad_apart(path: Path, packed: int | None = None) -> CadFile:
     ----------
     path : pathlib.Path
     packed : int, optional
-        Bytes of the file that it was unpacked from. A small file that unpacks to a large one has no more
-        time than a file of a megabyte.
+        Bytes of the file that it was unpacked from, if it was packed.
     """
-    megabytes = path.stat().st_size / 1e6
-    if packed is not None:
-        megabytes = min(megabytes, max(packed / 1e6, 1.0))
+    megabytes = _megabytes(path.stat().st_size, packed)
     if not sys.executable:  # within another program
         from polhode.io.cad_files import read_cad
 
@@ -116,6 +113,11 @@ def _answer(
     finally:
         limit.cancel()
     return cad, pairs, seconds if is_ended.is_set() else None
+
+
+def _megabytes(size: int, packed: int | None) -> float:
+    """Return the size that decides the time; of an unpacked file at most the packed size, or one megabyte."""
+    return min(size, size if packed is None else max(packed, 1_000_000)) / 1e6
 
 
 def _reading(megabytes: float) -> float:
