@@ -364,6 +364,15 @@ class TestOneSolve:
         assert solid.volume == RigidBody.from_mesh(mesh.vertices, mesh.faces, density=1.0).mass
         assert solid.body == RigidBody.from_mesh(mesh.vertices, mesh.faces, **amount)
 
+    @pytest.mark.parametrize(("side", "volume"), [(1e102, pytest.approx(1e306)), (1e103, np.inf)])
+    def test_a_volume_beyond_floats(self, side: float, volume: Any, tmp_path: Path) -> None:
+        """The mass that was given and its moments are numbers all the same."""
+        vertices, faces = CUBE
+        path = written(tmp_path / "cube.tab", numbered_plates(vertices / 2.0 * side, faces))
+        solid = solid_from_file(path, mass=1.0)
+        assert solid.volume == volume
+        assert solid.body.inertia[0, 0] == pytest.approx(side**2 / 6.0)
+
 
 class TestNumberedPlates:
     @pytest.mark.parametrize("name", ["ver64q.tab", "ver64q.txt"])
