@@ -90,7 +90,10 @@ def texts(node: ast.expr, tree: ast.Module) -> list[str]:
 @cache
 def asked(path: Path) -> tuple[Asked, ...]:
     """The calls of ``require`` in a file."""
-    tree = ast.parse(path.read_text("utf-8"))
+    text = path.read_text("utf-8")
+    if "require(" not in text:
+        return ()
+    tree = ast.parse(text)
     found = []
     for call in ast.walk(tree):
         if not (isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id == "require"):
@@ -105,8 +108,13 @@ def asked(path: Path) -> tuple[Asked, ...]:
     return tuple(found)
 
 
-def imports(path: Path) -> Iterator[tuple[str, int]]:
+@cache
+def imports(path: Path) -> tuple[tuple[str, int], ...]:
     """Modules that a file imports when it runs, not for types alone."""
+    return tuple(_imports(path))
+
+
+def _imports(path: Path) -> Iterator[tuple[str, int]]:
     tree = ast.parse(path.read_text("utf-8"))
     for_types = {
         id(inner)
