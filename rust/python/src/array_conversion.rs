@@ -133,14 +133,14 @@ fn refuse_masked(object: &Bound<'_, PyAny>, name: &str) -> PyResult<()> {
                 "{name}: the element {way_out}"
             )));
         };
-        let columns: String = columns.iter().map(|column| format!(", {column}")).collect();
-        let end = if columns.is_empty() { "," } else { &columns };
+        let columns: Vec<String> = columns.iter().map(usize::to_string).collect();
+        let columns = format!(", {}", columns.join(", "));
         // The row is a piece of its own: it changes where the caller passed a part of an array.
         let error = errors::new(py, "PolhodeError", String::new());
         let pieces = (
             format!("{name}: the element at ("),
             row,
-            format!("{end}) {way_out}"),
+            format!("{}) {way_out}", columns.trim_end()),
         );
         error.value(py).setattr("args", pieces)?;
         return Err(error);
