@@ -34,7 +34,6 @@ if TYPE_CHECKING:
         euler_angles,
         flybys,
         kinematics,
-        labelled,
         laminae,
         loads,
         orbits,
@@ -67,6 +66,7 @@ if TYPE_CHECKING:
         principal_axes,
         principal_moments,
     )
+    from polhode.accumulator import LabelledMassAccumulator
     from polhode.ensembles.call import Ensemble, ensemble
     from polhode.motion.events import Event, Events
     from polhode.motion.free import Cones, ErrorBar, LightCurve, Periods, Poinsot, Sensitivity
@@ -123,8 +123,11 @@ _HOMES = (
 )
 """Modules whose names are public here; the other names are modules."""
 
-_APART = dict.fromkeys(("Ensemble", "ensemble"), ("polhode.ensembles.call",))
-"""Names whose module is imported for them alone: it has many files."""
+_APART = {
+    **dict.fromkeys(("Ensemble", "ensemble"), ("polhode.ensembles.call",)),
+    "LabelledMassAccumulator": ("polhode.accumulator",),
+}
+"""Names whose module is imported for them alone."""
 
 _LATER = ("animation", "io", "molecules", "plot", "robots", "samples", "symbolic", "units", "view")
 """Modules that a star import leaves out: some need libraries, and their names are those of many scripts."""
@@ -147,6 +150,7 @@ __all__ = [
     "HeavyTop",
     "Invariants",
     "KineticEnergy",
+    "LabelledMassAccumulator",
     "LightCurve",
     "Linear",
     "MassAccumulator",
@@ -176,7 +180,6 @@ __all__ = [
     "flybys",
     "interop",
     "kinematics",
-    "labelled",
     "laminae",
     "loads",
     "orbits",

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import Any, Literal, Self, TypeAlias, final
+from typing import Any, Literal, Self, TypeAlias, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -343,7 +343,15 @@ class RigidBody:
     @staticmethod
     def from_particles(masses: _Numbers, positions: _Numbers) -> RigidBody: ...
     @staticmethod
-    def from_labelled_particles(masses: ArrayLike, positions: ArrayLike, labels: ArrayLike) -> RigidBody: ...
+    @overload
+    def from_labelled_particles(
+        masses: ArrayLike, positions: ArrayLike, labels: ArrayLike, *, return_labels: Literal[False] = ...
+    ) -> RigidBody: ...
+    @staticmethod
+    @overload
+    def from_labelled_particles(
+        masses: ArrayLike, positions: ArrayLike, labels: ArrayLike, *, return_labels: Literal[True]
+    ) -> tuple[NDArray[np.int64], RigidBody]: ...
     @staticmethod
     def from_voxels(
         density: ArrayLike, spacing: ArrayLike, origin: ArrayLike = (0.0, 0.0, 0.0)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
 __all__ = [
-    "Hinting",
+    "ClassWithHints",
     "check_kind",
     "check_no_tensor",
     "explain_calls",
@@ -39,6 +39,7 @@ _OF_MODULES: Final = {
         "read": "RigidBody.from_file reads a file",
         "from_file": "RigidBody.from_file reads a file",
         "simulate": "simulate is a method of a body",
+        "labelled": "RigidBody.from_labelled_particles(…, return_labels=True) takes labels with gaps",
         "torques": "loads is the module of torques and forces",
         "bodies": "solids, laminae and rods are the modules of shapes",
         "shapes": "solids, laminae and rods are the modules of shapes",
@@ -348,7 +349,7 @@ _MADE_BY: Final = {
 """Conversions: by the expected and the given class."""
 
 
-class Hinting(type):
+class ClassWithHints(type):
     """A class whose missing attributes are refused with what to write instead."""
 
     if not TYPE_CHECKING:
@@ -437,14 +438,14 @@ def explain_calls(names: dict[str, Any], public: Iterable[str]) -> None:
 def explain_module_call(module: str, way_out: str) -> None:
     """Let a module that is called like a function say what to write instead."""
 
-    class Called(ModuleType):
+    class ModuleWithHint(ModuleType):
         """A module whose call is refused."""
 
         def __call__(self, *_args: object, **_options: object) -> None:
             """Refuse the call."""
             raise TypeError(f"{module} is a module; {way_out}")
 
-    sys.modules[module].__class__ = Called
+    sys.modules[module].__class__ = ModuleWithHint
 
 
 def with_hints(function: Callable[_Takes, _Returns], name: str | None = None) -> Callable[_Takes, _Returns]:

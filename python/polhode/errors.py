@@ -30,8 +30,8 @@ __all__ = [
 class PolhodeError(ValueError):
     """Base class of the errors that polhode raises about physics and data.
 
-    Its `args` are the pieces of the message: texts, and objects where an argument is named. They become words
-    when the message is printed.
+    Its `args` are the pieces of the message: texts, the path of a file, whole numbers for rows of arrays, and
+    objects where an argument is named. They become words when the message is printed.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ class PolhodeError(ValueError):
     way_out : str
         The remedy at the end of a message of the core; ``""`` where there is none.
     stack_row : int or None
-        Row of the flattened stack that is at fault, where the first piece of the message names it.
+        Row of the flattened stack that is at fault, where the first two pieces of the message name it.
     label : int or None
         Label of the particles at fault, where the second piece of the message is it.
     """
@@ -69,7 +69,15 @@ class PolhodeError(ValueError):
     def leave_row_out(self) -> None:
         """Take the row out of the message, for a caller to whom it is none of a stack's."""
         if self.stack_row is not None:
-            self.args, self.stack_row = self.args[1:], None
+            self.args, self.stack_row = self.args[2:], None
+
+    def shift_rows(self, by: int) -> None:
+        """Add to the rows in the message, for a caller that passed a part of an array."""
+        self.args = tuple(piece + by if isinstance(piece, int) else piece for piece in self.args)
+
+    def rename_file(self, path: object, name: object) -> None:
+        """Put another name for a file into the message, for a caller that passed a copy of the file."""
+        self.args = tuple(name if str(piece) == str(path) else piece for piece in self.args)
 
     @property
     def fault(self) -> str:

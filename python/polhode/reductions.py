@@ -5,7 +5,7 @@ A reduction takes a number or an array from each member. Its argument `of` is th
 gets a trajectory of many members and returns an array whose first axis is the members. Members that failed
 are left out and counted.
 
-Members are reduced in blocks of 4096, which are merged in a fixed order. The result therefore has the same
+Members are reduced in blocks of 4096, which are merged in a fixed sketch. The result therefore has the same
 bits for any division of the work.
 """
 
@@ -194,18 +194,18 @@ class _Quantiles(Reduction):
 
     def merge(self, one: BlockState, other: BlockState, n: int) -> BlockState:
         most = None if n <= MOST_EXACT else KEPT
-        (count, strange, order), (more, others, beside) = one.of, other.of
-        return BlockState(one.shape, (count + more, strange | others, order.merge(beside, most)))
+        (count, strange, sketch), (more, others, beside) = one.of, other.of
+        return BlockState(one.shape, (count + more, strange | others, sketch.merge(beside, most)))
 
     def finish(self, state: BlockState | None, left_out: int) -> QuantileLevels:
         if state is None:
             return QuantileLevels(self.q, np.full(len(self.q), np.nan), 0.0, 0, left_out)
-        order: Order
-        count, strange, order = state.of
-        levels = level_of(order, self.q)
+        sketch: QuantileSketch
+        count, strange, sketch = state.of
+        levels = quantiles_of(sketch, self.q)
         levels[:, strange] = np.nan
         return QuantileLevels(
-            self.q, levels.reshape(len(self.q), *state.shape), order.error / count, count, left_out
+            self.q, levels.reshape(len(self.q), *state.shape), sketch.error / count, count, left_out
         )
 
 
@@ -515,8 +515,8 @@ def moments(values: Floats, *, products: bool) -> Moments:
         return Moments(count, mean, np.stack(rows))
 
 
-class Order(NamedTuple):
-    """Sorted numbers of some members, each with a weight: how many numbers it represents.
+class QuantileSketch(NamedTuple):
+    """Sorted numbers of some members; each has a weight, which says how many numbers it represents.
 
     Attributes
     ----------
@@ -529,7 +529,7 @@ class Order(NamedTuple):
     buffers: dict[int, Floats]
     error: int = 0
 
-    def merge(self, other: Order, most: int | None) -> Order:
+    def merge(self, other: QuantileSketch, most: int | None) -> QuantileSketch:
         """Return the numbers of both; beyond `most` numbers of one weight every other one is dropped."""
         buffers = dict(self.buffers)
         for weight, values in other.buffers.items():
@@ -538,23 +538,24 @@ class Order(NamedTuple):
             buffers[weight] = (
                 values if held is None else np.sort(np.concatenate([held, values]), axis=0, kind="stable")
             )
-        both = Order(buffers, self.error + other.error)
+        both = QuantileSketch(buffers, self.error + other.error)
         return both if most is None else compact(both, most)
 
 
-def sort_columns(values: Floats) -> Order:
+def sort_columns(values: Floats) -> QuantileSketch:
     """Sort rows, shape (n, k), each column by itself."""
-    return Order({1: np.sort(values, axis=0, kind="stable")})
+    return QuantileSketch({1: np.sort(values, axis=0, kind="stable")})
 
 
-def compact(order: Order, most: int) -> Order:
-    """Leave out every other number where there are more than `most` of one weight.
+def compact(sketch: QuantileSketch, most: int) -> QuantileSketch:
+    """Drop every other number of a weight that has more than `most` numbers.
 
-    Of 2m numbers in order either those in odd or those in even places stay, with twice the weight: a rank is
-    wrong by one weight at most. Which of them is a coin that the number in the middle tosses, the same
-    everywhere: so the errors of many blocks do not add up.
+    Of 2m sorted numbers of one weight, m stay, with twice the weight: those in the odd or those in the even
+    places. This changes a rank by one weight at most. A coin chooses between odd and even, so that the errors
+    of many blocks do not add up. The bits of the number in the middle toss it: the result is the same on
+    every machine.
     """
-    buffers, error = dict(order.buffers), order.error
+    buffers, error = dict(sketch.buffers), sketch.error
     weight = 1
     while weight <= max(buffers):
         values = buffers.get(weight)
@@ -572,31 +573,33 @@ def compact(order: Order, most: int) -> Order:
             )
             error += weight
         weight *= 2
-    return Order(buffers, error)
+    return QuantileSketch(buffers, error)
 
 
 def _coin(row: Floats, weight: int) -> int:
     """Toss a coin, 0 or 1, by the bits of some numbers (multiplicative hashing).
 
-    Another one for each weight: a number that its own coin has left in is often the one that is asked again.
+    Each weight has another coin: the number that tossed it for one weight may be in the middle again for the
+    next.
     """
     word = int(np.bitwise_xor.reduce(np.ascontiguousarray(row).view(np.uint64)))
     word ^= weight * 0xBF58476D1CE4E5B9
     return (word * 0x9E3779B97F4A7C15 >> 63) & 1
 
 
-def level_of(order: Order, parts: Floats) -> Floats:
+def quantiles_of(sketch: QuantileSketch, parts: Floats) -> Floats:
     """Return the quantiles for these fractions, shape (q, k).
 
-    Between the two nearest, where every number is there; else one of them.
+    If the sketch holds every number, a quantile is interpolated between the two nearest; else it is one of
+    the numbers.
     """
-    weights = np.concatenate([np.full(len(values), weight) for weight, values in order.buffers.items()])
-    values = np.concatenate(list(order.buffers.values()))
+    weights = np.concatenate([np.full(len(values), weight) for weight, values in sketch.buffers.items()])
+    values = np.concatenate(list(sketch.buffers.values()))
     total = int(weights.sum())
     place = np.argsort(values, axis=0, kind="stable")
     values = np.take_along_axis(values, place, axis=0)
     rank = parts * (total - 1)
-    if order.error == 0:
+    if sketch.error == 0:
         low = np.floor(rank).astype(np.int64)
         high = np.minimum(low + 1, total - 1)
         part = (rank - low)[:, np.newaxis]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from polhode import RigidBody, distributions, ensemble, flybys, loads, orbits, reductions
 from polhode.errors import PolhodeError
-from polhode.reductions import Order, level_of, sort_columns
+from polhode.reductions import QuantileSketch, quantiles_of, sort_columns
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -175,9 +175,9 @@ def sketched(seed: int) -> float:
     every = np.sort(np.concatenate([block.buffers[1] for block in blocks]), axis=0)[:, 0]
     while len(blocks) > 1:
         blocks = [one.merge(other, 64) for one, other in zip(blocks[::2], blocks[1::2], strict=True)]
-    sketch: Order = blocks[0]
+    sketch: QuantileSketch = blocks[0]
     parts = np.linspace(0.05, 0.95, 91)
-    off = np.searchsorted(every, level_of(sketch, parts)[:, 0]) - parts * (len(every) - 1)
+    off = np.searchsorted(every, quantiles_of(sketch, parts)[:, 0]) - parts * (len(every) - 1)
     assert np.abs(off).max() <= sketch.error
     return float(off.mean()) / sketch.error
 

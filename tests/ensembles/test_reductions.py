@@ -11,7 +11,7 @@ import pytest
 from ensemble_cases import BODY, SPIN, TIMES, all_bytes, all_reductions, last_spin, twisted
 from polhode import RigidBody, distributions, ensemble, loads, reductions
 from polhode.ensembles.merge_tree import Tree
-from polhode.reductions import compact, level_of, moments, sort_columns, sum_by_halves
+from polhode.reductions import compact, moments, quantiles_of, sort_columns, sum_by_halves
 
 N = 10_000
 
@@ -157,7 +157,7 @@ class TestSketch:
         assert sum(map(len, sketch.buffers.values())) < 12 * most
         assert 0 < sketch.error < 20_000 * 12 / most
         q = np.linspace(0, 1, 101)
-        found = level_of(sketch, q)
+        found = quantiles_of(sketch, q)
         for column in range(2):
             below = (values[:, [column]] < found[:, column]).sum(axis=0)
             up_to = (values[:, [column]] <= found[:, column]).sum(axis=0)

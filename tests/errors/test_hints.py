@@ -453,7 +453,7 @@ KINDS: dict[str, Any] = {
     [
         *("plot", "robots", "symbolic", "molecules", "flybys", "tops", "orbits", "equimomental", "validity"),
         *("kinematics", "parallel_axis", "reductions", "distributions", "uncertainty", "euler_angles"),
-        *("solids", "laminae", "rods", "regions", "interop", "labelled", "samples", "io", "units"),
+        *("solids", "laminae", "rods", "regions", "interop", "samples", "io", "units"),
         *("assembly", "loads"),
     ],
 )

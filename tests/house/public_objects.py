@@ -15,7 +15,6 @@ MODULES = [
     "polhode.assembly",
     "polhode.distributions",
     "polhode.interop",
-    "polhode.labelled",
     "polhode.laminae",
     "polhode.reductions",
     "polhode.regions",

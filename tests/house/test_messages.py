@@ -11,12 +11,9 @@ from places import ROOT
 
 PACKAGE = ROOT / "python" / "polhode"
 DOORS = {
-    "cli/files.py": "the copy of standard input has a name that nobody knows",
-    "io/unpacked.py": "an unpacked file has a name that nobody knows",
     "io/collada.py": "the words of another library are cut short",
     "io/gltf.py": "the words of another library are put on one line",
     "io/hull.py": "the words of another library are cut after their first line",
-    "ensembles/lazy_arrays.py": "the core counts the particles of a chunk from its first one",
 }
 """Files in which the words of an error are taken, and why."""
 READS = {

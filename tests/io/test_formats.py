@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import json
 import sys
+import tempfile
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -12,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from command_line import one_line, run
+from damage import KINDS, every_damage, whole_file
 from foreign_files import LIB3MF_INCH, MESHIO_VTU, PYCOLLADA, VTK_ASCII
 from mesh_files import ascii_stl, binary_stl, dae, glb, gltf, numbered_plates, three_mf
 from oracles.meshes import cube
@@ -19,6 +21,7 @@ from polhode import RigidBody, _core, robots
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.io import load, mesh_solid, read_mesh, solid_from_file, unpacked
 from polhode.io.budget import LIMITS, Limit
+from polhode.io.content import EXPECTED_CONTENT
 
 CUBE = cube(2.0)
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048, "um": 1e-6}
@@ -325,6 +328,27 @@ class TestPacked:
         ):
             pass
         assert not inside.exists()
+
+    @pytest.mark.parametrize(
+        "name", [name for name, kind in KINDS.items() if kind.suffix in EXPECTED_CONTENT]
+    )
+    def test_what_is_wrong_inside_is_said_of_the_packed_file(
+        self, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        kind, copies = KINDS[name], tmp_path / "copies"
+        copies.mkdir()
+        monkeypatch.setattr(tempfile, "tempdir", str(copies))
+        data, _ = whole_file(kind, tmp_path)
+        path = tmp_path / f"part{kind.suffix}.gz"
+        messages = []
+        for _, bad in [*every_damage(data, 1, 6, 12), ("other words", b"dear reader")]:
+            written(path, gzip.compress(bad))
+            try:
+                kind.read(path)
+            except PolhodeError as error:
+                messages.append(str(error))
+        assert messages != []
+        assert [words for words in messages if str(path) not in words or str(copies) in words] == []
 
     def test_refusals(self, tmp_path: Path) -> None:
         refused(written(tmp_path / "a.stl.gz", gzip.compress(ascii_stl(*CUBE))[:-9]), "not a whole gzip file")

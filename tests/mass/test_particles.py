@@ -213,9 +213,9 @@ class TestLabels:
             (
                 [1.0, 1.0],
                 [0, 2],
-                r"label 1: .*0 particles.*; .*polhode\.labelled\.bodies takes labels with gaps",
+                r"label 1: .*0 particles.*; .*return_labels=True takes labels with gaps",
             ),
-            ([1.0, 1.0], [2**62, 0], r"label 1: .*0 particles.*polhode\.labelled"),
+            ([1.0, 1.0], [2**62, 0], r"label 1: .*0 particles.*return_labels"),
             (
                 [1.0, 0.0],
                 [0, 1],

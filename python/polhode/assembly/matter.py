@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from polhode._core import RigidBody
     from polhode.assembly.tables import Scope
-    from polhode.io.formats import Loaded
+    from polhode.io.formats import FileContent
 
 __all__ = ["Matter", "body_of_part", "kind_of"]
 
@@ -237,12 +237,12 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
     return Matter(solid.body, metres, notes=(*loaded.notes, *lines), mesh=mesh)
 
 
-def _has_materials(loaded: Loaded) -> bool:
+def _has_materials(loaded: FileContent) -> bool:
     """Return whether a file says the density of every solid in it."""
     return loaded.cad is not None and all(part.density is not None for part in loaded.cad.parts)
 
 
-def _unit_of(loaded: Loaded, table: Mapping[str, Any], scope: Scope) -> str:
+def _unit_of(loaded: FileContent, table: Mapping[str, Any], scope: Scope) -> str:
     """Return the unit of a file: its own, else the one that is stated for its part or for the assembly."""
     unit = loaded.length(table.get("length_unit")) or scope.length_unit
     if unit is None:

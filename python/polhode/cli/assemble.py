@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from polhode._optional import require
 from polhode.assembly import read
-from polhode.cli.files import STDIN
+from polhode.cli.files import STDIN, check_depth, check_suffixes
 from polhode.cli.layout import Cell, Column, Field, Report, Table
 from polhode.cli.ledger import node_row, tensor_row
 from polhode.cli.loading import LoadedBody
@@ -34,13 +34,8 @@ _SAVED: Final = (*_PICTURES, ".json", ".npz", ".csv")
 
 def assembly_report(file: Path, options: AssembleOptions, extra: ReportOptions) -> tuple[Report, Assembly]:
     """Report on an assembly; give it too."""
-    if options.depth < 0:
-        raise PolhodeError(f"--depth: expected a number of levels, 0 or more, got {options.depth}")
-    for path in options.save:
-        if path.suffix.lower() not in _SAVED:
-            raise PolhodeError(
-                f"--save: {path} has a suffix that is not written; use one of {', '.join(_SAVED)}"
-            )
+    check_depth(options.depth)
+    check_suffixes(options.save, _SAVED)
     if extra.mass_unit is not None:
         quantity(f"1 {extra.mass_unit}", "kg", "--mass-unit")
     about = vector(extra.about, "m", "--about") if extra.about else None

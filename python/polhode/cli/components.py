@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from polhode.cli.layout import Report
     from polhode.cli.options import BodyOptions
-    from polhode.io.formats import Loaded
+    from polhode.io.formats import FileContent
     from polhode.io.mesh_solid import MeshSolid
 
 __all__ = ["Components", "add_components", "components_of", "has_names", "overlaps_beside", "weigh"]
@@ -61,7 +61,7 @@ def has_names(density: str | None) -> bool:
 
 
 def components_of(
-    loaded: Loaded, solid: MeshSolid, options: BodyOptions, scale: float, weld: float
+    loaded: FileContent, solid: MeshSolid, options: BodyOptions, scale: float, weld: float
 ) -> Components | None:
     """Take the mesh of a file apart; None where it is one component, or too large."""
     if options.union:
@@ -82,7 +82,7 @@ def components_of(
     return Components(parts, [float(solid.body.mass) / solid.volume] * len(parts), notes)
 
 
-def overlaps_beside(loaded: Loaded, solid: MeshSolid, options: BodyOptions, scale: float) -> list[str]:
+def overlaps_beside(loaded: FileContent, solid: MeshSolid, options: BodyOptions, scale: float) -> list[str]:
     """Say which components of a mesh overlap, where they are not listed; nothing of a large mesh."""
     if loaded.cad is not None or solid.components is not None or solid.faces > MOST_FACES:
         return []
@@ -92,7 +92,9 @@ def overlaps_beside(loaded: Loaded, solid: MeshSolid, options: BodyOptions, scal
     return [*lines, _WAY_OUT] if lines else []
 
 
-def weigh(loaded: Loaded, solid: MeshSolid, options: BodyOptions, scale: float, weld: float) -> MeshSolid:
+def weigh(
+    loaded: FileContent, solid: MeshSolid, options: BodyOptions, scale: float, weld: float
+) -> MeshSolid:
     """Assign each component its own density."""
     if loaded.cad is not None:
         raise PolhodeError(
@@ -136,7 +138,7 @@ def add_components(report: Report, found: Components | None, volume: str, densit
     report.notes += found.notes
 
 
-def _parts(loaded: Loaded, scale: float, weld: float, *, mended: bool = False) -> list[Part]:
+def _parts(loaded: FileContent, scale: float, weld: float, *, mended: bool = False) -> list[Part]:
     if mended:
         mesh, _, _, _ = repair_mesh(loaded.mesh, weld)
         return parts_of(mesh.vertices * scale, mesh.faces)

@@ -13,11 +13,11 @@ import numpy as np
 
 from polhode import RigidBody, Uncertain, distributions, ensemble, loads, reductions
 from polhode._optional import require
-from polhode.cli.files import label
+from polhode.cli.files import check_suffixes
 from polhode.cli.layout import Cell, Column, Field, Report, Table
 from polhode.cli.loading import LoadedBody
 from polhode.cli.spin import momentum_inside
-from polhode.cli.whole import any_body, check_moments_alone
+from polhode.cli.whole import any_body, check_moments_alone, check_source, check_weight, source_of
 from polhode.ensembles.merge_tree import BLOCK
 from polhode.ensembles.plan import coordinates, layout
 from polhode.ensembles.stores import check_same, header
@@ -88,7 +88,7 @@ def ensemble_report(file: Path | None, options: EnsembleOptions, body: BodyOptio
         report = Report()
         report.section(
             "",
-            Field("file", "file", _source(file, options)),
+            Field("file", "file", source_of(file, options.moments)),
             Field("members", "members", options.n),
             Field("seed", "seed", options.seed),
             Field("drawn", "drawn", ", ".join(map(_option, many.plan.draws()))),
@@ -105,14 +105,7 @@ def ensemble_report(file: Path | None, options: EnsembleOptions, body: BodyOptio
 
 def _check(file: Path | None, options: EnsembleOptions, body: BodyOptions) -> None:
     """Refuse wrong options before anything is read or computed."""
-    if file is None and not (options.moments or body.inertia):
-        raise PolhodeError(
-            "ensemble: give a file, or principal moments with --moments, or a tensor with --inertia"
-        )
-    if options.moments and body.inertia:
-        raise PolhodeError("--moments and --inertia: both say what the body is; give one of the two")
-    if file is not None and options.moments:
-        raise PolhodeError(f"--moments: the body is that of {label(file)}; give one of the two")
+    check_source("ensemble", file, options.moments, body)
     if not options.omega:
         raise PolhodeError('--omega: state the start, as in --omega "0, 6.00 ± 0.05, 0.01 ± 0.01"')
     if options.end is None:
@@ -185,10 +178,7 @@ def _arguments(
 def _of_moments(options: EnsembleOptions, body: BodyOptions) -> tuple[Any, Any]:
     """Make the body of the numbers, or what draws it; and the body whose axes have names."""
     check_moments_alone(body, "mass", "center_of_mass")
-    if options.gravity is not None and (body.mass is None or not body.center_of_mass):
-        raise PolhodeError(
-            "--gravity: the weight acts at the centre of mass; state --mass and --center-of-mass too"
-        )
+    check_weight(options.gravity, body)
     mass: Any = 1.0 if body.mass is None else drawn_number(body.mass, "kg", "--mass")
     moments: Any = read_draws(options.moments, 3, "kg m^2", "--moments")
     center: dict[str, Any] = {}
@@ -250,12 +240,6 @@ def _tell_saved(report: Report, many: Ensemble, path: Path) -> None:
     report.notes.append(f"saved {path}")
 
 
-def _source(file: Path | None, options: EnsembleOptions) -> str:
-    if file is not None:
-        return label(file)
-    return "(moments)" if options.moments else "(inertia)"
-
-
 _NPZ, _ZARR = ".npz", ".zarr"
 _HEADER: Final = "ensemble.json"
 """In the file: what ensemble it is, so that no other one is taken for it."""
@@ -270,10 +254,7 @@ def check_place(path: Path, *, resume: bool) -> None:
     resume : bool
         Whether to go on.
     """
-    if path.suffix.lower() not in (_NPZ, _ZARR):
-        raise PolhodeError(
-            f"--save: {path.name!r} has a suffix that is not written; use one of {_NPZ}, {_ZARR}"
-        )
+    check_suffixes([path], (_NPZ, _ZARR))
     begun = next((place for place in (path, _parts(path)) if _is_there(place)), None)
     if begun is not None and not resume:
         raise PolhodeError(

@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 __all__ = [
     "STDIN",
     "as_file",
+    "check_depth",
     "check_outputs",
+    "check_suffixes",
     "label",
 ]
 
@@ -103,7 +105,7 @@ def as_file(file: Path) -> Iterator[Path]:
         try:
             yield named
         except PolhodeError as error:
-            error.args = (str(error).replace(str(named), label(file)),)
+            error.rename_file(named, label(file))
             raise
 
 
@@ -137,6 +139,21 @@ def check_outputs(outputs: Sequence[tuple[str, Path | None]], inputs: Iterable[P
         if twice is not None:
             raise PolhodeError(f"{option}: {path} is written by {twice} too; write to another one")
         written.append((option, path))
+
+
+def check_suffixes(outputs: Iterable[Path], written: Sequence[str]) -> None:
+    """Refuse files of --save whose suffix is none of those that are `written`."""
+    for path in outputs:
+        if path.suffix.lower() not in written:
+            raise PolhodeError(
+                f"--save: {path.name!r} has a suffix that is not written; use one of {', '.join(written)}"
+            )
+
+
+def check_depth(depth: int) -> None:
+    """Refuse a negative number of levels of a tree."""
+    if depth < 0:
+        raise PolhodeError(f"--depth: expected a number of levels, 0 or more, got {depth}")
 
 
 def _is_same(one: Path, other: Path) -> bool:

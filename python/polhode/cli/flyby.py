@@ -9,7 +9,7 @@ import numpy as np
 from polhode import RigidBody, orbits, plot
 from polhode._optional import require
 from polhode.cli.ensemble import client_at
-from polhode.cli.files import label
+from polhode.cli.files import check_suffixes, label
 from polhode.cli.layout import Cell, Column, Field, Report, Table
 from polhode.cli.options import MODES
 from polhode.cli.whole import any_body, check_moments_alone
@@ -99,11 +99,7 @@ def _run_flyby(
 ) -> tuple[Flyby, orbits.Orbit, tuple[str, ...]]:
     if (file is None) == (not options.moments):
         raise PolhodeError("flyby: give a file, or principal moments with --moments")
-    for path in options.save:
-        if path.suffix.lower() not in PICTURES:
-            raise PolhodeError(
-                f"--save: {path.name!r} has a suffix that is not written; use one of {', '.join(PICTURES)}"
-            )
+    check_suffixes(options.save, PICTURES)
     if options.n < 1:
         raise PolhodeError(f"--n: expected a positive number, got {options.n}")
     if not options.periods:

@@ -356,7 +356,7 @@ _NOT_COMPARED: Final = frozenset(
     {"axes", "comment", "error_bound", "expected", "file", "format", "gaps", "notes", "provenance", "units"}
     | {"linear", "sigma"}
 )
-_ROUNDING: Final = 1e-9
+_SAME_DIFFERENCE: Final = 1e-9
 """Of the largest difference of a field: smaller ones are rounding, and so are their sigmas."""
 
 
@@ -442,7 +442,7 @@ def _beside_sigma(ours: Any, theirs: Any, sigma: Any, other: Any) -> dict[str, A
     except (TypeError, ValueError, OverflowError):
         return {}
     sizes = np.abs(difference)
-    sizes[sizes < _ROUNDING * sizes.max(initial=0.0)] = 0.0
+    sizes[sizes < _SAME_DIFFERENCE * sizes.max(initial=0.0)] = 0.0
     with np.errstate(divide="ignore", invalid="ignore"):
         worst = int(np.argmax(np.nan_to_num(sizes / joint).ravel()))
     d, s = float(difference.flat[worst]), float(joint.flat[worst])

@@ -11,7 +11,7 @@ import numpy as np
 from polhode._format import with_sigma
 from polhode._optional import require
 from polhode.assembly.tables import suggest_name
-from polhode.cli.files import STDIN, label
+from polhode.cli.files import STDIN, check_depth, check_suffixes, label
 from polhode.cli.layout import ROUNDING, Cell, Column, Field, Report, Table
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.io.writing import save_picture
@@ -33,13 +33,8 @@ def ledger_report(file: Path, options: LedgerOptions) -> tuple[Report, Ledger]:
     """Report on the ledger in a file; give the ledger too."""
     if options.of not in NUMBERS:
         raise PolhodeError(f"--of: {options.of!r} is none of the numbers; give one of {', '.join(NUMBERS)}")
-    if options.depth < 0:
-        raise PolhodeError(f"--depth: expected a number of levels, 0 or more, got {options.depth}")
-    for path in options.save:
-        if path.suffix.lower() not in _SAVED:
-            raise PolhodeError(
-                f"--save: {path} has a suffix that is not written; use one of {', '.join(_SAVED)}"
-            )
+    check_depth(options.depth)
+    check_suffixes(options.save, _SAVED)
     made = ledger(_table(file), options.tree, overwrite=options.overwrite, ignore=options.ignore)
     top = _top(made, options)
     report = Report()

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from polhode import RigidBody, Uncertain
     from polhode.cli.atoms import Atoms
     from polhode.cli.options import BodyOptions, LengthUnit
-    from polhode.io.formats import Loaded
+    from polhode.io.formats import FileContent
     from polhode.io.mesh import Mesh
     from polhode.io.molecules import Molecule
     from polhode.molecules import CellCrossings, Isotope
@@ -166,7 +166,7 @@ def _load_mesh(file: Path, options: BodyOptions, with_shape: bool, with_componen
     )
 
 
-def _unusual(volume: float, unit: str | None, loaded: Loaded) -> list[str]:
+def _unusual(volume: float, unit: str | None, loaded: FileContent) -> list[str]:
     """Remark on a part as large as a house, or too small to see, with the unit that is more likely."""
     if unit not in ("m", "mm", "cm", "in", "ft") or _LEAST < volume < _MOST:
         return []
@@ -187,14 +187,14 @@ def _unusual(volume: float, unit: str | None, loaded: Loaded) -> list[str]:
     ]
 
 
-def _of_unit(loaded: Loaded, asked: str | None) -> list[str]:
+def _of_unit(loaded: FileContent, asked: str | None) -> list[str]:
     """Say that a unit was stated that is not the format's own."""
     if loaded.unit is None or asked in (None, loaded.unit):
         return []
     return [f"{loaded.format} is in {loaded.unit} by its standard; --length-unit {asked} was taken instead"]
 
 
-def _shape(loaded: Loaded, weld: float, scale: float) -> Mesh | None:
+def _shape(loaded: FileContent, weld: float, scale: float) -> Mesh | None:
     """Return the mesh as it is drawn, in the unit of the body; solids of CAD have none."""
     if loaded.cad is not None:
         return None
@@ -203,7 +203,7 @@ def _shape(loaded: Loaded, weld: float, scale: float) -> Mesh | None:
 
 
 def _solid(
-    loaded: Loaded,
+    loaded: FileContent,
     options: BodyOptions,
     density: float | Uncertain | None,
     mass: float | Uncertain | None,

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 from cyclopts import CycloptsError, UnusedCliTokensError
 
 from polhode.cli.app import GOOD, app
-from polhode.cli.terminal import ReaderLeft, in_options, printable, standard_output
+from polhode.cli.terminal import ClosedPipe, in_options, printable, standard_output
 from polhode.io.budget import words_of
 
 if TYPE_CHECKING:
@@ -264,7 +264,7 @@ def run(arguments: list[str]) -> int:
         )
     except CycloptsError as error:
         return _fail(f"{error} (see polhode --help)")
-    except ReaderLeft:
+    except ClosedPipe:
         return GOOD
     except OSError as error:
         return _fail(words_of(error))

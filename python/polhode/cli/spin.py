@@ -12,13 +12,13 @@ from polhode import RigidBody, Uncertain, _core
 from polhode._format import at_most
 from polhode._optional import require
 from polhode.animation import ANIMATION_SUFFIXES, animate_motion
-from polhode.cli.files import STDIN, label
+from polhode.cli.files import STDIN, check_suffixes, label
 from polhode.cli.layout import Cell, Column, Field, Report, Table
 from polhode.cli.loading import LoadedBody
 from polhode.cli.options import MODES
 from polhode.cli.tables import note_linear, sigmas_of, top_fields
 from polhode.cli.terminal import printable, progress
-from polhode.cli.whole import any_body, check_moments_alone
+from polhode.cli.whole import any_body, check_moments_alone, check_source, check_weight, source_of
 from polhode.draw.pivot import path_of
 from polhode.draw.sampling import TURN, fastest, motion_times, turns
 from polhode.draw.triangles import cluster_vertices
@@ -48,7 +48,6 @@ __all__ = [
     "GyrostatKind",
     "TopKind",
     "attitude_field",
-    "check_paths",
     "drawable",
     "momentum_inside",
     "of_end",
@@ -80,7 +79,7 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
     report = Report()
     report.section(
         "",
-        Field("file", "file", _source(file, spin)),
+        Field("file", "file", source_of(file, spin.moments)),
         Field("axes", "components", _axes_text(spin)),
     )
     rate, rate_unit = (180.0 / np.pi, "deg/s") if spin.degrees else (1.0, "rad/s")
@@ -154,14 +153,7 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
 
 def _check_options(file: Path | None, spin: SpinOptions, options: BodyOptions) -> float | None:
     """Refuse wrong options before anything is computed; give the time of the end."""
-    if file is None and not (spin.moments or options.inertia):
-        raise PolhodeError(
-            "spin: give a file, or principal moments with --moments, or a tensor with --inertia"
-        )
-    if spin.moments and options.inertia:
-        raise PolhodeError("--moments and --inertia: both say what the body is; give one of the two")
-    if file is not None and spin.moments:
-        raise PolhodeError(f"--moments: the body is that of {label(file)}; give one of the two")
+    check_source("spin", file, spin.moments, options)
     if file is not None and file != STDIN:
         file.stat()  # a wrong path is told before a start that is missing
     if bool(spin.omega) == bool(spin.periods):
@@ -188,7 +180,7 @@ def _check_options(file: Path | None, spin: SpinOptions, options: BodyOptions) -
         raise PolhodeError('--save: state the time of the end with --end, as in "20 s"')
     if spin.times < 2:
         raise PolhodeError(f"--times: {spin.times} is less than 2, the start and the end; give 2 or more")
-    check_paths(spin.save)
+    check_suffixes(spin.save, _SUFFIXES)
     if spin.end is None:
         return None
     end = quantity(spin.end, "s", "--end")
@@ -213,14 +205,8 @@ def _body(file: Path | None, spin: SpinOptions, options: BodyOptions) -> LoadedB
     """Read the body, or make it from the moments that were typed."""
     if not spin.moments:
         return any_body(file, options, with_shape=any(path.suffix.lower() in DRAWN for path in spin.save))
-    for option, is_given in (("--bond-sigma", options.bond_sigma), ("--mass-sigmas", options.mass_sigmas)):
-        if is_given:
-            raise PolhodeError(f"{option}: it is about a molecule, and --moments need none; leave it out")
     check_moments_alone(options, "mass", "center_of_mass")
-    if spin.gravity is not None and (options.mass is None or not options.center_of_mass):
-        raise PolhodeError(
-            "--gravity: the weight acts at the centre of mass; state --mass and --center-of-mass too"
-        )
+    check_weight(spin.gravity, options)
     moments = amounts(spin.moments, 3, "kg m^2", "--moments")
     mass = amount(options.mass, "kg", "--mass") if options.mass is not None else 1.0
     center = (
@@ -278,12 +264,6 @@ def _gyrostat_motion(loaded: LoadedBody, axes: Floats, spin: SpinOptions) -> Gyr
 def _heavy_top(body: RigidBody, axes: Floats, spin: SpinOptions) -> HeavyTop:
     g = quantity(spin.gravity or "", "m/s^2", "--gravity")
     return body.heavy_top(_omega(axes, spin), _attitude(spin), (0.0, 0.0, -g))
-
-
-def _source(file: Path | None, spin: SpinOptions) -> str:
-    if file is not None:
-        return label(file)
-    return "(moments)" if spin.moments else "(inertia)"
 
 
 def _axes_text(spin: SpinOptions) -> str:
@@ -870,15 +850,6 @@ DRAWN: Final = (*PICTURE_SUFFIXES, *ANIMATION_SUFFIXES)
 """Of files that show the body itself."""
 _MOST: Final = 10_000
 """Triangles that are drawn of a mesh."""
-
-
-def check_paths(paths: Sequence[Path]) -> None:
-    """Refuse what cannot be written before anything is computed."""
-    for path in paths:
-        if path.suffix.lower() not in _SUFFIXES:
-            raise PolhodeError(
-                f"--save: {path} has a suffix that is not written; use one of {', '.join(_SUFFIXES)}"
-            )
 
 
 def drawable(loaded: LoadedBody, options: BodyOptions) -> tuple[Part | None, str]:

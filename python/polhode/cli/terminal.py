@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from polhode._format import Argument
 
 __all__ = [
-    "ReaderLeft",
+    "ClosedPipe",
     "in_options",
     "note",
     "printable",
@@ -80,7 +80,7 @@ def write(console: Console, line: str = "", style: str = "") -> None:
     console.print(Text(line, style=style), soft_wrap=True)
 
 
-class ReaderLeft(Exception):  # noqa: N818 (it tells of no error)
+class ClosedPipe(Exception):  # noqa: N818 (it tells of no error)
     """The reader of standard output has closed it early, as ``head`` does: nothing is wrong."""
 
 
@@ -104,7 +104,7 @@ class _NamedStream:
 
 @contextmanager
 def standard_output() -> Iterator[None]:
-    """Let standard output raise errors with its name, and ReaderLeft where nobody reads it.
+    """Let standard output raise errors with its name, and ClosedPipe where nobody reads it.
 
     It is flushed at the end. A name that is beyond the terminal's encoding is escaped. What can not be
     written is given up, so that Python does not try again when it ends.
@@ -120,7 +120,7 @@ def standard_output() -> Iterator[None]:
     try:
         yield
         named.flush()
-    except (ReaderLeft, OSError):
+    except (ClosedPipe, OSError):
         _give_up(stream)
         raise
     finally:
@@ -132,7 +132,7 @@ def _naming() -> Iterator[None]:
     try:
         yield
     except BrokenPipeError:
-        raise ReaderLeft from None
+        raise ClosedPipe from None
     except OSError as error:
         from polhode.io.writing import STANDARD_OUTPUT
 

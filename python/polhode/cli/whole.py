@@ -29,7 +29,15 @@ from polhode.units import amount, has_unit, quantities, split, vector
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["any_body", "body_sections", "check_moments_alone", "whole_report"]
+__all__ = [
+    "any_body",
+    "body_sections",
+    "check_moments_alone",
+    "check_source",
+    "check_weight",
+    "source_of",
+    "whole_report",
+]
 
 _OF_MESHES: Final = ("weld", "closure", "orient", "union", "repair", "index_base")
 _OF_SHAPES: Final = ("density", "mass", *_OF_MESHES, "bond_sigma", "mass_sigmas")
@@ -149,14 +157,40 @@ def body_sections(
     note_linear(report)
 
 
+def check_source(command: str, file: Path | None, moments: object, options: BodyOptions) -> None:
+    """Refuse a command without a body, or with two."""
+    if file is None and not (moments or options.inertia):
+        raise PolhodeError(
+            f"{command}: give a file, or principal moments with --moments, or a tensor with --inertia"
+        )
+    if moments and options.inertia:
+        raise PolhodeError("--moments and --inertia: both say what the body is; give one of the two")
+    if file is not None and moments:
+        raise PolhodeError(f"--moments: the body is that of {label(file)}; give one of the two")
+
+
+def source_of(file: Path | None, moments: object) -> str:
+    """Say where a body comes from, for a report."""
+    return label(file) if file is not None else "(moments)" if moments else "(inertia)"
+
+
 def check_moments_alone(options: BodyOptions, *taken: str) -> None:
     """Refuse options of a file beside --moments, but those that are `taken`."""
     for field in fields(options):
         if field.name not in taken and _is_given(options, field.name):
             option = f"--{field.name.replace('_', '-')}"
+            about = "a molecule" if field.name in ("bond_sigma", "mass_sigmas") else "a file"
             raise PolhodeError(
-                f"{option}: it is about a file, and --moments need none; leave it out, or give a file"
+                f"{option}: it is about {about}, and --moments need none; leave it out, or give a file"
             )
+
+
+def check_weight(gravity: str | None, options: BodyOptions) -> None:
+    """Refuse --gravity where the body of --moments has no mass or no centre of mass."""
+    if gravity is not None and (options.mass is None or not options.center_of_mass):
+        raise PolhodeError(
+            "--gravity: the weight acts at the centre of mass; state --mass and --center-of-mass too"
+        )
 
 
 def _is_given(options: BodyOptions, name: str) -> bool:

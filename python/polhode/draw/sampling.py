@@ -428,10 +428,10 @@ def of_motion(
     motion : FreeMotion, HeavyTop or GyrostatMotion
         Of one body; its time 0 is that of the first sample.
     samples : Trajectory
-        Of the same motion. A page shows these and what is between them, a film the span from the first to the
-        last.
+        Of the same motion. A page shows these samples and the motion between them. A film shows the motion
+        from the first sample to the last.
     duration, time_unit, is_film, is_page, fps
-        As of `of_samples`.
+        As in `of_samples`.
     """
     t = samples.t
     rate, since = fastest(motion), t - t[0]

@@ -16,7 +16,7 @@ from polhode.ensembles.merge_tree import BLOCK, State
 from polhode.ensembles.stores import check_same, header
 from polhode.errors import FileFormatError
 from polhode.io.writing import writing
-from polhode.reductions import BlockState, Moments, Order
+from polhode.reductions import BlockState, Moments, QuantileSketch
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -31,9 +31,9 @@ __all__ = ["Checkpoint"]
 _BETWEEN: Final = 5.0
 """Seconds of work that a kill may cost, and a chunk."""
 _KIND: Final = "polhode reductions"
-_TUPLES: Final[dict[str, Any]] = {one.__name__: one for one in (State, BlockState, Moments, Order)} | {
-    "tuple": None
-}
+_TUPLES: Final[dict[str, Any]] = {
+    one.__name__: one for one in (State, BlockState, Moments, QuantileSketch)
+} | {"tuple": None}
 _BROKEN: Final = (
     zipfile.BadZipFile, zlib.error, EOFError, KeyError, ValueError, TypeError, AttributeError, RuntimeError,
 )  # fmt: skip

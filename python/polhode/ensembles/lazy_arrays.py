@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any, Final
 
@@ -347,8 +346,6 @@ _PIECE: Final = 1 << 18
 """Particles that are read at a time, 8 MB; a multiple of the blocks by which the core sums."""
 _AT_ONCE: Final = 32
 """Sums that are merged by one task."""
-_ROW: Final = re.compile(r"(?<=\bmasses\[)\d+|(?<=the element at \()\d+")
-"""A row in an error of the core."""
 
 
 def sum_particles(masses: Any, positions: Any, start: int) -> MassAccumulator | None:
@@ -445,8 +442,12 @@ def _part(masses: Any, positions: Any, start: int, row: int) -> MassAccumulator:
     try:
         part.add(in_memory(masses), in_memory(positions), start=first)
     except ValueError as error:
-        told = _ROW.sub(lambda found: str(row + int(found[0])), str(error))
-        raise type(error)(f"particles {first} to {first + len(masses) - 1}: {told}") from None
+        where = f"particles {first} to {first + len(masses) - 1}: "
+        if not isinstance(error, PolhodeError):
+            raise type(error)(f"{where}{error}") from None
+        error.shift_rows(row)
+        error.args = (where, *error.args)
+        raise
     return part
 
 

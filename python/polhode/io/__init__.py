@@ -17,7 +17,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from polhode.io.formats import Loaded, load, read_mesh, solid_from_file
+    from polhode.io.formats import FileContent, load, read_mesh, solid_from_file
     from polhode.io.mesh import Mesh
     from polhode.io.mesh_solid import MeshSolid
     from polhode.io.molecules import Molecule, read_xyz
@@ -42,7 +42,7 @@ else:
 
 _HOMES = {
     "BODY_SCHEMA": "saved",
-    "Loaded": "formats",
+    "FileContent": "formats",
     "Mesh": "mesh",
     "MeshSolid": "mesh_solid",
     "Molecule": "molecules",
@@ -57,7 +57,7 @@ _HOMES = {
 __all__ = [
     "BODY_SCHEMA",
     "TRAJECTORY_SCHEMA",
-    "Loaded",
+    "FileContent",
     "Mesh",
     "MeshSolid",
     "Molecule",

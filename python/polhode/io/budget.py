@@ -115,7 +115,7 @@ class Budget:
         count : int
             How many; negative where what was counted is not made after all.
         where : str
-            What stands before the words of the error; the name of the file by default.
+            Place in the file, for the error; empty or with a colon and a blank at its end.
 
         Raises
         ------
@@ -127,7 +127,7 @@ class Budget:
             return
         _, per_byte, way_out = LIMITS[kind]
         of = f", the most for {self._size} {self._unit}" if per_byte else ""
-        raise LimitError(f"{where or self.name}: there are more than {most} {kind}{of}; {way_out}")
+        raise LimitError(self.name, f": {where}there are more than {most} {kind}{of}; {way_out}")
 
 
 MOST_TEXT: Final = 1 << 30
@@ -187,7 +187,7 @@ def check_ordinary(path: str | os.PathLike[str]) -> None:
     mode = status_of(path).st_mode
     for is_that, words in _OTHERS:
         if is_that(mode):
-            raise FileFormatError(f"{os.fspath(path)}: {words}")
+            raise FileFormatError(os.fspath(path), f": {words}")
     note_read(path)
 
 
@@ -286,7 +286,7 @@ def _whole(stream: BinaryIO, path: str | os.PathLike[str], most: int) -> bytes:
         if len(data) <= most:
             return data
     raise FileFormatError(
-        f"{os.fspath(path)}: is larger than {most} bytes, the most that is read of such files; divide it"
+        os.fspath(path), f": is larger than {most} bytes, the most that is read of such files; divide it"
     )
 
 
@@ -295,6 +295,6 @@ def _decode(data: bytes, path: str | os.PathLike[str], kind: str) -> str:
         return data.decode()
     except UnicodeDecodeError as error:
         raise FileFormatError(
-            f"{os.fspath(path)}: not a text file, so not {kind}: byte {error.start} is not UTF-8; check "
-            "the file"
+            os.fspath(path),
+            f": not a text file, so not {kind}: byte {error.start} is not UTF-8; check the file",
         ) from None

@@ -155,11 +155,11 @@ def read_with_shapes(path: Path, limit_time: Callable[[bool], object] = bool) ->
     is_iges = kind == "IGES"
     units = {_UNITS.get(name, "m") for name in names}
     unit = units.pop() if len(units) == 1 else "m"
-    walk = _Walk(path, kind, document)
+    walk = _AssemblyWalk(path, kind, document)
     parts = tuple(walk.parts())
     if not parts:
         way_out = "export STEP" if is_iges else "export solids, not surfaces or meshes"
-        raise FileFormatError(f"{path}: holds no solid ({walk.left_out} faces bound none); {way_out}")
+        raise FileFormatError(path, f": holds no solid ({walk.left_out} faces bound none); {way_out}")
     raw = sorted({part.density for part in parts if part.density is not None})
     stated = densities_of(read_bytes(path).decode("latin-1")) if raw else []
     is_unread = stated is None or len(stated) != len(raw)
@@ -177,7 +177,7 @@ def _check_numbers(path: Path) -> None:
     for number in _WITH_EXPONENT.finditer(read_bytes(path)):
         if len(number[2].lstrip(b"0")) > 3 or int(number[2]) > _LARGEST:
             raise FileFormatError(
-                f"{path}: the number {number[1].decode()[:40]} is beyond float64; correct it, or export STEP"
+                path, f": the number {number[1].decode()[:40]} is beyond float64; correct it, or export STEP"
             )
 
 
@@ -188,7 +188,7 @@ def _document(path: Path) -> tuple[str, tuple[str, ...], Any]:
     is_iges = path.suffix.lower() in _IGES
     kind = "IGES" if is_iges else "STEP"
     if not is_iges and b"END-ISO-10303-21" not in read_bytes(path)[-2000:]:
-        raise FileFormatError(f"{path}: does not end with END-ISO-10303-21; is it cut short?")
+        raise FileFormatError(path, ": does not end with END-ISO-10303-21; is it cut short?")
     document = occt("TDocStd").TDocStd_Document(occt("TCollection").TCollection_ExtendedString("polhode"))
     if is_iges:
         reader = occt("IGESCAFControl").IGESCAFControl_Reader()
@@ -198,10 +198,10 @@ def _document(path: Path) -> tuple[str, tuple[str, ...], Any]:
     reader.SetNameMode(True)
     done = occt("IFSelect").IFSelect_ReturnStatus.IFSelect_RetDone
     if reader.ReadFile(str(path)) != done:
-        raise FileFormatError(f"{path}: not a readable {kind} file; export it again")
+        raise FileFormatError(path, f": not a readable {kind} file; export it again")
     names = _iges_units(reader) if is_iges else _step_units(reader, path)
     if not reader.Transfer(document):
-        raise FileFormatError(f"{path}: its {kind} shapes could not be read; export it again")
+        raise FileFormatError(path, f": its {kind} shapes could not be read; export it again")
     return kind, names, document
 
 
@@ -211,7 +211,7 @@ def _step_units(reader: Any, path: Path) -> tuple[str, ...]:
     reader.ChangeReader().FileUnits(lengths, angles, solid_angles)
     names = {lengths.Value(i).ToCString().lower() for i in range(1, lengths.Length() + 1)}
     if not names:
-        raise FileFormatError(f"{path}: says no unit of length; export it again with one")
+        raise FileFormatError(path, ": says no unit of length; export it again with one")
     return tuple(sorted(names))
 
 
@@ -222,7 +222,7 @@ def _iges_units(reader: Any) -> tuple[str, ...]:
     return (_IGES_UNITS.get(section.UnitFlag(), stated or "none"),)
 
 
-class _Walk:
+class _AssemblyWalk:
     """Goes through the assemblies of a document."""
 
     def __init__(self, path: Path, kind: str, document: Any) -> None:
@@ -244,7 +244,7 @@ class _Walk:
     def _below(self, label: Any, place: Any, above: str, depth: int) -> Iterator[CadPart]:
         tool = self._tools.XCAFDoc_ShapeTool
         if depth > 100:
-            raise FileFormatError(f"{self._path}: assemblies are nested more than 100 deep; check the file")
+            raise FileFormatError(self._path, ": assemblies are nested more than 100 deep; check the file")
         self._budget.spend("placements")
         if not tool.IsAssembly_s(label):
             yield from self._solids(label, place, above)
@@ -275,7 +275,7 @@ class _Walk:
             whole = place.Multiplied(solid.Location().Transformation())
             if whole.IsNegative() or abs(whole.ScaleFactor() - 1.0) > 1e-12:
                 raise FileFormatError(
-                    f"{self._path}: {own} is placed by a reflection or a scale; export it as its own part"
+                    self._path, f": {own} is placed by a reflection or a scale; export it as its own part"
                 )
             moments, faces = self._moments(solid, own)
             rotation, position = _numbers(whole)
@@ -292,29 +292,30 @@ class _Walk:
             try:
                 moments = moments_of_faces(faces, about, reach)
             except ValueError as error:
-                raise FileFormatError(f"{self._path}: {name}: {error}; export it again") from None
+                raise FileFormatError(self._path, f": {name}: {error}; export it again") from None
             self._check(moments, name)
             self._known[key] = moments, len(faces)
         return self._known[key]
 
     def _check(self, moments: Moments, name: str) -> None:
         numbers = [moments.volume, moments.area, moments.error, *moments.second.ravel()]
-        what = f"{self._path}: the solid {name!r}"
+        solid = f": the solid {name!r}"
         if not np.isfinite(numbers).all():
-            raise FileFormatError(f"{what} has faces that are not finite; export it again")
+            raise FileFormatError(self._path, f"{solid} has faces that are not finite; export it again")
+        fault = ""
         if moments.loose or moments.openness > 1e-6 * moments.area:
-            raise MeshError(
-                f"{what} is open: {moments.loose} edges do not belong to two faces; heal it in CAD"
-            )
-        if moments.error > _WORST * abs(moments.volume) > 0.0:
+            fault = f"is open: {moments.loose} edges do not belong to two faces; heal it in CAD"
+        elif moments.error > _WORST * abs(moments.volume) > 0.0:
             share = 100.0 * moments.error / abs(moments.volume)
-            raise MeshError(
-                f"{what} has faces that do not meet, or bend too sharply: its volume is known to {share:.2g} "
+            fault = (
+                f"has faces that do not meet, or bend too sharply: its volume is known to {share:.2g} "
                 "% alone; heal it in CAD and export it again"
             )
-        if not moments.volume > moments.error:
+        elif not moments.volume > moments.error:
             sign = "is inside out" if moments.volume < -moments.error else "has no volume"
-            raise MeshError(f"{what} {sign} ({moments.volume:.4g} mm^3); heal it in CAD and export it again")
+            fault = f"{sign} ({moments.volume:.4g} mm^3); heal it in CAD and export it again"
+        if fault:
+            raise MeshError(self._path, f"{solid} {fault}")
 
 
 def faces_of(shape: Any) -> list[Any]:

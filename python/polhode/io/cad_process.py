@@ -19,7 +19,6 @@ from pathlib import Path
 from threading import Event, Timer
 from typing import IO, TYPE_CHECKING, Final
 
-from polhode import errors
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.io.cad_files import Pair, near_pairs, overlaps_told, volume_shared
 
@@ -84,20 +83,21 @@ def _answer(
     start = time.monotonic()
     assert process.stdout is not None  # it is a pipe
     try:
-        cad: CadFile | tuple[str, str] = pickle.load(process.stdout)
+        cad: CadFile | PolhodeError = pickle.load(process.stdout)
     except (EOFError, pickle.UnpicklingError):
         if process.wait() == _STOPPED:
             raise FileFormatError(
-                f"{path}: OCCT has computed for more than {_reading(megabytes):g} s on it, the most for "
-                f"{megabytes:.2g} MB of file; unpack it if it is packed, export it again, or divide it"
+                path,
+                f": OCCT has computed for more than {_reading(megabytes):g} s on it, the most for "
+                f"{megabytes:.2g} MB of file; unpack it if it is packed, export it again, or divide it",
             ) from None
         raise FileFormatError(
-            f"{path}: OCCT broke down on it (exit code {process.wait()}), as it does on damaged files; "
-            "export it again"
+            path,
+            f": OCCT broke down on it (exit code {process.wait()}), as it does on damaged files; "
+            "export it again",
         ) from None
-    if isinstance(cad, tuple):
-        kind, text = cad
-        raise getattr(errors, kind, PolhodeError)(text)
+    if isinstance(cad, PolhodeError):
+        raise cad
     is_ended = Event()
 
     def end() -> None:
@@ -152,7 +152,7 @@ def _main(path: Path, parent: int, seconds: float) -> None:
     try:
         cad, shapes = read_with_shapes(path, lambda runs: _set_time_limit(seconds if runs else 0.0))
     except PolhodeError as error:
-        _send(out, (type(error).__name__, str(error)))
+        _send(out, error)
         return
     _send(out, cad)
     for i, k in near_pairs(cad.parts):

@@ -73,7 +73,7 @@ def read_collada(
         placed = _Document(root, budget).scene()
         return placed.mesh("COLLADA"), placed.groups, metres, _up(root)
     except _FaultError as fault:
-        raise FileFormatError(f"{file}: {with_way_out(fault, 'export it again')}") from None
+        raise FileFormatError(file, f": {with_way_out(fault, 'export it again')}") from None
 
 
 def _tag(element: Element) -> str:

@@ -124,12 +124,12 @@ def unread(file: Path, suffix: str, readable: tuple[str, ...]) -> FileFormatErro
     """Return the error of a file whose suffix is none that is read."""
     name = f"files named {suffix}" if suffix else "files without a suffix"
     if file.suffix.lower() == _PACKED and suffix in (".json", ".npz", ".toml"):
-        return FileFormatError(f"{file}: {name} are read unpacked alone; unpack it with gunzip")
+        return FileFormatError(file, f": {name} are read unpacked alone; unpack it with gunzip")
     way_out = f"use one of {', '.join(readable)}"
     for suffixes, words in _FOREIGN:
         if suffix in suffixes:
             way_out = words.format(shlex.quote(file.name), shlex.quote(file.stem))
-    return FileFormatError(f"{file}: {name} are not read; {way_out}")
+    return FileFormatError(file, f": {name} are not read; {way_out}")
 
 
 def content_format(head: bytes, size: int) -> tuple[str | None, bool]:
@@ -193,10 +193,10 @@ def open_file(file: Path) -> Iterator[Content]:
 
 def _checked_format(file: Path, head: bytes, size: int) -> str | None:
     if not head:
-        raise FileFormatError(f"{file}: the file is empty; export it again")
+        raise FileFormatError(file, ": the file is empty; export it again")
     robot = next((name for root, name in _ROBOT_ROOTS if root in head), None)
     if robot is not None and head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<"):
-        raise FileFormatError(f"{file}: is a robot ({robot}); polhode check judges its links")
+        raise FileFormatError(file, f": is a robot ({robot}); polhode check judges its links")
     suffix = file.suffix.lower()
     actual, is_text = content_format(head, size)
     expected = EXPECTED_CONTENT.get(suffix, ())
@@ -205,13 +205,13 @@ def _checked_format(file: Path, head: bytes, size: int) -> str | None:
     if actual is not None:
         name = f"named {suffix}" if suffix else "named without a suffix"
         way_out = rename(file, actual, head)
-        raise FileFormatError(f"{file}: {name}, but its content is {actual}; {way_out}")
+        raise FileFormatError(file, f": {name}, but its content is {actual}; {way_out}")
     if is_text and suffix == ".stl":
         raise FileFormatError(
-            f"{file}: named .stl, but it is text without an STL's words 'solid' and 'facet'; check the file"
+            file, ": named .stl, but it is text without an STL's words 'solid' and 'facet'; check the file"
         )
     if not is_text and expected == ("v/f text",):
-        raise FileFormatError(f"{file}: named {suffix}, but it is not text; check the file")
+        raise FileFormatError(file, f": named {suffix}, but it is not text; check the file")
     return None
 
 

@@ -44,7 +44,7 @@ __all__ = [
     "ASSEMBLY_SUFFIX",
     "CAD_SUFFIXES",
     "SAVED_SUFFIXES",
-    "Loaded",
+    "FileContent",
     "Whole",
     "body_of_molecule",
     "check_arguments",
@@ -71,7 +71,7 @@ _TEXT_SUFFIXES: Final = tuple(suffix for suffix, known in EXPECTED_CONTENT.items
 
 
 @dataclass(eq=False, repr=False)
-class Loaded:
+class FileContent:
     """What a file holds.
 
     Triangles of binary STL, binary PLY and v/f text are read when `mesh` is first asked for. All other files
@@ -116,17 +116,18 @@ class Loaded:
     _mesh: Mesh | None = None
 
     def __repr__(self) -> str:
-        return f"<Loaded {self.format} from {self.path}>"
+        return f"<FileContent {self.format} from {self.path}>"
 
     @property
     def mesh(self) -> Mesh:
         """The triangles."""
         if self._molecule is not None:
-            raise FileFormatError(f"{self.path}: {self.format} holds atoms, not a mesh; ask for its molecule")
+            raise FileFormatError(self.path, f": {self.format} holds atoms, not a mesh; ask for its molecule")
         if self.cad is not None:
             raise FileFormatError(
-                f"{self.path}: {self.format} holds solids with curved faces, not triangles; polhode report "
-                "tells their mass properties; export a mesh from CAD where one is needed"
+                self.path,
+                f": {self.format} holds solids with curved faces, not triangles; polhode report "
+                "tells their mass properties; export a mesh from CAD where one is needed",
             )
         if self._mesh is None:
             self._mesh = self._read_mesh()
@@ -137,7 +138,7 @@ class Loaded:
         """The atoms."""
         if self._molecule is None:
             held = "solids" if self.cad is not None else "a mesh"
-            raise FileFormatError(f"{self.path}: {self.format} holds {held}, not atoms; ask for its mesh")
+            raise FileFormatError(self.path, f": {self.format} holds {held}, not atoms; ask for its mesh")
         return self._molecule
 
     def length(self, length_unit: str | None) -> str | None:
@@ -176,7 +177,7 @@ class Loaded:
         return mesh
 
 
-def load(path: str | os.PathLike[str], *, index_base: int = 1) -> Loaded:
+def load(path: str | os.PathLike[str], *, index_base: int = 1) -> FileContent:
     r"""Open a file that holds a mesh, a molecule or solids of CAD.
 
     The suffix of its name says which formats the file may have, and its content which of these it has: for
@@ -198,7 +199,7 @@ def load(path: str | os.PathLike[str], *, index_base: int = 1) -> Loaded:
 
     Returns
     -------
-    Loaded
+    FileContent
 
     Raises
     ------
@@ -249,7 +250,7 @@ def _budget(file: Path) -> Budget:
         return Budget(str(file), status_of(file).st_size)
 
 
-def _load(file: Path, suffix: str, index_base: int, budget: Budget, packed: int | None) -> Loaded:
+def _load(file: Path, suffix: str, index_base: int, budget: Budget, packed: int | None) -> FileContent:
     """Open and read a file that is not packed; `packed` is the size of the one that it was unpacked from."""
     with open_file(file) as content:
         stream = content.stream
@@ -263,23 +264,23 @@ def _load(file: Path, suffix: str, index_base: int, budget: Budget, packed: int 
             corners, groups = read_ascii_stl(stream, file)
             faces = np.arange(corners.size // 3).reshape(-1, 3)
             mesh = weld(corners.reshape(-1, 3), faces, "ASCII STL")
-            return Loaded(file, "ASCII STL", groups=groups, _mesh=mesh)
+            return FileContent(file, "ASCII STL", groups=groups, _mesh=mesh)
         if suffix == ".stl":
             # Whatever is neither text nor another known format is the compiled reader's to read or refuse.
-            return Loaded(file, "binary STL", is_stream=True)
+            return FileContent(file, "binary STL", is_stream=True)
         if content.format == "numbered plates":
             mesh = read_numbered_plates(stream, file)
             check_faces(mesh, str(file))
-            return Loaded(file, mesh.format, _mesh=mesh)
+            return FileContent(file, mesh.format, _mesh=mesh)
         if suffix in _TEXT_SUFFIXES:
-            return Loaded(file, "v/f text", index_base=index_base)
+            return FileContent(file, "v/f text", index_base=index_base)
         if suffix == ".dae":
             return _load_collada(stream, file, budget)
         if suffix == ".3mf":
             from polhode.io.three_mf import read_three_mf
 
             package = read_three_mf(stream, file, budget)
-            return Loaded(
+            return FileContent(
                 file,
                 "3MF",
                 unit=package.unit,
@@ -291,32 +292,32 @@ def _load(file: Path, suffix: str, index_base: int, budget: Budget, packed: int 
         if suffix in (".vtk", ".vtu", ".vtp"):
             from polhode.io.vtk import read_vtk
 
-            return Loaded(file, "VTK", _mesh=read_vtk(file, budget))
+            return FileContent(file, "VTK", _mesh=read_vtk(file, budget))
         if suffix in (".glb", ".gltf"):
             from polhode.io.gltf import read_gltf
 
             mesh, groups = read_gltf(stream, file, budget, is_binary=suffix == ".glb")
-            return Loaded(file, mesh.format, unit="m", groups=groups, _mesh=mesh)
+            return FileContent(file, mesh.format, unit="m", groups=groups, _mesh=mesh)
         if _is_binary_ply(content, suffix):
-            return Loaded(file, "PLY", is_stream=True)
+            return FileContent(file, "PLY", is_stream=True)
         mesh = _by_trimesh(stream, file, budget)
-    return Loaded(file, mesh.format, _mesh=mesh)
+    return FileContent(file, mesh.format, _mesh=mesh)
 
 
-def _load_molecule(content: Content, file: Path, suffix: str, budget: Budget) -> Loaded:
+def _load_molecule(content: Content, file: Path, suffix: str, budget: Budget) -> FileContent:
     from polhode.io import molecules
 
     for _ in content.stream:  # each line may be an atom, which takes far more memory
         budget.spend("atoms")
     content.stream.seek(0)
     if suffix in (".pdb", ".ent"):
-        return Loaded(file, "PDB", _molecule=molecules.read_pdb(content.stream, file))
+        return FileContent(file, "PDB", _molecule=molecules.read_pdb(content.stream, file))
     if suffix in (".mol", ".sdf"):
-        return Loaded(file, "MOL", _molecule=molecules.read_mol(content.stream, file))
-    return Loaded(file, "XYZ", _molecule=molecules.molecule_of(content.stream, file))
+        return FileContent(file, "MOL", _molecule=molecules.read_mol(content.stream, file))
+    return FileContent(file, "XYZ", _molecule=molecules.molecule_of(content.stream, file))
 
 
-def _load_cad(file: Path, packed: int | None) -> Loaded:
+def _load_cad(file: Path, packed: int | None) -> FileContent:
     from polhode.io.cad_process import read_cad_apart
 
     cad = read_cad_apart(file, packed)
@@ -331,10 +332,10 @@ def _load_cad(file: Path, packed: int | None) -> Loaded:
     if cad.unread_densities:
         notes.append("the densities of its materials have units that are not understood and are not used")
     notes += cad.overlaps
-    return Loaded(file, cad.format, unit=cad.unit, states_unit=True, notes=tuple(notes), cad=cad)
+    return FileContent(file, cad.format, unit=cad.unit, states_unit=True, notes=tuple(notes), cad=cad)
 
 
-def _load_collada(stream: BinaryIO, file: Path, budget: Budget) -> Loaded:
+def _load_collada(stream: BinaryIO, file: Path, budget: Budget) -> FileContent:
     from polhode.io.collada import read_collada
 
     mesh, groups, metres, up = read_collada(whole_of(stream, file), file, budget)
@@ -344,15 +345,15 @@ def _load_collada(stream: BinaryIO, file: Path, budget: Budget) -> Loaded:
             f"up is {up} by the file: its axes are told as they are (RViz does so; Gazebo turns them)"
         )
     if metres is None:
-        return Loaded(file, "COLLADA", unit="m", notes=tuple(notes), groups=groups, _mesh=mesh)
+        return FileContent(file, "COLLADA", unit="m", notes=tuple(notes), groups=groups, _mesh=mesh)
     unit = next((name for name, known in METRES.items() if abs(metres - known) <= 1e-9 * known), None)
     if unit is not None:
-        return Loaded(
+        return FileContent(
             file, "COLLADA", unit=unit, states_unit=True, notes=tuple(notes), groups=groups, _mesh=mesh
         )
     note = f"the file's unit is {metres:.9g} m, which has no name here: lengths are told in m"
     mesh = mesh._replace(vertices=mesh.vertices * metres)
-    return Loaded(
+    return FileContent(
         file, "COLLADA", unit="m", states_unit=True, notes=(*notes, note), groups=groups, _mesh=mesh
     )
 
@@ -535,7 +536,7 @@ def molecule_isotopes(
     try:
         return isotopes(molecule.labels, masses)
     except PolhodeError as error:
-        raise FileFormatError(f"{os.fspath(path)}: {error}") from None
+        raise FileFormatError(os.fspath(path), f": {error}") from None
 
 
 def solid_from_file(

@@ -81,10 +81,10 @@ def read_gltf(
     ) as error:  # fmt: skip
         reason = " ".join(str(error).split()) or type(error).__name__
         fault = with_way_out(reason[:200], "export it again")
-        raise FileFormatError(f"{file}: not a readable {kind} file: {fault}") from None
+        raise FileFormatError(file, f": not a readable {kind} file: {fault}") from None
     mesh = placed.mesh(kind)
     if not len(mesh.faces):
-        raise FileFormatError(f"{file}: holds no triangles; export it with them")
+        raise FileFormatError(file, ": holds no triangles; export it with them")
     return mesh, placed.groups
 
 

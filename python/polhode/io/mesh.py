@@ -29,7 +29,7 @@ class Mesh(NamedTuple):
         Rows of `vertices`, counted from 0.
     format : str
         ``"binary STL"``, ``"ASCII STL"``, ``"v/f text"`` (OBJ and plate files), ``"PLY"`` or another of the
-        meshes among :attr:`Loaded.format`.
+        meshes among :attr:`FileContent.format`.
     """
 
     vertices: Floats
@@ -46,8 +46,9 @@ def check_faces(mesh: Mesh, file: str) -> None:
     if beyond.any():
         row = int(np.flatnonzero(beyond.any(axis=1))[0])
         raise MeshError(
-            f"{file}: faces[{row}] names vertex {mesh.faces[row][beyond[row]][0]}, but there are "
-            f"{len(mesh.vertices)} vertices, numbered from 0; is the file cut short?"
+            file,
+            f": faces[{row}] names vertex {mesh.faces[row][beyond[row]][0]}, but there are "
+            f"{len(mesh.vertices)} vertices, numbered from 0; is the file cut short?",
         )
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from polhode._typing import SupportsSigma
     from polhode.io.cad_files import CadFile, SolidPart
-    from polhode.io.formats import Loaded
+    from polhode.io.formats import FileContent
     from polhode.io.mesh import Mesh
 
     Number = float | _core.Uncertain | SupportsSigma
@@ -77,7 +77,7 @@ class MeshSolid(NamedTuple):
 
 
 def solid_of(
-    loaded: Loaded,
+    loaded: FileContent,
     *,
     density: Number | None = None,
     mass: Number | None = None,
@@ -152,7 +152,7 @@ def solid_of(
     return MeshSolid(body._welded(welded), mesh.format, count, len(mesh.faces), volume, area, welded)
 
 
-def _join_components(loaded: Loaded, mesh: Mesh, orient: bool) -> Loaded:
+def _join_components(loaded: FileContent, mesh: Mesh, orient: bool) -> FileContent:
     """Return the file with the components of its mesh joined to one solid."""
     from polhode.io.components import parts_of
     from polhode.io.union import unite
@@ -172,7 +172,11 @@ def _join_components(loaded: Loaded, mesh: Mesh, orient: bool) -> Loaded:
 
 
 def _cad_solid(
-    loaded: Loaded, cad: CadFile, density: Number | None, mass: Number | None, asked: Mapping[str, object]
+    loaded: FileContent,
+    cad: CadFile,
+    density: Number | None,
+    mass: Number | None,
+    asked: Mapping[str, object],
 ) -> MeshSolid:
     """Return the body of the solids in a CAD file, which need no mending that a mesh may need."""
     from polhode.io.cad_files import solids_of
@@ -195,7 +199,7 @@ def naming_file(path: str | os.PathLike[str]) -> Iterator[None]:
     except PolhodeError as error:
         if isinstance(error, MeshError):
             _name_arguments(error)
-        error.args = (f"{os.fspath(path)}: ", *error.args)
+        error.args = (os.fspath(path), ": ", *error.args)
         raise
 
 
@@ -235,7 +239,12 @@ def _mark_repair(body: _core.RigidBody, welded: int, closed: float | None) -> _c
 
 
 def _unite_components(
-    loaded: Loaded, first: MeshSolid, weld: float, density: Number | None, mass: Number | None, scale: float
+    loaded: FileContent,
+    first: MeshSolid,
+    weld: float,
+    density: Number | None,
+    mass: Number | None,
+    scale: float,
 ) -> MeshSolid:
     """Join the components of a mesh that was repaired first."""
     mended, _, _, _ = repair_mesh(loaded.mesh, weld)

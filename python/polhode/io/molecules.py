@@ -148,7 +148,7 @@ def molecule_of(stream: BinaryIO, file: Path) -> Molecule:
     count_text = lines[0].strip() if lines else ""
     if not re.fullmatch(f"[0-9]{{1,{_MOST_DIGITS}}}", count_text) or int(count_text) == 0:
         raise FileFormatError(
-            f"{file}: line 1 of an XYZ file is the number of atoms, not {count_text[:40]!r}; write it there"
+            file, f": line 1 of an XYZ file is the number of atoms, not {count_text[:40]!r}; write it there"
         )
     count = int(count_text)
     comment = lines[1].strip() if len(lines) > 1 else ""
@@ -157,12 +157,12 @@ def molecule_of(stream: BinaryIO, file: Path) -> Molecule:
     rows = lines[2 : 2 + count]
     if len(rows) < count:
         raise FileFormatError(
-            f"{file}: line 1 promises {count_text[:40]} atoms, but the file holds {len(rows)}; "
-            "is it cut short?"
+            file,
+            f": line 1 promises {count_text[:40]} atoms, but the file holds {len(rows)}; is it cut short?",
         )
     if any(line.strip() for line in lines[2 + count :]):
         raise FileFormatError(
-            f"{file}: text after atom {count}, the last by line 1; correct the count or keep one frame a file"
+            file, f": text after atom {count}, the last by line 1; correct the count or keep one frame a file"
         )
     atoms = [_atom(file, number, row, columns) for number, row in enumerate(rows, start=3)]
     labels, coordinates = zip(*atoms, strict=True)
@@ -229,8 +229,9 @@ def _columns(entries: dict[str, str], file: Path) -> _Columns:
     letter, first, size_of_position = starts.get("pos", ("", -1, 0))
     if (kind, width) != ("S", 1) or (letter, size_of_position) != ("R", 3):
         raise FileFormatError(
-            f"{file}: line 2 declares no columns species:S:1 and pos:R:3 "
-            f"(Properties={':'.join(words)[:60]}); write them"
+            file,
+            f": line 2 declares no columns species:S:1 and pos:R:3 "
+            f"(Properties={':'.join(words)[:60]}); write them",
         )
     return _Columns(label, first, at, next((name for name in _MASSES if name in starts), ""))
 
@@ -250,8 +251,9 @@ def _cell(entries: dict[str, str], file: Path) -> NDArray[np.float64] | None:
     if "properties" not in entries or "lattice" not in entries:
         return None
     raise FileFormatError(
-        f"{file}: line 2: expected Lattice of nine numbers and pbc of three letters T or F, got "
-        f"Lattice={text[:60]!r} and pbc={entries.get('pbc', '')[:20]!r}; correct them"
+        file,
+        f": line 2: expected Lattice of nine numbers and pbc of three letters T or F, got "
+        f"Lattice={text[:60]!r} and pbc={entries.get('pbc', '')[:20]!r}; correct them",
     )
 
 
@@ -260,11 +262,12 @@ def _atom(file: Path, number: int, row: str, columns: _Columns) -> tuple[str, li
     words = row.split()
     coordinates = numbers_of(words[columns.position : columns.position + 3])
     if coordinates is None or len(coordinates) != 3:
-        raise FileFormatError(f"{file}: line {number}: expected 'symbol x y z', got {row.strip()[:60]!r}")
+        raise FileFormatError(file, f": line {number}: expected 'symbol x y z', got {row.strip()[:60]!r}")
     if len(words) < columns.words:
         raise FileFormatError(
-            f"{file}: line {number}: expected {columns.words} words, as Properties of line 2 declares, got "
-            f"{len(words)}; correct one of the two"
+            file,
+            f": line {number}: expected {columns.words} words, as Properties of line 2 declares, got "
+            f"{len(words)}; correct one of the two",
         )
     return words[columns.label], coordinates
 
@@ -371,9 +374,9 @@ def read_pdb(stream: BinaryIO, file: Path) -> Molecule:
                     atoms.append(_pdb_atom(line))
         except _FaultError as error:
             fault = with_way_out(error, "correct the line")
-            raise FileFormatError(f"{file}: line {number}: {fault}") from None
+            raise FileFormatError(file, f": line {number}: {fault}") from None
     if not atoms:
-        raise FileFormatError(f"{file}: holds no ATOM and no HETATM; check the file")
+        raise FileFormatError(file, ": holds no ATOM and no HETATM; check the file")
     chosen = _one_place_each(atoms)
     labels = [atom.label for atom in chosen]
     notes = []
@@ -501,7 +504,7 @@ def read_mol(stream: BinaryIO, file: Path) -> Molecule:
     lines = lines_of(stream, file, "a MOL or SDF file")
     end = next((number for number, line in enumerate(lines) if line.startswith("$$$$")), len(lines))
     if any(line.strip() for line in lines[end + 1 :]):
-        raise FileFormatError(f"{file}: holds more than one molecule; keep one a file")
+        raise FileFormatError(file, ": holds more than one molecule; keep one a file")
     lines = lines[:end]
     notes: list[str] = []
     try:
@@ -520,7 +523,7 @@ def read_mol(stream: BinaryIO, file: Path) -> Molecule:
                 )
             notes.append("line 2 says 2D, but z differs from zero: taken as a geometry in space")
     except _FaultError as error:
-        raise FileFormatError(f"{file}: {with_way_out(error, 'export it again')}") from None
+        raise FileFormatError(file, f": {with_way_out(error, 'export it again')}") from None
     if not _has_hydrogens(labels):
         notes.append(_NO_HYDROGENS)
     if len(rows) > 1 and is_flat:

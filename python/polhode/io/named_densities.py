@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from polhode._typing import SupportsSigma
     from polhode.io.components import Part
-    from polhode.io.formats import Loaded
+    from polhode.io.formats import FileContent
 
     Number = float | _core.Uncertain | SupportsSigma
 
@@ -28,12 +28,12 @@ __all__ = ["OVERLAPPING", "body_by_names", "body_of_parts", "named_parts"]
 OVERLAPPING = "components of several densities overlap: take what they share out of one of them"
 
 
-def named_parts(loaded: Loaded, scale: float, weld: float) -> list[Part]:
+def named_parts(loaded: FileContent, scale: float, weld: float) -> list[Part]:
     """Take the mesh of a file apart, its components by the names that the file gives them, else by numbers.
 
     Parameters
     ----------
-    loaded : Loaded
+    loaded : FileContent
     scale : float
         Of the coordinates.
     weld : float
@@ -61,7 +61,7 @@ def body_of_parts(parts: Sequence[Part], densities: Sequence[Number]) -> _core.R
 
 
 def body_by_names(
-    loaded: Loaded,
+    loaded: FileContent,
     densities: Mapping[str, Number],
     *,
     scale: float = 1.0,
@@ -74,7 +74,7 @@ def body_by_names(
 
     Parameters
     ----------
-    loaded : Loaded
+    loaded : FileContent
     densities : mapping of str to float or Uncertain
         One for each component.
     scale, weld, orient, progress

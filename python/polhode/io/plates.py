@@ -55,5 +55,5 @@ def read_numbered_plates(stream: BinaryIO, file: Path) -> Mesh:
         if not plates:
             raise ValueError("it holds no plates")
     except (ValueError, OverflowError, IndexError) as error:
-        raise FileFormatError(f"{file}: not a whole plate file: {error}; is it cut short?") from None
+        raise FileFormatError(file, f": not a whole plate file: {error}; is it cut short?") from None
     return Mesh(rows[:, 1:].copy(), faces[:, 1:] - 1, "numbered plates")

@@ -149,7 +149,7 @@ _BLANKS: Final = b" \t\n\r\v\f"
 _BLOCK: Final = 1 << 20
 
 
-class _Alone:
+class _NoOtherFiles:
     """Where trimesh would look for other files: nothing but the file itself is read."""
 
     def get(self, name: str) -> NoReturn:
@@ -189,34 +189,32 @@ def read_by_trimesh(stream: BinaryIO, file: Path, readable: tuple[str, ...], bud
     except Exception as error:  # a damaged file can raise anything in there, from KeyError to struct.error
         reason = " ".join(str(error).split()) or type(error).__name__
         fault = with_way_out(reason[:200], "export it again")
-        raise FileFormatError(f"{file}: not a readable {kind.upper()} file: {fault}") from error
+        raise FileFormatError(file, f": not a readable {kind.upper()} file: {fault}") from error
     vertices, faces = np.empty((0, 3)), np.empty((0, 3), dtype=np.int64)
     for name, geometry in scene.geometry.items():  # of which these formats hold one
         if not isinstance(geometry, trimesh.Trimesh):
             raise FileFormatError(
-                f"{file}: holds points or lines ({name}) where triangles are needed; export triangles"
+                file, f": holds points or lines ({name}) where triangles are needed; export triangles"
             )
         vertices = np.asarray(geometry.vertices, dtype=np.float64)
         if len(geometry.faces):
             faces = np.asarray(geometry.faces, dtype=np.int64)
     if faces.shape[1:] != (3,) or vertices.shape[1:] != (3,):
-        raise FileFormatError(
-            f"{file}: its faces or vertices are not rows of three numbers; export triangles"
-        )
+        raise FileFormatError(file, ": its faces or vertices are not rows of three numbers; export triangles")
     if faces.size and not (faces.min() >= 0 and faces.max() < len(vertices)):
         row = int(np.flatnonzero((faces < 0).any(axis=1) | (faces >= len(vertices)).any(axis=1))[0])
         raise FileFormatError(
-            f"{file}: face {row} names a vertex that the file does not hold; is it cut short?"
+            file, f": face {row} names a vertex that the file does not hold; is it cut short?"
         )
     mesh = weld(vertices, faces, kind.upper())
     if not len(mesh.faces):
-        raise FileFormatError(f"{file}: holds no triangles; export it with them")
+        raise FileFormatError(file, ": holds no triangles; export it with them")
     try:
         stream.seek(0)
         _PROMISING[kind](stream, len(mesh.faces))
     except (ValueError, IndexError) as error:
         fault = with_way_out(error, "export it again")
-        raise FileFormatError(f"{file}: not a whole {kind.upper()} file: {fault}") from None
+        raise FileFormatError(file, f": not a whole {kind.upper()} file: {fault}") from None
     return mesh
 
 
@@ -233,7 +231,9 @@ def _load_scene(trimesh: Any, stream: BinaryIO, kind: str) -> Any:
     if kind == "ply":
         check_ply_size(stream)
     stream.seek(0)
-    scene = trimesh.load_scene(stream, file_type=kind, resolver=_Alone(), process=False, skip_materials=True)
+    scene = trimesh.load_scene(
+        stream, file_type=kind, resolver=_NoOtherFiles(), process=False, skip_materials=True
+    )
     if kind == "ply":
         check_ply_lists(scene)
     return scene

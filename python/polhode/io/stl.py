@@ -90,10 +90,10 @@ def read_ascii_stl(stream: BinaryIO, file: Path) -> tuple[NDArray[np.float64], t
         blocks.append(_corners(words))
     except ValueError as error:
         fault = with_way_out(error, "export it again")
-        raise FileFormatError(f"{file}: not a whole ASCII STL file: up to line {number}: {fault}") from None
+        raise FileFormatError(file, f": not a whole ASCII STL file: up to line {number}: {fault}") from None
     corners = np.concatenate(blocks)
     if not len(corners):
-        raise FileFormatError(f"{file}: holds no triangles; check the file")
+        raise FileFormatError(file, ": holds no triangles; check the file")
     return corners, tuple(groups)
 
 

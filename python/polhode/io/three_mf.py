@@ -124,18 +124,18 @@ def read_three_mf(stream: BinaryIO, file: Path, budget: Budget) -> Package:
         RuntimeError,  # of zipfile, for a member under a password
         EOFError,
     ) as error:
-        raise FileFormatError(f"{file}: not a readable 3MF file: {error}; export it again") from None
+        raise FileFormatError(file, f": not a readable 3MF file: {error}; export it again") from None
     except MeshError as error:
-        raise FileFormatError(f"{file}: {error}") from None
+        raise FileFormatError(file, f": {error}") from None
     except (KeyError, ValueError, OverflowError) as error:
-        raise FileFormatError(f"{file}: not a whole 3MF file: {error}; export it again") from None
+        raise FileFormatError(file, f": not a whole 3MF file: {error}; export it again") from None
     except (zlib.error, struct.error) as error:
-        raise FileFormatError(f"{file}: not a whole 3MF file: {error}; export it again") from None
+        raise FileFormatError(file, f": not a whole 3MF file: {error}; export it again") from None
     except OSError as error:
         if error.errno != errno.EINVAL:
             raise
         raise FileFormatError(
-            f"{file}: not a whole 3MF file: a member is said to begin outside of it; export it again"
+            file, ": not a whole 3MF file: a member is said to begin outside of it; export it again"
         ) from None
 
 

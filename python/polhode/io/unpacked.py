@@ -53,7 +53,7 @@ def unpack(path: Path, budget: Budget | None = None) -> Iterator[Path]:
         try:
             yield inside
         except PolhodeError as error:
-            error.args = (str(error).replace(str(inside), str(path)), *error.args[1:])
+            error.rename_file(inside, path)
             raise
 
 
@@ -66,6 +66,6 @@ def _unpack(path: Path, copy: IO[bytes], budget: Budget) -> None:
                 budget.spend("unpacked bytes", len(block))
                 copy.write(block)
     except (EOFError, zlib.error, gzip.BadGzipFile) as error:
-        raise FileFormatError(f"{path}: not a whole gzip file: {error}; is it cut short?") from None
+        raise FileFormatError(path, f": not a whole gzip file: {error}; is it cut short?") from None
     if size == 0:
-        raise FileFormatError(f"{path}: the file is empty; pack it again")
+        raise FileFormatError(path, ": the file is empty; pack it again")

@@ -49,26 +49,27 @@ def read_vtk(path: Path, budget: Budget) -> Mesh:
         raise
     except Exception as error:  # a damaged file can raise anything in there
         reason = " ".join(str(error).split()) or type(error).__name__
-        raise FileFormatError(f"{path}: not a readable VTK file: {reason[:200]}; export it again") from None
+        raise FileFormatError(path, f": not a readable VTK file: {reason[:200]}; export it again") from None
     finally:
         vtk.vtkObject.GlobalWarningDisplayOn()
     if not isinstance(held, pyvista.DataSet) or isinstance(held, pyvista.ImageData):
         raise FileFormatError(
-            f"{path}: holds {type(held).__name__}, no surface or cells; RigidBody.from_voxels takes voxels"
+            path, f": holds {type(held).__name__}, no surface or cells; RigidBody.from_voxels takes voxels"
         )
     promised = held.n_cells
     surface = held if isinstance(held, pyvista.PolyData) else _around(held, pyvista)
     if surface.n_lines or surface.n_verts:
-        raise FileFormatError(f"{path}: holds points or lines where triangles are needed; export triangles")
+        raise FileFormatError(path, ": holds points or lines where triangles are needed; export triangles")
     if (corners := surface.GetPolys().GetMaxCellSize()) > _MOST_CORNERS:
         raise FileFormatError(
-            f"{path}: a face has {corners} corners, more than the {_MOST_CORNERS} that are divided into "
-            "triangles; export triangles"
+            path,
+            f": a face has {corners} corners, more than the {_MOST_CORNERS} that are divided into "
+            "triangles; export triangles",
         )
     triangles = surface.triangulate()
     faces = np.asarray(triangles.faces, dtype=np.int64).reshape(-1, 4)[:, 1:]
     if not promised or not len(faces):
-        raise FileFormatError(f"{path}: holds no triangles and no cells; is it cut short?")
+        raise FileFormatError(path, ": holds no triangles and no cells; is it cut short?")
     return weld(np.asarray(triangles.points, dtype=np.float64), faces, "VTK")
 
 

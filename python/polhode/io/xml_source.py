@@ -174,7 +174,7 @@ def parse_xml(
         too many elements.
     """
     if source.startswith((b"\xff\xfe", b"\xfe\xff")) or b"\0" in source[:4]:
-        raise FileFormatError(f"{name}: is in UTF-16; save it as UTF-8")
+        raise FileFormatError(name, ": is in UTF-16; save it as UTF-8")
     source = _declared_late(source)
     spent = budget if budget is not None else Budget(name, len(source))
     made = 0
@@ -189,10 +189,10 @@ def parse_xml(
         at, line, depth = parser.CurrentByteIndex, parser.CurrentLineNumber, above + len(stack) + 1
         if depth > _DEEPEST:
             raise FileFormatError(
-                f"{name}: line {line}: elements are nested more than {_DEEPEST} deep; check the file"
+                name, f": line {line}: elements are nested more than {_DEEPEST} deep; check the file"
             )
         made += 1
-        spent.spend("elements", where=f"{name}: line {line}")
+        spent.spend("elements", where=f"line {line}: ")
         match = _START_TAG.match(source, at)
         inside = match.end() if match else at
         element = Element(tag, attributes, line, at, inside, file=file, depth=depth)
@@ -215,8 +215,9 @@ def parse_xml(
 
     def refuse(*_: object) -> None:
         raise FileFormatError(
-            f"{name}: line {parser.CurrentLineNumber}: declares a document type or entities, which are not "
-            "read; remove the declaration"
+            name,
+            f": line {parser.CurrentLineNumber}: declares a document type or entities, which are not "
+            "read; remove the declaration",
         )
 
     parser.StartElementHandler = start
@@ -235,18 +236,20 @@ def parse_xml(
             return parse_xml(loose[0], name, file=file, above=above, budget=spent, remarks=remarks)
         if error.code == _BAD_TOKEN and not _is_utf8(source):
             raise FileFormatError(
-                f"{name}: line {error.lineno}: holds bytes that are not UTF-8; save it as UTF-8, or name its "
-                'encoding in the first line, as in <?xml version="1.0" encoding="ISO-8859-1"?>'
+                name,
+                f": line {error.lineno}: holds bytes that are not UTF-8; save it as UTF-8, or name its "
+                'encoding in the first line, as in <?xml version="1.0" encoding="ISO-8859-1"?>',
             ) from None
         raise FileFormatError(
-            f"{name}: line {error.lineno}: not well-formed XML: {reason}; correct the line, or is the "
-            "file cut short?"
+            name,
+            f": line {error.lineno}: not well-formed XML: {reason}; correct the line, or is the "
+            "file cut short?",
         ) from None
     except FileFormatError:
         raise
     except (LookupError, ValueError) as error:  # of an encoding that Python does not know, or of many bytes
         raise FileFormatError(
-            f"{name}: line 1: the encoding that it declares is not read ({error}); save it as UTF-8"
+            name, f": line 1: the encoding that it declares is not read ({error}); save it as UTF-8"
         ) from None
     return root[0]
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 import numpy as np
 
 from polhode import _core
-from polhode._hints import Hinting, no_attribute
+from polhode._hints import ClassWithHints, no_attribute
 from polhode.motion.events import Events
 from polhode.motion.gyrostat import Wheel, wheel
 from polhode.motion.invariants import drift, lengths
@@ -38,9 +38,9 @@ __all__ = ["Trajectory"]
 
 _OF_THE_MOTION = ("omega", "attitude", "position", "velocity", "about")
 """Arguments of a start that a motion has already."""
-_ROUNDING = 1e-12
+_EQUAL_MOMENTA = 1e-12
 """An angular momentum that differs by less, relative to its parts, is the same."""
-ROUNDING = 1e-12
+_NO_WHEEL = 1e-12
 """A moment that small, relative to the largest, is that of no wheel."""
 
 
@@ -67,7 +67,7 @@ class Origin:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Trajectory(metaclass=Hinting):
+class Trajectory(metaclass=ClassWithHints):
     """The motion of one body or of a stack at the times asked for.
 
     Attributes
@@ -950,7 +950,7 @@ class Trajectory(metaclass=Hinting):
         now = nothing if first.carried is None else first.carried[0][..., 0, :]
         body = lengths(first.angular_momentum("body").spin[..., 0, :] - now)
         off = now - was
-        jumps = lengths(off) > _ROUNDING * (lengths(now) + lengths(was) + body)
+        jumps = lengths(off) > _EQUAL_MOMENTA * (lengths(now) + lengths(was) + body)
         if np.any(jumps):
             into, of = (np.broadcast_to(one, off.shape)[jumps][0].tolist() for one in (now, was))
             raise ValueError(
@@ -996,7 +996,7 @@ class Trajectory(metaclass=Hinting):
         """Return the free wheels of a gyrostat along the axes of Σ J a aᵀ, and the rest as a rotor."""
         momentum, free = self._rotor_inside()
         inertias, axes = np.linalg.eigh(free)
-        turning = inertias > ROUNDING * inertias[..., -1:]
+        turning = inertias > _NO_WHEEL * inertias[..., -1:]
         rows = turning.reshape(-1, 3)
         if (rows != rows[0]).any():
             raise ValueError(

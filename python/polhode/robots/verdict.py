@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "FAILURES",
-    "Standing",
+    "LinkRole",
     "Verdict",
     "has_own_tensor",
     "is_without_mass",
@@ -142,7 +142,7 @@ def judge(
         read = [geometry.read(link) for link in robot.links]
         pairs = list(zip(robot.links, read, strict=True))
         stand = standings(robot, [_has_mass(*pair) for pair in pairs], [_has_spread(*pair) for pair in pairs])
-        judging = _Judging(
+        judging = _VerdictData(
             geometry,
             robot.format,
             _placeholders(robot.links),
@@ -239,7 +239,7 @@ def _isotropic(tensor: Floats) -> float | None:
     return moment if np.allclose(tensor, moment * np.eye(3), rtol=0.0, atol=1e-9 * abs(moment)) else None
 
 
-class _Judging(NamedTuple):
+class _VerdictData(NamedTuple):
     """Data for the verdict of a link besides the link itself."""
 
     geometry: GeometryReader
@@ -248,7 +248,7 @@ class _Judging(NamedTuple):
     reach: float
     is_all: bool
 
-    def link(self, link: Link, geometry: Geometry, standing: Standing) -> Verdict:
+    def link(self, link: Link, geometry: Geometry, standing: LinkRole) -> Verdict:
         """Judge a link."""
         notes, declared = geometry.notes, link.inertial
         if link.is_static:
@@ -496,7 +496,7 @@ def _nine(values: Floats) -> Floats:
 _FREE: Final = ("floating", "free")
 
 
-class Standing(NamedTuple):
+class LinkRole(NamedTuple):
     """Role of a link in its robot.
 
     Attributes
@@ -541,7 +541,7 @@ class _Group:
         self.below: list[_Group] = []
 
 
-def standings(robot: Robot, has_mass: Sequence[bool], has_spread: Sequence[bool]) -> list[Standing]:
+def standings(robot: Robot, has_mass: Sequence[bool], has_spread: Sequence[bool]) -> list[LinkRole]:
     """For each link: find whether it can move, and which links below it have mass.
 
     Parameters
@@ -553,7 +553,7 @@ def standings(robot: Robot, has_mass: Sequence[bool], has_spread: Sequence[bool]
 
     Returns
     -------
-    list of Standing
+    list of LinkRole
         In the order of the links.
     """
     world = len(robot.links)
@@ -594,7 +594,7 @@ def standings(robot: Robot, has_mass: Sequence[bool], has_spread: Sequence[bool]
                 child.joint, child.first = joint.name, number[joint.child]
                 child.is_free = joint.kind in _FREE
     heavy = _with_mass_below(groups.values())
-    told: list[Standing] = []
+    told: list[LinkRole] = []
     for i, link in enumerate(robot.links):
         group = groups[find(i)]
         is_root = group.joint is None and group is not ground
@@ -606,7 +606,7 @@ def standings(robot: Robot, has_mass: Sequence[bool], has_spread: Sequence[bool]
         weld = next((robot.links[k].name for k in group.spread[:2] if k != i), "")
         if group is ground:
             weld = weld or "the world"
-        standing = Standing(moves, group.joint or "", group.carrier, weld, carries_mass, stands_for, is_root)
+        standing = LinkRole(moves, group.joint or "", group.carrier, weld, carries_mass, stands_for, is_root)
         told.append(standing)
     return told
 
@@ -629,7 +629,7 @@ def _with_mass_below(groups: Iterable[_Group]) -> set[_Group]:
     return found
 
 
-class WithoutMass(NamedTuple):
+class MasslessVerdict(NamedTuple):
     """The verdict of a link without mass: the word, why, and what simulators make of it."""
 
     word: Literal["none", "missing"]
@@ -637,14 +637,14 @@ class WithoutMass(NamedTuple):
     note: str = ""
 
 
-def without_mass(robot_format: str, link: Link, standing: Standing) -> WithoutMass:
+def without_mass(robot_format: str, link: Link, standing: LinkRole) -> MasslessVerdict:
     """Judge a link without mass.
 
     A mass matrix is singular where a joint moves what has no mass and carries none. MuJoCo refuses every body
     that joints move without mass, what it carries not counted; nothing else does.
     """
     if standing.carrier:
-        return WithoutMass("none", f"tied to {standing.carrier}, which has mass")
+        return MasslessVerdict("none", f"tied to {standing.carrier}, which has mass")
     if not standing.moves:
         note = ""
         if standing.is_root and link.shapes:
@@ -652,17 +652,19 @@ def without_mass(robot_format: str, link: Link, standing: Standing) -> WithoutMa
                 f"line {link.line}: {link.name} is the root, with shapes and without mass: Pinocchio and "
                 "MuJoCo hold it still, Drake and Gazebo let it fall unless it is tied to the world"
             )
-        return WithoutMass("none", "no joint moves it", note)
+        return MasslessVerdict("none", "no joint moves it", note)
     if not standing.joint and not link.shapes and link.inertial is None:
-        return WithoutMass("none", "nothing is tied to it")
+        return MasslessVerdict("none", "nothing is tied to it")
     mover = f"joint {standing.joint} moves it" if standing.joint else "nothing holds it"
     if not standing.stands_for:
-        return WithoutMass("none", f"{mover} with what it is tied to, which is told there")
+        return MasslessVerdict("none", f"{mover} with what it is tied to, which is told there")
     shaped = "it has shape but no mass" if link.shapes else "no mass is tied to it"
     if not standing.carries_mass:
-        return WithoutMass("missing", f"{mover}, and {shaped}: the mass matrix is singular there")
+        return MasslessVerdict("missing", f"{mover}, and {shaped}: the mass matrix is singular there")
     if robot_format == "MJCF":
-        return WithoutMass("missing", f"{mover}, and {shaped}: MuJoCo refuses it, whatever it carries")
+        return MasslessVerdict("missing", f"{mover}, and {shaped}: MuJoCo refuses it, whatever it carries")
     if link.shapes:
-        return WithoutMass("missing", f"{mover}, and {shaped}: what it carries has mass, its own is left out")
-    return WithoutMass("none", f"{mover} without mass; what it carries has mass")
+        return MasslessVerdict(
+            "missing", f"{mover}, and {shaped}: what it carries has mass, its own is left out"
+        )
+    return MasslessVerdict("none", f"{mover} without mass; what it carries has mass")

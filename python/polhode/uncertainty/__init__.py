@@ -1,7 +1,7 @@
 """Uncertainty of any function of a body, probabilities of axes and modes, and ledgers of parts.
 
 The standard deviations of a body itself, its moments and axes, are `RigidBody.sigma` and
-`PrincipalAxes.sigma`: the compiled core computes them (``rust/core/src/uncertainty/deviations.rs``).
+`PrincipalAxes.sigma`: the compiled core computes them (``rust/core/src/uncertainty/sigma.rs``).
 """
 
 from typing import TYPE_CHECKING

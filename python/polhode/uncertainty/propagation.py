@@ -360,7 +360,7 @@ class Neighbours:
         self.of_variables: Floats = (vectors[:, kept] / np.sqrt(values[kept])).T @ (tangents / scale[:, None])
         """Coordinates of one standard deviation of each variable, shape (rank, variables)."""
         if body is not None:
-            self._way = _Way(body, self._factor)
+            self._way = _BodyMap(body, self._factor)
 
     def at(self, coordinates: Floats) -> tuple[Any, ...]:
         """Return the body and the other numbers with these coordinates; zero gives the mean values."""
@@ -431,7 +431,7 @@ class Neighbours:
             warnings.warn(message, stacklevel=4)
 
 
-class _Way:
+class _BodyMap:
     """Map from a change of the ten numbers, right to first order, to a neighbouring body."""
 
     def __init__(self, body: RigidBody, factor: Floats) -> None:

@@ -29,7 +29,7 @@ use polhode::motion::simulate::{Method, NoEvents, Phase, Run, State, Task, Toler
 use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::parallel::set_thread_limit;
 use polhode::principal::{principal_axes_many, principal_moments_many};
-use polhode::random::{Stream, laws};
+use polhode::random::{Stream, distributions};
 use polhode::{Error, RigidBody};
 
 fn main() {
@@ -70,7 +70,7 @@ fn go_on(_: f64) -> ControlFlow<()> {
 fn numbers(count: usize) -> Vec<f64> {
     let stream = Stream::new(1, 0);
     (0..count as u64)
-        .map(|k| 2.0 * laws::uniform(stream.words(k, 0)[0]) - 1.0)
+        .map(|k| 2.0 * distributions::uniform(stream.words(k, 0)[0]) - 1.0)
         .collect()
 }
 
@@ -381,6 +381,6 @@ fn small() {
     });
     let mut out = vec![0.0; 20_000];
     time("random", || {
-        Stream::new(7, 1).fill(0, 1, &mut out, &mut go_on, laws::normal)
+        Stream::new(7, 1).fill(0, 1, &mut out, &mut go_on, distributions::normal)
     });
 }

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use arbitrary::Result;
 use nalgebra::Vector3;
 use polhode::motion::integrate::variation::variations;
-use polhode::motion::loads::{Analytic, Carried, Load, Term, Wrench};
+use polhode::motion::loads::{Analytic, CarriedMomentum, Load, Term, Wrench};
 use polhode::motion::simulate::{
     Direction, End, Events, Method, NoEvents, Phase, Rule, Run, State, Task, Tolerance,
     check_times, simulate,
@@ -69,7 +69,7 @@ impl Load for Called<'_> {
         self.0.act(t, phase, rates)
     }
 
-    fn carried(&self) -> Vec<&dyn Carried> {
+    fn carried(&self) -> Vec<&dyn CarriedMomentum> {
         self.0.carried()
     }
 }

@@ -10,9 +10,9 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyFloat, PyInt, PyList, PyModule, PySlice, PyTuple};
 
 use crate::depth::RecursionGuard;
+use crate::errors;
 use crate::interrupt::Beat;
 use crate::memory;
-use crate::shape::tuple;
 
 /// Numbers that NumPy is given at a time; in a few milliseconds it is done with them.
 const PIECE: usize = 1 << 18;
@@ -127,14 +127,23 @@ fn refuse_masked(object: &Bound<'_, PyAny>, name: &str) -> PyResult<()> {
         let shape = mask.getattr("shape")?;
         let place = numpy(py)?.call_method1("unravel_index", (first, shape))?;
         let place: Vec<usize> = place.extract()?;
-        let place = match place[..] {
-            [] => String::new(),
-            _ => format!(" at {}", tuple(&place)),
+        let way_out = "is masked and has no value; leave such rows out, or give them values with .filled(value)";
+        let [row, ref columns @ ..] = place[..] else {
+            return Err(PyValueError::new_err(format!(
+                "{name}: the element {way_out}"
+            )));
         };
-        return Err(PyValueError::new_err(format!(
-            "{name}: the element{place} is masked and has no value; leave such rows out, or give them values with \
-             .filled(value)"
-        )));
+        let columns: Vec<String> = columns.iter().map(usize::to_string).collect();
+        let columns = format!(", {}", columns.join(", "));
+        // The row is a piece of its own: it changes where the caller passed a part of an array.
+        let error = errors::new(py, "PolhodeError", String::new());
+        let pieces = (
+            format!("{name}: the element at ("),
+            row,
+            format!("{}) {way_out}", columns.trim_end()),
+        );
+        error.value(py).setattr("args", pieces)?;
+        return Err(error);
     }
     Ok(())
 }

@@ -32,10 +32,16 @@ pub(crate) fn to_py(py: Python<'_>, error: &Error) -> PyErr {
 
 /// Adds the remedy to the pieces of the message, and says as data what is wrong.
 fn set_data(value: &Bound<'_, PyBaseException>, error: &Error) -> PyResult<()> {
-    let remedy = advice(error);
+    let (words, remedy) = (error.to_string(), advice(error));
     if !remedy.is_empty() {
-        value.setattr("args", (error.to_string(), &remedy))?;
+        value.setattr("args", (&words, &remedy))?;
         value.setattr("way_out", remedy.trim_start_matches([';', ':', ',', ' ']))?;
+    }
+    // The row is a piece of its own: it changes where the caller passed a part of an array.
+    if let Error::Body(BodyFault::NegativeMass { index, .. }) = error
+        && let Some((before, after)) = words.split_once(&index.to_string())
+    {
+        value.setattr("args", (before, index, after, remedy))?;
     }
     if let Error::Mesh(MeshFault::Open { .. }) = error {
         value.setattr("law", "closed")?;
@@ -86,7 +92,7 @@ fn copy_data(
     };
     if from.hasattr("way_out")? {
         let pieces = from.getattr("args")?.cast_into::<PyTuple>()?;
-        let first = PyTuple::new(from.py(), [format!("{prefix}: ")])?;
+        let first = PyTuple::new(from.py(), [prefix, ": "])?;
         to.setattr("args", first.add(pieces)?)?;
     }
     to.getattr("__dict__")?.call_method1("update", (data,))?;
@@ -130,7 +136,7 @@ pub(crate) fn at_row(shape: &[usize], row: usize, error: &PyErr, py: Python<'_>)
 }
 
 /// The same exception with the label of particles in front, a piece of its own, and a remedy behind.
-pub(crate) fn at_label(py: Python<'_>, label: usize, remedy: &str, error: &PyErr) -> PyErr {
+pub(crate) fn at_label(py: Python<'_>, label: i64, remedy: &str, error: &PyErr) -> PyErr {
     let words = error.value(py);
     let raised = PyErr::from_type(
         error.get_type(py),

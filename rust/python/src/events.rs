@@ -2,7 +2,7 @@
 
 use numpy::PyArray1;
 use polhode::motion::attitude::components;
-use polhode::motion::loads::{Carried, Term};
+use polhode::motion::loads::{CarriedMomentum, Term};
 use polhode::motion::simulate::{Direction, Events, Rule, Watched};
 use polhode::motion::state::Phase;
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -108,8 +108,8 @@ impl Functions {
         &'a self,
         py: Python<'py>,
         states: States<'a>,
-    ) -> Calling<'a, 'py> {
-        Calling {
+    ) -> EventCalls<'a, 'py> {
+        EventCalls {
             functions: self,
             py,
             states,
@@ -145,7 +145,7 @@ fn read_event(
             "events: Event.{kind} asks for the wheel {name:?}; the load carries {known}"
         )));
     };
-    let (watched, has, lack): (_, fn(&dyn Carried) -> bool, _) = match kind.as_str() {
+    let (watched, has, lack): (_, fn(&dyn CarriedMomentum) -> bool, _) = match kind.as_str() {
         "stop" => (Watched::Stop(slot.first), has_bearing, "dry friction"),
         "slip" => (Watched::Slip(slot.first), has_bearing, "dry friction"),
         _ => (
@@ -171,12 +171,12 @@ fn read_event(
     Ok(watched)
 }
 
-fn has_bearing(carried: &dyn Carried) -> bool {
+fn has_bearing(carried: &dyn CarriedMomentum) -> bool {
     carried.bearing().is_some()
 }
 
 /// Functions that are called while a body is simulated.
-pub(crate) struct Calling<'a, 'py> {
+pub(crate) struct EventCalls<'a, 'py> {
     functions: &'a Functions,
     py: Python<'py>,
     states: States<'a>,
@@ -188,7 +188,7 @@ pub(crate) struct States<'a> {
     pub(crate) terms: &'a [Term],
 }
 
-impl Events for Calling<'_, '_> {
+impl Events for EventCalls<'_, '_> {
     type Error = Fault;
 
     fn rules(&self) -> &[Rule] {

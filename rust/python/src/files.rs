@@ -40,7 +40,7 @@ pub(crate) fn read_stl(py: Python<'_>, path: PathBuf) -> PyResult<Arrays<'_>> {
         if held.is_dir() {
             return Err(StreamError::Io(io::ErrorKind::IsADirectory.into()));
         }
-        let source = Watched(file, &interrupt);
+        let source = InterruptibleFile(file, &interrupt);
         stl::read(io::BufReader::with_capacity(1 << 18, source), held.len())
     });
     interrupt.finish(py, false)?;
@@ -97,9 +97,9 @@ pub(crate) fn stream_solid(
 }
 
 /// A file that Ctrl-C ends, however long it is.
-struct Watched<'a, R>(R, &'a Interrupt);
+struct InterruptibleFile<'a, R>(R, &'a Interrupt);
 
-impl<R: Read> Read for Watched<'_, R> {
+impl<R: Read> Read for InterruptibleFile<'_, R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         if self.1.poll(None).is_break() {
             return Err(io::Error::other("stopped"));
@@ -138,7 +138,7 @@ pub(crate) fn read_plates(
     let interrupt = Interrupt::new(None);
     let mesh = py.detach(|| {
         let mut bytes = Vec::new();
-        Watched(File::open(&path)?, &interrupt).read_to_end(&mut bytes)?;
+        InterruptibleFile(File::open(&path)?, &interrupt).read_to_end(&mut bytes)?;
         let watch = &mut |_| interrupt.poll(None);
         Ok(plates::read(
             &String::from_utf8_lossy(&bytes),

@@ -24,7 +24,7 @@ use crate::closed_form::{angular_momentum, kinetic_energy, trajectory};
 use crate::lazy_arrays::{handed_over, is_any};
 use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
-use crate::uncertain::{PyUncertain, StartGiven, UncertainStart, value_of};
+use crate::uncertain::{PyUncertain, StartArguments, UncertainStart, value_of};
 
 /// The motion of a body, or of a stack of bodies, on which no torque acts about its centre of mass.
 ///
@@ -149,7 +149,7 @@ impl PyRigidBody {
         omega: &Bound<'_, PyAny>,
         attitude: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyFreeMotion> {
-        let given = StartGiven::read(omega, attitude)?;
+        let given = StartArguments::read(omega, attitude)?;
         let attitude = read_attitude(given.attitude.as_ref(), "attitude")?;
         let omega = read(&given.omega, "omega")?;
         PyFreeMotion::new(py, slf, &omega, &attitude, given.uncertain)

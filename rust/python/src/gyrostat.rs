@@ -24,7 +24,7 @@ use crate::lazy_arrays::{handed_over, is_any};
 use crate::loads::{PyLoad, PyWheel, Turns};
 use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
-use crate::uncertain::{StartGiven, UncertainStart};
+use crate::uncertain::{StartArguments, UncertainStart};
 
 /// A gyrostat, or a stack of them: a rigid body with wheels or rotors that carry angular momentum.
 ///
@@ -558,7 +558,7 @@ impl PyGyrostat {
         omega: &Bound<'_, PyAny>,
         attitude: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyGyrostatMotion> {
-        let given = StartGiven::read(omega, attitude)?;
+        let given = StartArguments::read(omega, attitude)?;
         if given.uncertain.is_any() || slf.get().body.get().uncertainties.is_some() {
             return Err(PyValueError::new_err(
                 "Gyrostat.free_motion: sigmas are not followed through the motion of a gyrostat: give plain numbers",

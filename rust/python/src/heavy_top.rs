@@ -20,7 +20,7 @@ use crate::lazy_arrays::{handed_over, is_any};
 use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
 use crate::tops::in_radians;
-use crate::uncertain::{PyUncertain, StartGiven, UncertainStart};
+use crate::uncertain::{PyUncertain, StartArguments, UncertainStart};
 
 // The class `HeavyTop`: exact motions of heavy symmetric tops about a fixed point.
 
@@ -195,7 +195,7 @@ impl PyRigidBody {
         #[pyo3(from_py_with = read_scalar)] rtol: f64,
     ) -> PyResult<PyHeavyTop> {
         let gravity = gravity.ok_or_else(no_gravity)?;
-        let given = StartGiven::read(omega, attitude)?;
+        let given = StartArguments::read(omega, attitude)?;
         let (omega, gravity) = (read(&given.omega, "omega")?, read(gravity, "gravity")?);
         let attitude = read_attitude_exactly(given.attitude.as_ref(), "attitude")?;
         PyHeavyTop::new(py, slf, &omega, &attitude, &gravity, rtol, given.uncertain)

@@ -99,5 +99,13 @@ pub(crate) fn read_labels<'py>(
             "labels: expected integers, got dtype {dtype}"
         )));
     }
+    if count > 0 && kind == "u" {
+        let largest = array.call_method0("max")?;
+        if largest.extract::<i64>().is_err() {
+            return Err(PyValueError::new_err(format!(
+                "labels: {largest} is beyond the whole numbers of 64 bits; number the bodies by smaller ones"
+            )));
+        }
+    }
     contiguous(&array, "labels", "int64")?.extract()
 }

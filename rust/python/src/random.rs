@@ -3,8 +3,8 @@
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use polhode::parallel::Halt;
 use polhode::random::Stream;
+use polhode::random::distributions::{normal, uniform};
 use polhode::random::factor;
-use polhode::random::laws::{normal, uniform};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

@@ -8,7 +8,8 @@ use polhode::Error;
 use polhode::error::UncertaintyFault;
 use polhode::mass::inertial_parameters::{ELEMENTS, InertialParameters};
 use polhode::uncertainty::{
-    BodyFunction, Form, Inputs, LinearForms, LinearUncertainty, Scaled, Source, Variable, propagate,
+    BodyFunction, Form, Inputs, LinearForms, LinearUncertainty, Scaling, Source, Variable,
+    propagate,
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -685,7 +686,7 @@ impl PyRigidBody {
         let uncertainties = (0..self.bodies.rows.len())
             .map(|row| {
                 propagate(
-                    &Scaled,
+                    &Scaling,
                     Inputs {
                         bodies: &[self.row(row)],
                         numbers,
@@ -740,13 +741,13 @@ pub(crate) struct UncertainStart {
 }
 
 /// The plain values of an angular velocity and an attitude, and what is uncertain of them.
-pub(crate) struct StartGiven<'py> {
+pub(crate) struct StartArguments<'py> {
     pub(crate) omega: Bound<'py, PyAny>,
     pub(crate) attitude: Option<Bound<'py, PyAny>>,
     pub(crate) uncertain: UncertainStart,
 }
 
-impl<'py> StartGiven<'py> {
+impl<'py> StartArguments<'py> {
     /// From the arguments `omega` and `attitude`.
     pub(crate) fn read(
         omega: &Bound<'py, PyAny>,

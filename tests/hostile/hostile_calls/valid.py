@@ -22,7 +22,6 @@ from polhode import (
     _core,
     equimomental,
     interop,
-    labelled,
     loads,
     molecules,
     orbits,
@@ -90,7 +89,7 @@ VALUES: dict[str, Any] = {
     "axes": QUATERNION, "products": [0.125, 0.0, -0.25], "nodes": TETRAHEDRON, "cells": [[0, 1, 2, 3]],
     "at": "cells", "bounds": [[0.0, 0.0, 0.0], [1.0, 2.0, 0.5]], "radii": [0.0, 0.5, 1.0],
     "max_evaluations": 20_000, "masses": [1.0, 2.0, 0.5, 1.0], "positions": TETRAHEDRON,
-    "labels": [0, 1, -1, 1], "spacing": [0.5, 0.25, 1.0], "origin": [0.0, 1.0, 0.0],
+    "labels": [0, 1, -1, 1], "return_labels": False, "spacing": [0.5, 0.25, 1.0], "origin": [0.0, 1.0, 0.0],
     "vertices": TETRAHEDRON, "faces": FACES, "closure": None, "orient": False, "check": True,
     "areal_density": 0.5, "thickness": 0.0625, "points": TETRAHEDRON, "linear_density": 0.5,
     "bodies": [TUMBLER, TOP], "point": [1.0, 0.0, 0.5], "axis": [0.0, 1.0, 0.5],
@@ -365,7 +364,6 @@ def _from_python() -> list[Call]:
         ("equimomental.ellipsoid", equimomental.ellipsoid, None),
         ("forms.to_text", interop.to_text, None),
         ("forms.from_printout", interop.from_printout, None),
-        ("labelled.bodies", labelled.bodies, None),
     ]
     functions += [
         (f"molecules.{name}", getattr(molecules, name), None)

@@ -134,7 +134,7 @@ pub fn from_density<E: From<Error>>(
     let effort = effort.check(cells.len() * rule.points::<3>())?;
     let mut matter = Matter {
         region,
-        density: Scaled::of(density),
+        density: ScaledDensity::of(density),
         length,
     };
     let found = integrate(
@@ -199,7 +199,7 @@ pub fn from_density<E: From<Error>>(
 struct Matter<'a, F> {
     /// In units of its size, `2^length`.
     region: &'a Region,
-    density: Scaled<F>,
+    density: ScaledDensity<F>,
     length: i32,
 }
 
@@ -356,13 +356,13 @@ fn middle(region: &Region, cell: &Cell<3>) -> Vector3<f64> {
 // A density in a unit of its own, its values possible ones.
 
 /// A density in units of the first one found, a power of two.
-struct Scaled<F> {
+struct ScaledDensity<F> {
     density: F,
     power: i32,
     is_known: bool,
 }
 
-impl<F> Scaled<F> {
+impl<F> ScaledDensity<F> {
     fn of(density: F) -> Self {
         Self {
             density,
@@ -457,7 +457,7 @@ pub fn from_radial_density<E: From<Error>>(
     let rule = Rule::fifteen();
     let effort = effort.check(cells.len() * rule.points::<1>())?;
     let mut matter = Radial {
-        density: Scaled::of(density),
+        density: ScaledDensity::of(density),
         length,
     };
     let found = integrate(
@@ -502,7 +502,7 @@ pub fn from_radial_density<E: From<Error>>(
 
 /// ρ r² and ρ r⁴, lengths in units of `2^length`.
 struct Radial<F> {
-    density: Scaled<F>,
+    density: ScaledDensity<F>,
     length: i32,
 }
 

@@ -92,7 +92,7 @@ pub fn thick_shell<I: Index>(
             limit: limit.thickness,
         }));
     }
-    let shell = Swept {
+    let shell = ShellIntegrand {
         offset: &offset,
         vertices,
         thickness,
@@ -118,13 +118,13 @@ pub fn thick_shell<I: Index>(
 // The integrals over a shell in the coordinates of a frame: what its faces sweep.
 
 /// What the faces of a surface sweep.
-struct Swept<'a> {
+struct ShellIntegrand<'a> {
     offset: &'a Offset,
     vertices: &'a [[f64; 3]],
     thickness: f64,
 }
 
-impl Matter for Swept<'_> {
+impl Matter for ShellIntegrand<'_> {
     type Moments = Sums;
 
     fn moments(&self, frame: &LocalFrame, watch: &mut Watch<'_>) -> Result<Sums, Error> {
@@ -143,7 +143,7 @@ impl Matter for Swept<'_> {
         for &k in self.offset.faces.iter().flatten() {
             extent = extent.sup(&(corners[k].abs() + directions[k].abs() * half));
         }
-        let placed = Placed {
+        let placed = ShellInFrame {
             offset: self.offset,
             corners,
             directions,
@@ -170,7 +170,7 @@ impl Matter for Swept<'_> {
 }
 
 /// A shell in the coordinates and the unit of a frame.
-struct Placed<'a> {
+struct ShellInFrame<'a> {
     offset: &'a Offset,
     corners: Vec<Vector3<f64>>,
     directions: Vec<Vector3<f64>>,
@@ -183,7 +183,7 @@ struct Placed<'a> {
 /// Volume, first moment (3), second moment (6), what rounding can have done to the volume.
 const TERMS: usize = 11;
 
-impl Placed<'_> {
+impl ShellInFrame<'_> {
     /// What one face sweeps.
     #[inline]
     fn terms(&self, face: usize) -> [f64; TERMS] {
@@ -287,7 +287,7 @@ fn offset<I: Index>(
     })?;
     check_edges(&faces, &numbers, mesh.vertices.len(), watch)?;
 
-    let mut around = vec![Around::default(); mesh.vertices.len()];
+    let mut around = vec![VertexFaces::default(); mesh.vertices.len()];
     let mut normals = Vec::with_capacity(faces.len());
     each_watched(faces.iter().zip(&numbers), watch, |(corners, &face)| {
         let [i, j, k] = *corners;
@@ -328,7 +328,7 @@ fn offset<I: Index>(
             Ok(())
         },
     )?;
-    let mut ways = vec![Way::default(); around.len()];
+    let mut ways = vec![VertexDirection::default(); around.len()];
     each_watched(ways.iter_mut().zip(&around), watch, |(way, at)| {
         at.set_way(way);
         Ok(())
@@ -349,7 +349,7 @@ fn offset<I: Index>(
         }
     }
     let directions = ways.iter().map(|way| way.direction).collect();
-    let errors = ways.iter().map(Way::error).collect();
+    let errors = ways.iter().map(VertexDirection::error).collect();
     Ok(Offset {
         faces,
         numbers,
@@ -360,7 +360,7 @@ fn offset<I: Index>(
 
 /// The faces around a vertex.
 #[derive(Clone, Copy)]
-struct Around {
+struct VertexFaces {
     /// `Σ w`.
     weight: f64,
     /// `Σ w n`.
@@ -373,7 +373,7 @@ struct Around {
     cosine: f64,
 }
 
-impl Default for Around {
+impl Default for VertexFaces {
     fn default() -> Self {
         Self {
             weight: 0.0,
@@ -385,7 +385,7 @@ impl Default for Around {
     }
 }
 
-impl Around {
+impl VertexFaces {
     #[inline]
     fn add(&mut self, normal: &Vector3<f64>, angle: f64) {
         self.weight += angle;
@@ -398,7 +398,7 @@ impl Around {
     /// Planes that nearly are one, or nearly share a line, may meet far away: a vertex that would go aside by more than
     /// twice the angle over which the normals spread goes the way of the fewer planes that they nearly are.
     #[inline]
-    fn set_way(&self, way: &mut Way) {
+    fn set_way(&self, way: &mut VertexDirection) {
         if self.weight <= 0.0 {
             return;
         }
@@ -438,7 +438,7 @@ impl Around {
 /// Where a vertex goes, made better by what its faces miss: the inverse of the square of the normals is wrong by the
 /// square of what the normals themselves make uncertain.
 #[derive(Clone, Copy, Default)]
-struct Way {
+struct VertexDirection {
     /// d.
     direction: Vector3<f64>,
     /// The inverse of `Σ w n nᵀ/Σ w`, on the directions in which the normals spread.
@@ -452,7 +452,7 @@ struct Way {
     residual: f64,
 }
 
-impl Way {
+impl VertexDirection {
     /// Counts what the face with this normal misses.
     #[inline]
     fn miss(&mut self, normal: &Vector3<f64>, angle: f64) {
@@ -704,7 +704,7 @@ mod tests {
     }
 
     fn direction(normals: &[[f64; 3]]) -> Vector3<f64> {
-        let mut around = Around::default();
+        let mut around = VertexFaces::default();
         let normals = normals.iter().map(|&n| Vector3::from(n).normalize());
         for normal in normals.clone() {
             around.add(&normal, 1.0);
@@ -713,7 +713,7 @@ mod tests {
         for normal in normals {
             around.cosine = around.cosine.min(around.middle.dot(&normal));
         }
-        let mut way = Way::default();
+        let mut way = VertexDirection::default();
         around.set_way(&mut way);
         way.direction
     }

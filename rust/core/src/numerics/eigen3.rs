@@ -37,7 +37,7 @@ struct Symmetric<L> {
 
 /// A matrix divided by a power of two, so that no product of two elements leaves the range of doubles.
 #[derive(Clone, Copy, Debug)]
-struct Scaled<L> {
+struct ScaledMatrix<L> {
     matrix: Symmetric<L>,
     /// The power of two that takes results back to the scale of the original.
     unscale: L,
@@ -97,11 +97,11 @@ impl<L: Lane> Symmetric<L> {
 
     /// Scales the largest magnitude into [1, 2) (denormal: to at most 1; from 2¹⁰²³ on: to at most 4).
     #[inline(always)]
-    fn scaled(&self) -> Scaled<L> {
+    fn scaled(&self) -> ScaledMatrix<L> {
         let (scale, unscale) = self.max_abs().power_of_two_scale();
         let matrix = self.times(scale);
         let sum = matrix.a00 + matrix.a01 + matrix.a02 + matrix.a11 + matrix.a12 + matrix.a22;
-        Scaled {
+        ScaledMatrix {
             matrix,
             unscale,
             poison: sum.abs() * L::new(0.0),
@@ -187,7 +187,7 @@ const DEVIATOR_NUMBERS: usize = 12;
 impl<L: Lane> Deviator<L> {
     #[inline(always)]
     fn of(a: &Symmetric<L>) -> Self {
-        let Scaled {
+        let ScaledMatrix {
             matrix: a,
             unscale,
             poison,
@@ -537,7 +537,7 @@ fn jacobi<L: Lane>(a: &Symmetric<L>) -> Spectrum<L> {
 impl<L: Lane> Iterate<L> {
     #[inline(always)]
     fn start(a: &Symmetric<L>) -> Self {
-        let Scaled {
+        let ScaledMatrix {
             matrix,
             unscale,
             poison,

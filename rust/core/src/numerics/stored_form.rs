@@ -1,4 +1,4 @@
-//! From a value to its stored form and back, for what is plain numbers: the forms stand beside the types.
+//! Macros for stored forms: structs of plain numbers, which stand beside the types that are stored as them.
 
 use nalgebra::{Matrix3, Vector3};
 

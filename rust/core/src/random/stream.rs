@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::laws::rotation;
+use super::distributions::rotation;
 use crate::numerics::threads::{Halt, fill_blocks};
 
 /// Words of a counter.
@@ -17,12 +17,12 @@ const SHARE: usize = 1024;
 ///
 /// ```
 /// use std::ops::ControlFlow;
-/// use polhode::random::{Stream, laws};
+/// use polhode::random::{Stream, distributions};
 ///
 /// let stream = Stream::new(7, 0); // a seed, and the number of an argument
 /// let mut numbers = [0.0; 4];
-/// stream.fill(100, 1, &mut numbers, &mut |_| ControlFlow::Continue(()), laws::normal).unwrap();
-/// assert_eq!(numbers[3], laws::normal(stream.words(103, 0)[0])); // a member has its numbers wherever one begins
+/// stream.fill(100, 1, &mut numbers, &mut |_| ControlFlow::Continue(()), distributions::normal).unwrap();
+/// assert_eq!(numbers[3], distributions::normal(stream.words(103, 0)[0])); // a member has its numbers wherever one begins
 /// let mut turns = [[0.0; 4]; 2];
 /// stream.fill_rotations(0, &mut turns, &mut |_| ControlFlow::Continue(())).unwrap();
 /// assert!((turns[1].iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-15);

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::form::named;
+use super::names::named;
 use crate::error::{BodyFault, Error, all_finite, finite};
 use crate::io::TriangleMesh;
 use crate::mass::provenance::{BodySource, Checks, Closure, MomentsFrom, Provenance};
@@ -29,13 +29,13 @@ struct Body {
     #[serde(default, skip_serializing_if = "is_zero")]
     rtol: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    cached: Option<Cached>,
+    cached: Option<BodyCache>,
 }
 
 /// What a body knows besides its mass, centre and tensor.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Cached {
+struct BodyCache {
     principal: PrincipalAxes,
     error_bound: ErrorBound,
     provenance: Provenance,
@@ -73,7 +73,7 @@ impl From<&RigidBody> for Body {
             center_of_mass: body.center_of_mass().into(),
             inertia: rows(&body.inertia()),
             rtol,
-            cached: Some(Cached {
+            cached: Some(BodyCache {
                 principal: body.principal(),
                 error_bound: body.error_bound(),
                 provenance: body.provenance(),

@@ -2,12 +2,12 @@
 //!
 //! | what | file |
 //! |---|---|
-//! | from a value to its stored form and back | `form` |
+//! | a value that is stored as its name | `names` |
 //! | bodies, and where their numbers come from | `mass` |
 //! | states, methods, events | `motion` |
 //!
 //! Loads that are plain numbers have their forms in their own files.
 
-mod form;
 mod mass;
 mod motion;
+mod names;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::form::{attitude, named};
+use super::names::{attitude, named};
 use crate::error::{Error, all_finite, finite};
 use crate::motion::attitude::components;
 use crate::motion::euler_angles::Sequence;
@@ -48,7 +48,7 @@ named! {
 
 stored!(
     State as Turning,
-    Phase as Moving,
+    Phase as PhaseForm,
     Tolerance as Accuracy,
     Sequence as String,
     Effort as Work,
@@ -84,7 +84,7 @@ impl TryFrom<Turning> for State {
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Moving {
+struct PhaseForm {
     attitude: [f64; 4],
     omega: [f64; 3],
     position: [f64; 3],
@@ -93,7 +93,7 @@ struct Moving {
     own: Vec<f64>,
 }
 
-impl From<&Phase> for Moving {
+impl From<&Phase> for PhaseForm {
     fn from(phase: &Phase) -> Self {
         Self {
             attitude: components(&phase.attitude),
@@ -105,10 +105,10 @@ impl From<&Phase> for Moving {
     }
 }
 
-impl TryFrom<Moving> for Phase {
+impl TryFrom<PhaseForm> for Phase {
     type Error = Error;
 
-    fn try_from(stored: Moving) -> Result<Self, Error> {
+    fn try_from(stored: PhaseForm) -> Result<Self, Error> {
         all_finite("own", &stored.own)?;
         Ok(Self {
             attitude: attitude(stored.attitude)?,

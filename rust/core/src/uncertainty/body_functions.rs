@@ -9,7 +9,7 @@
 //! use polhode::nalgebra::Matrix3;
 //! use polhode::uncertainty::body_functions::TensorAbout;
 //! use polhode::uncertainty::{
-//!     BodyFunction, Inputs, FromPositiveProducts, FromTensor, FromTensorAboutOrigin, LinearForms, OfPolygon, OfShape, Rotated, Scaled,
+//!     BodyFunction, Inputs, FromPositiveProducts, FromTensor, FromTensorAboutOrigin, LinearForms, OfPolygon, OfShape, Rotation, Scaling,
 //!     Shape, Source, propagate,
 //! };
 //!
@@ -36,10 +36,10 @@
 //! let uncertainty = LinearForms::independent(&[0.1], Source::fresh())?;
 //! let scale = [(1.0, [].as_slice()), (2.0, &uncertainty.forms[0])];
 //! let from = Inputs { bodies: &bodies, numbers: &scale };
-//! assert!((deviation(&|| propagate(&Scaled, from), 0)? - 1.2).abs() < 1e-15);
+//! assert!((deviation(&|| propagate(&Scaling, from), 0)? - 1.2).abs() < 1e-15);
 //! let turn = [(0.0, [].as_slice()), (0.0, &[]), (0.0, &uncertainty.forms[0])];
 //! let from = Inputs { bodies: &bodies, numbers: &turn };
-//! assert!((deviation(&|| propagate(&Rotated(Matrix3::identity()), from), 7)? - 0.1 * 3.0).abs() < 1e-12); // (I_y − I_x) θ
+//! assert!((deviation(&|| propagate(&Rotation(Matrix3::identity()), from), 7)? - 0.1 * 3.0).abs() < 1e-12); // (I_y − I_x) θ
 //! let from = Inputs { bodies: &bodies, numbers: &[] };
 //! assert_eq!(deviation(&|| propagate(&TensorAbout([1.0, 0.0, 0.0]), from), 5)?, 0.0);
 //!
@@ -154,9 +154,9 @@ impl BodyFunction for FromPrincipal {
 
 /// A body moved, by three numbers.
 #[derive(Clone, Copy, Debug)]
-pub struct Translated;
+pub struct Translation;
 
-impl BodyFunction for Translated {
+impl BodyFunction for Translation {
     fn of<X: Size<Body = InertialParameters<X>>>(
         &self,
         bodies: &[InertialParameters<X>],
@@ -168,9 +168,9 @@ impl BodyFunction for Translated {
 
 /// A body turned by a rotation, and then by three small angles θ about the fixed axes: `(1 + [θ]× + ½ [θ]×²) R`.
 #[derive(Clone, Copy, Debug)]
-pub struct Rotated(pub Matrix3<f64>);
+pub struct Rotation(pub Matrix3<f64>);
 
-impl BodyFunction for Rotated {
+impl BodyFunction for Rotation {
     fn of<X: Size<Body = InertialParameters<X>>>(
         &self,
         bodies: &[InertialParameters<X>],
@@ -197,9 +197,9 @@ impl BodyFunction for Rotated {
 
 /// A body scaled, by a factor of its lengths and one of its mass.
 #[derive(Clone, Copy, Debug)]
-pub struct Scaled;
+pub struct Scaling;
 
-impl BodyFunction for Scaled {
+impl BodyFunction for Scaling {
     fn of<X: Size<Body = InertialParameters<X>>>(
         &self,
         bodies: &[InertialParameters<X>],

@@ -15,14 +15,14 @@
 //! | through the vertices of a mesh | [`mesh`] |
 //! | through sums, where parts are many; through particles | [`assemblies`] |
 //! | which covariances no body can have | [`check_covariance`](mod@check_covariance) |
-//! | standard deviations of all that a body has, and where they are not to be trusted | [`deviations`](mod@deviations) |
+//! | standard deviations of all that a body has, and where they are not to be trusted | [`sigma`](mod@sigma) |
 //!
 //! # Examples
 //!
 //! ```
 //! use polhode::mass::{Amount, solids, inertial_parameters::InertialParameters};
 //! use polhode::uncertainty::{
-//!     Deviations, LinearUncertainty, Inputs, FromPrincipal, LinearForms, Source, Translated, deviations, deviations_about, propagate, together,
+//!     Sigma, LinearUncertainty, Inputs, FromPrincipal, LinearForms, Source, Translation, sigma, sigma_about, propagate, together,
 //! };
 //! use polhode::nalgebra::{Matrix3, Vector3};
 //!
@@ -33,18 +33,18 @@
 //! let given = LinearForms::independent(&sigmas, Source::named("the bench"))?;
 //! let numbers: Vec<_> = values.into_iter().zip(given.forms.iter().map(Vec::as_slice)).collect();
 //! let uncertainty = propagate(&FromPrincipal(Matrix3::identity()), Inputs { bodies: &[], numbers: &numbers })?;
-//! let own: Deviations = deviations(&ball, &uncertainty);
+//! let own: Sigma = sigma(&ball, &uncertainty);
 //! assert!((own.numbers[0] - 0.01).abs() < 1e-17);
 //! assert!((own.numbers[4] - 0.002).abs() < 1e-17);
 //!
 //! // About a point 3 m away, I + m d²: the mass dominates.
-//! let far = deviations_about(&ball, &uncertainty, &Vector3::new(3.0, 0.0, 0.0))?;
+//! let far = sigma_about(&ball, &uncertainty, &Vector3::new(3.0, 0.0, 0.0))?;
 //! assert!((far.numbers[5] - 0.09_f64.hypot(0.002)).abs() < 1e-12);
 //!
 //! // Moved by 1 m ± 1 mm, and put together with itself: both parts depend on the same draws.
 //! let step = LinearForms::independent(&[0.001], Source::fresh())?;
 //! let shift = [(1.0, step.forms[0].as_slice()), (0.0, &[]), (0.0, &[])];
-//! let moved = propagate(&Translated, Inputs { bodies: &[(InertialParameters::of(&ball), &uncertainty)], numbers: &shift })?;
+//! let moved = propagate(&Translation, Inputs { bodies: &[(InertialParameters::of(&ball), &uncertainty)], numbers: &shift })?;
 //! let there = InertialParameters::of(&ball).translated([1.0, 0.0, 0.0]);
 //! let both: LinearUncertainty = together(&[(1.0, InertialParameters::of(&ball), &uncertainty), (1.0, there, &moved)]);
 //! assert!((both.covariance_with(&both)[(0, 0)].sqrt() - 0.02).abs() < 1e-15);
@@ -54,22 +54,22 @@
 pub mod assemblies;
 pub mod body_functions;
 pub mod check_covariance;
-pub mod deviations;
 pub mod linear_forms;
 pub mod linear_uncertainty;
 pub mod mesh;
 pub mod propagate;
+pub mod sigma;
 pub mod variable;
 
 pub use assemblies::{of_particles, together};
 pub use body_functions::{
     FromPositiveProducts, FromPrincipal, FromTensor, FromTensorAboutOrigin, OfPolygon, OfShape,
-    Rotated, Scaled, Shape, Translated,
+    Rotation, Scaling, Shape, Translation,
 };
 pub use check_covariance::check_covariance;
-pub use deviations::{Deviations, deviations, deviations_about};
 pub use linear_forms::{Form, LinearForms};
 pub use linear_uncertainty::{LinearUncertainty, Tangent};
 pub use mesh::of_mesh;
 pub use propagate::{BodyFunction, Inputs, propagate};
+pub use sigma::{Sigma, sigma, sigma_about};
 pub use variable::{PROBES, Source, Variable};

@@ -5,7 +5,7 @@ use numpy::PyArrayDyn;
 use polhode::Error;
 use polhode::error::Kind;
 use polhode::motion::loads::{
-    Analytic, Bearing, BodyAtPoint, Carried, LawSwitch, Load, Term, Windows, Wrench,
+    Analytic, Bearing, BodyAtPoint, CarriedMomentum, LawSwitch, Load, Term, Windows, Wrench,
 };
 use polhode::motion::state::Phase;
 use pyo3::prelude::*;
@@ -53,7 +53,7 @@ impl Fault {
 }
 
 /// A load at work on a body.
-pub(crate) struct Acting<'a, 'py> {
+pub(crate) struct ActingLoad<'a, 'py> {
     analytic: Analytic<'a>,
     load: &'a PyLoad,
     /// Needed where the load calls Python.
@@ -68,7 +68,7 @@ pub(crate) struct Acting<'a, 'py> {
     start: f64,
 }
 
-impl<'a, 'py> Acting<'a, 'py> {
+impl<'a, 'py> ActingLoad<'a, 'py> {
     /// `load`, whose analytic terms are `terms`, on `subject`.
     pub(crate) fn new(
         load: &'a PyLoad,
@@ -102,7 +102,7 @@ impl<'a, 'py> Acting<'a, 'py> {
     }
 }
 
-impl Load for Acting<'_, '_> {
+impl Load for ActingLoad<'_, '_> {
     type Error = Fault;
 
     fn analytic(&self) -> Option<&[Term]> {
@@ -212,7 +212,7 @@ impl Load for Acting<'_, '_> {
         Ok(sum)
     }
 
-    fn carried(&self) -> Vec<&dyn Carried> {
+    fn carried(&self) -> Vec<&dyn CarriedMomentum> {
         self.analytic.carried()
     }
 
@@ -330,7 +330,12 @@ fn carried_along(
     (momentum, energy)
 }
 
-fn own_of(carried: &dyn Carried, reported: &[f64], t: f64, omega: &Vector3<f64>) -> Vec<f64> {
+fn own_of(
+    carried: &dyn CarriedMomentum,
+    reported: &[f64],
+    t: f64,
+    omega: &Vector3<f64>,
+) -> Vec<f64> {
     if carried.count() == 0 {
         Vec::new()
     } else {

@@ -18,7 +18,7 @@ use crate::stack::Stack;
 /// A Python function as a term of a load.
 pub(super) struct Callback {
     function: Py<PyAny>,
-    gives: Gives,
+    gives: ReturnKind,
     pub(super) factor: f64,
     /// When it acts; always, where there are none.
     pub(super) windows: Option<Windows>,
@@ -26,7 +26,7 @@ pub(super) struct Callback {
 
 /// What the function returns.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Gives {
+pub(super) enum ReturnKind {
     /// A torque, given time, ω and attitude.
     Torque,
     /// A force and a torque, given position and velocity too.
@@ -36,7 +36,7 @@ pub(super) enum Gives {
 impl Callback {
     /// # Errors
     /// `TypeError` where it is no function.
-    pub(super) fn new(function: &Bound<'_, PyAny>, gives: Gives) -> PyResult<Self> {
+    pub(super) fn new(function: &Bound<'_, PyAny>, gives: ReturnKind) -> PyResult<Self> {
         if !function.is_callable() {
             return Err(PyTypeError::new_err(format!(
                 "function: expected a callable, got {}",
@@ -64,7 +64,7 @@ impl Callback {
     }
 
     pub(super) fn exerts_force(&self) -> bool {
-        self.gives == Gives::ForceAndTorque
+        self.gives == ReturnKind::ForceAndTorque
     }
 
     /// What the function says at a time and a state.
@@ -74,11 +74,11 @@ impl Callback {
         let quaternion = array(&components(&phase.attitude));
         let function = self.function.bind(py);
         let wrench = match self.gives {
-            Gives::Torque => {
+            ReturnKind::Torque => {
                 let returned = function.call1((t, omega, quaternion))?;
                 Wrench::couple(vector(&returned, "torque", t)?)
             }
-            Gives::ForceAndTorque => {
+            ReturnKind::ForceAndTorque => {
                 let position = array(phase.position.as_slice());
                 let velocity = array(phase.velocity.as_slice());
                 let returned = function.call1((t, omega, quaternion, position, velocity))?;

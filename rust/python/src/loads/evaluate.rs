@@ -6,12 +6,12 @@ use polhode::RigidBody;
 use polhode::mass::refined::RefinedPrincipal;
 use polhode::motion::attitude::from_components;
 use polhode::motion::euler_equations::EulerEquations;
-use polhode::motion::loads::{BodyAtPoint, Kept, Load, Term, Wrench, wrench_at};
+use polhode::motion::loads::{BodyAtPoint, ConservedMomentum, Load, Term, Wrench, wrench_at};
 use polhode::motion::state::Phase;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-use super::acting::{Acting, Fault};
+use super::acting::{ActingLoad, Fault};
 use super::load::PyLoad;
 use crate::about::is_pivot;
 use crate::arrays::{Numbers, read, read_scalar, write_of};
@@ -98,7 +98,7 @@ impl PyLoad {
                 } else {
                     BodyAtPoint::free(&bodies[b], start)
                 };
-                let mut acting = Acting::new(self, &terms[l], subject, Some(py));
+                let mut acting = ActingLoad::new(self, &terms[l], subject, Some(py));
                 let attitude = from_components("quaternion", &quaternion[q]);
                 (attitude.map_err(Fault::Core))
                     .and_then(|attitude| {
@@ -314,16 +314,18 @@ impl PyLoad {
             return Ok(None);
         }
         let kept = (self.terms(py)?).map(py, |terms| {
-            (terms.iter()).fold(Kept::All, |kept, term| kept.and(term.keeps(pivoted)))
+            (terms.iter()).fold(ConservedMomentum::All, |kept, term| {
+                kept.and(term.keeps(pivoted))
+            })
         })?;
-        if kept.rows.iter().all(|kept| *kept == Kept::All) {
+        if kept.rows.iter().all(|kept| *kept == ConservedMomentum::All) {
             return Ok(Some(true.into_pyobject(py)?.to_owned().into_any()));
         }
-        if kept.rows.contains(&Kept::Nothing) {
+        if kept.rows.contains(&ConservedMomentum::Nothing) {
             return Ok(None);
         }
         let axes = write_of(py, &kept, |kept| match kept {
-            Kept::Along(axis) => *axis,
+            ConservedMomentum::Along(axis) => *axis,
             _ => Vector3::z(), // one as good as another
         })?;
         Ok(Some(axes.into_any()))
@@ -334,7 +336,7 @@ impl PyLoad {
 fn on_locked(
     body: &RigidBody,
     subject: &BodyAtPoint,
-    acting: &mut Acting<'_, '_>,
+    acting: &mut ActingLoad<'_, '_>,
     t: f64,
     phase: &Phase,
 ) -> Result<Wrench, Fault> {

@@ -1,4 +1,4 @@
-//! The functions of `polhode.loads`, and what each says of its law.
+//! The functions of `polhode.loads` that make a load of one analytic law, with their documentation.
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::Error;
@@ -11,8 +11,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::address::Compiled;
-use super::callbacks::{self, Callback, Gives, WithStates, check_name};
-use super::load::{Acts, PyLoad, schedule_load};
+use super::callbacks::{self, Callback, ReturnKind, WithStates, check_name};
+use super::load::{LoadPart, PyLoad, schedule_load};
 use super::pickle_recipe::recipe;
 use super::registry::register;
 use crate::arrays::{
@@ -92,7 +92,7 @@ pub(crate) fn feedback(
     })?;
     let arguments = (write(py, &stiffness)?, write(py, &damping)?, kept);
     let recipe = recipe(py, "feedback", arguments)?;
-    Ok(PyLoad::one(Acts::Term(terms), recipe))
+    Ok(PyLoad::one(LoadPart::Term(terms), recipe))
 }
 
 register!(Feedback by feedback);
@@ -243,7 +243,7 @@ pub(crate) fn gravity_gradient(
             GravityGradient::along(number[m], paths[p].clone()).map(Term::GravityGradient)
         })?;
         let recipe = recipe(py, "gravity_gradient", (mu.clone(),))?;
-        return Ok(PyLoad::one(Acts::Term(terms), recipe));
+        return Ok(PyLoad::one(LoadPart::Term(terms), recipe));
     }
     let (Some(position), Some(velocity)) = (position, velocity) else {
         return Err(PyTypeError::new_err(
@@ -265,7 +265,7 @@ pub(crate) fn gravity_gradient(
         epoch,
     );
     let recipe = recipe(py, "gravity_gradient", arguments)?;
-    Ok(PyLoad::one(Acts::Term(terms), recipe))
+    Ok(PyLoad::one(LoadPart::Term(terms), recipe))
 }
 
 register!(GravityGradient by gravity_gradient);
@@ -341,7 +341,7 @@ pub(crate) fn magnetic(
     options.set_item("times", times.map(kept).transpose()?)?;
     let arguments = (write(py, &moments)?, field, options);
     let recipe = recipe(py, "magnetic", arguments)?;
-    Ok(PyLoad::one(Acts::Term(terms), recipe))
+    Ok(PyLoad::one(LoadPart::Term(terms), recipe))
 }
 
 register!(Magnetic by magnetic);
@@ -401,7 +401,7 @@ fn fields(
 /// array([0.      , 0.      , 0.367879])
 #[pyfunction]
 pub(crate) fn torque_callback(function: &Bound<'_, PyAny>) -> PyResult<PyLoad> {
-    load(function, "torque_callback", Gives::Torque)
+    load(function, "torque_callback", ReturnKind::Torque)
 }
 
 /// A force and a torque computed by a Python function.
@@ -431,13 +431,13 @@ pub(crate) fn torque_callback(function: &Bound<'_, PyAny>) -> PyResult<PyLoad> {
 /// array([-2.,  0.,  0.])
 #[pyfunction]
 pub(crate) fn callback(function: &Bound<'_, PyAny>) -> PyResult<PyLoad> {
-    load(function, "callback", Gives::ForceAndTorque)
+    load(function, "callback", ReturnKind::ForceAndTorque)
 }
 
-fn load(function: &Bound<'_, PyAny>, name: &str, gives: Gives) -> PyResult<PyLoad> {
+fn load(function: &Bound<'_, PyAny>, name: &str, gives: ReturnKind) -> PyResult<PyLoad> {
     let callback = Callback::new(function, gives)?;
     let recipe = recipe(function.py(), name, (function,))?;
-    Ok(PyLoad::one(Acts::Callback(callback), recipe))
+    Ok(PyLoad::one(LoadPart::Callback(callback), recipe))
 }
 
 /// A force and a torque computed by a compiled function, which runs without the GIL.
@@ -501,7 +501,7 @@ pub(crate) fn compiled(
     check_name(name)?;
     let compiled = Compiled::new(function, user_data, own)?;
     let recipe = recipe(function.py(), "_unpicklable", (function,))?;
-    Ok(PyLoad::one(Acts::Compiled(compiled), recipe).with_name(name))
+    Ok(PyLoad::one(LoadPart::Compiled(compiled), recipe).with_name(name))
 }
 
 /// A load with states that are integrated together with the motion: filters, actuators, integrators, sampled
@@ -578,7 +578,7 @@ pub(crate) fn with_states(
     options.set_item("period", period)?;
     options.set_item("scale", scales)?;
     let recipe = recipe(py, "with_states", (rates, values, wrench, name, options))?;
-    Ok(PyLoad::one(Acts::WithStates(load), recipe).with_name(name))
+    Ok(PyLoad::one(LoadPart::WithStates(load), recipe).with_name(name))
 }
 
 // The functions that make analytic terms.
@@ -613,7 +613,7 @@ pub(crate) fn constant_torque(
     let vector: Stack<Vector3<f64>> = read(vector, "vector")?;
     let terms = try_rows(py, &vector, |vector| Term::constant_torque(vector, axes))?;
     let recipe = recipe(py, "constant_torque", (write(py, &vector)?, frame))?;
-    Ok(PyLoad::one(Acts::Term(terms), recipe))
+    Ok(PyLoad::one(LoadPart::Term(terms), recipe))
 }
 
 register!(ConstantTorque by constant_torque);
@@ -663,7 +663,7 @@ pub(crate) fn constant_force(
     })?;
     let point = point.map(|point| write(py, &point)).transpose()?;
     let recipe = recipe(py, "constant_force", (write(py, &vector)?, frame, point))?;
-    Ok(PyLoad::one(Acts::Term(terms), recipe))
+    Ok(PyLoad::one(LoadPart::Term(terms), recipe))
 }
 
 register!(ConstantForce by constant_force);
@@ -692,7 +692,7 @@ pub(crate) fn uniform_gravity(py: Python<'_>, gravity: &Bound<'_, PyAny>) -> PyR
     let gravity: Stack<Vector3<f64>> = read(gravity, "gravity")?;
     let terms = try_rows(py, &gravity, Term::uniform_gravity)?;
     let recipe = recipe(py, "uniform_gravity", (write(py, &gravity)?,))?;
-    Ok(PyLoad::one(Acts::Term(terms), recipe))
+    Ok(PyLoad::one(LoadPart::Term(terms), recipe))
 }
 
 register!(UniformGravity by uniform_gravity);
@@ -736,7 +736,7 @@ pub(crate) fn damping(
         Damping::new(&linear[d], &quadratic[e]).map(Term::Damping)
     })?;
     let recipe = recipe(py, "damping", (write(py, &linear)?, write(py, &quadratic)?))?;
-    Ok(PyLoad::one(Acts::Term(terms), recipe))
+    Ok(PyLoad::one(LoadPart::Term(terms), recipe))
 }
 
 register!(Damping by damping);
@@ -792,7 +792,7 @@ pub(crate) fn sampled(
         frame,
     );
     let recipe = recipe(py, "sampled", arguments)?;
-    Ok(PyLoad::one(Acts::Term(terms), recipe))
+    Ok(PyLoad::one(LoadPart::Term(terms), recipe))
 }
 
 register!(Sampled by sampled);
@@ -885,7 +885,7 @@ pub(crate) fn rotor(py: Python<'_>, momentum: &Bound<'_, PyAny>) -> PyResult<PyL
     let momentum: Stack<Vector3<f64>> = read(momentum, "momentum")?;
     let terms = try_rows(py, &momentum, |h| Rotor::new(h).map(Term::Rotor))?;
     let recipe = recipe(py, "rotor", (write(py, &momentum)?,))?;
-    Ok(PyLoad::one(Acts::Term(terms), recipe))
+    Ok(PyLoad::one(LoadPart::Term(terms), recipe))
 }
 
 register!(Rotor by rotor);
@@ -941,7 +941,7 @@ pub(crate) fn slug(
     })?;
     let number = |stack: &Stack<f64>| write_of(py, stack, |x| *x);
     let recipe = recipe(py, "slug", (number(&inertia)?, number(&damping)?, name))?;
-    Ok(PyLoad::one(Acts::Term(terms), recipe).with_name(name))
+    Ok(PyLoad::one(LoadPart::Term(terms), recipe).with_name(name))
 }
 
 register!(Slug by slug);

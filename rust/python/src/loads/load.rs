@@ -39,7 +39,7 @@ pub(crate) struct PyLoad {
 }
 
 impl PyLoad {
-    pub(super) fn one(acts: Acts, recipe: Py<PyTuple>) -> Self {
+    pub(super) fn one(acts: LoadPart, recipe: Py<PyTuple>) -> Self {
         Self {
             parts: vec![Part {
                 acts,
@@ -93,7 +93,7 @@ impl PyLoad {
     pub(crate) fn terms(&self, py: Python<'_>) -> PyResult<Stack<Vec<Term>>> {
         let shape = self.stack_shape()?;
         let analytic = self.parts.iter().filter_map(|part| match &part.acts {
-            Acts::Term(terms) => Some(terms),
+            LoadPart::Term(terms) => Some(terms),
             _ => None,
         });
         let parts = analytic
@@ -115,28 +115,28 @@ impl PyLoad {
 
     pub(super) fn callbacks(&self) -> impl Iterator<Item = &Callback> {
         self.parts.iter().filter_map(|part| match &part.acts {
-            Acts::Callback(callback) => Some(callback),
+            LoadPart::Callback(callback) => Some(callback),
             _ => None,
         })
     }
 
     pub(super) fn with_states(&self) -> impl Iterator<Item = &WithStates> {
         self.parts.iter().filter_map(|part| match &part.acts {
-            Acts::WithStates(one) => Some(one),
+            LoadPart::WithStates(one) => Some(one),
             _ => None,
         })
     }
 
     pub(super) fn compiled_functions(&self) -> impl Iterator<Item = &Compiled> {
         self.parts.iter().filter_map(|part| match &part.acts {
-            Acts::Compiled(compiled) => Some(compiled),
+            LoadPart::Compiled(compiled) => Some(compiled),
             _ => None,
         })
     }
 
     /// Whether it has analytic terms alone.
     pub(crate) fn is_analytic(&self) -> bool {
-        (self.parts.iter()).all(|part| matches!(part.acts, Acts::Term(_)))
+        (self.parts.iter()).all(|part| matches!(part.acts, LoadPart::Term(_)))
     }
 
     /// Whether it calls Python.
@@ -149,13 +149,13 @@ impl PyLoad {
     pub(super) fn copy_with_epoch(&self, py: Python<'_>, t: f64) -> PyResult<Self> {
         self.map(|part| {
             let mut part = part.clone_ref(py)?;
-            if let Acts::Term(terms) = &part.acts
+            if let LoadPart::Term(terms) = &part.acts
                 && terms.rows.iter().any(Term::needs_epoch)
             {
                 part.recipe = recipe(py, "_with_epoch", (&part.recipe, t))?;
-                part.acts = Acts::Term(terms.map(py, |term| term.clone().with_epoch(t))?);
+                part.acts = LoadPart::Term(terms.map(py, |term| term.clone().with_epoch(t))?);
             }
-            if let Acts::WithStates(one) = &mut part.acts
+            if let LoadPart::WithStates(one) = &mut part.acts
                 && one.needs_epoch()
             {
                 one.start_at(t);
@@ -216,14 +216,14 @@ pub(super) fn schedule_load(
 
 /// A term, and how it was made.
 pub(super) struct Part {
-    pub(super) acts: Acts,
+    pub(super) acts: LoadPart,
     /// The name of a function and its arguments, which make it anew; for pickle.
     pub(super) recipe: Py<PyTuple>,
     /// The name of its states.
     pub(super) name: Option<Arc<str>>,
 }
 
-pub(super) enum Acts {
+pub(super) enum LoadPart {
     Term(Stack<Term>),
     Callback(Callback),
     Compiled(Compiled),
@@ -235,20 +235,20 @@ impl Part {
     pub(super) fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
         visit.call(&self.recipe)?;
         match &self.acts {
-            Acts::Term(_) => Ok(()),
-            Acts::Callback(callback) => visit.call(callback.function()),
-            Acts::Compiled(compiled) => visit.call(compiled.owner()),
-            Acts::WithStates(one) => one.traverse(visit),
+            LoadPart::Term(_) => Ok(()),
+            LoadPart::Callback(callback) => visit.call(callback.function()),
+            LoadPart::Compiled(compiled) => visit.call(compiled.owner()),
+            LoadPart::WithStates(one) => one.traverse(visit),
         }
     }
 
     pub(super) fn clone_ref(&self, py: Python<'_>) -> PyResult<Self> {
         Ok(Self {
             acts: match &self.acts {
-                Acts::Term(terms) => Acts::Term(terms.map(py, Term::clone)?),
-                Acts::Callback(callback) => Acts::Callback(callback.clone_ref(py)),
-                Acts::Compiled(compiled) => Acts::Compiled(compiled.clone_ref(py)),
-                Acts::WithStates(one) => Acts::WithStates(one.clone_ref(py)),
+                LoadPart::Term(terms) => LoadPart::Term(terms.map(py, Term::clone)?),
+                LoadPart::Callback(callback) => LoadPart::Callback(callback.clone_ref(py)),
+                LoadPart::Compiled(compiled) => LoadPart::Compiled(compiled.clone_ref(py)),
+                LoadPart::WithStates(one) => LoadPart::WithStates(one.clone_ref(py)),
             },
             recipe: self.recipe.clone_ref(py),
             name: self.name.clone(),
@@ -257,7 +257,7 @@ impl Part {
 
     pub(super) fn shape(&self) -> &[usize] {
         match &self.acts {
-            Acts::Term(terms) => &terms.shape,
+            LoadPart::Term(terms) => &terms.shape,
             _ => &[],
         }
     }
@@ -266,10 +266,10 @@ impl Part {
         self.check_changes(py, "scaled")?;
         let mut scaled = self.clone_ref(py)?;
         match &mut scaled.acts {
-            Acts::Term(terms) => *terms = try_rows(py, terms, |term| term.scaled(factor))?,
-            Acts::Callback(callback) => callback.factor *= factor,
-            Acts::Compiled(compiled) => compiled.factor *= factor,
-            Acts::WithStates(_) => (),
+            LoadPart::Term(terms) => *terms = try_rows(py, terms, |term| term.scaled(factor))?,
+            LoadPart::Callback(callback) => callback.factor *= factor,
+            LoadPart::Compiled(compiled) => compiled.factor *= factor,
+            LoadPart::WithStates(_) => (),
         }
         scaled.recipe = recipe(py, "_scaled", (&self.recipe, factor))?;
         Ok(scaled)
@@ -279,10 +279,10 @@ impl Part {
     /// rotor, but with a name.
     fn check_changes(&self, py: Python<'_>, what: &'static str) -> PyResult<()> {
         let has_states = match &self.acts {
-            Acts::WithStates(_) => true,
-            Acts::Compiled(compiled) => !compiled.initial.is_empty(),
-            Acts::Term(_) => self.name.is_some(),
-            Acts::Callback(_) => false,
+            LoadPart::WithStates(_) => true,
+            LoadPart::Compiled(compiled) => !compiled.initial.is_empty(),
+            LoadPart::Term(_) => self.name.is_some(),
+            LoadPart::Callback(_) => false,
         };
         if has_states {
             return Err(to_py(py, &MotionFault::StatesStay { what }.into()));
@@ -300,10 +300,10 @@ impl Part {
         let picked = picked_by(py, shape, key)?;
         let rows = picked.as_slice()?;
         let mut part = self.clone_ref(py)?;
-        if let Acts::Term(terms) = &part.acts {
+        if let LoadPart::Term(terms) = &part.acts {
             let grid = Broadcast::of(["load", "load"], [shape, &terms.shape])?;
             let taken = Broadcast::of(["key"], [picked.shape()])?;
-            part.acts = Acts::Term(taken.try_map(py, |[k]| {
+            part.acts = LoadPart::Term(taken.try_map(py, |[k]| {
                 Ok(terms[grid.operands(to_index(rows[k]))[1]].clone())
             })?);
         }
@@ -326,12 +326,12 @@ impl Part {
             )
         };
         match &mut part.acts {
-            Acts::Term(terms) => {
+            LoadPart::Term(terms) => {
                 *terms = try_rows(py, terms, |term| term.clone().schedule(windows))?;
             }
-            Acts::Callback(callback) => callback.windows = within(&callback.windows),
-            Acts::Compiled(compiled) => compiled.windows = within(&compiled.windows),
-            Acts::WithStates(_) => (),
+            LoadPart::Callback(callback) => callback.windows = within(&callback.windows),
+            LoadPart::Compiled(compiled) => compiled.windows = within(&compiled.windows),
+            LoadPart::WithStates(_) => (),
         }
         part.recipe = recipe(py, "_scheduled", (&self.recipe, given))?;
         Ok(part)
@@ -519,10 +519,12 @@ impl PyLoad {
         for kind in 0..3 {
             for part in &self.parts {
                 let (of_kind, count) = match &part.acts {
-                    Acts::Term(terms) => (0, terms.rows.first().map_or(0, Term::internal_states)),
-                    Acts::Callback(_) => (1, 0),
-                    Acts::WithStates(one) => (1, one.initial.len()),
-                    Acts::Compiled(one) => (2, one.initial.len()),
+                    LoadPart::Term(terms) => {
+                        (0, terms.rows.first().map_or(0, Term::internal_states))
+                    }
+                    LoadPart::Callback(_) => (1, 0),
+                    LoadPart::WithStates(one) => (1, one.initial.len()),
+                    LoadPart::Compiled(one) => (2, one.initial.len()),
                 };
                 if of_kind != kind || count == 0 {
                     continue;

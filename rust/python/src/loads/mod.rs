@@ -22,7 +22,7 @@ mod pickle_recipe;
 mod registry;
 mod wheel;
 
-pub(crate) use acting::{Acting, Fault};
+pub(crate) use acting::{ActingLoad, Fault};
 pub(crate) use callbacks::{Named, Slot, report_states};
 pub(crate) use laws::{callback, compiled, schedule, torque_callback, with_states};
 pub(crate) use load::PyLoad;

@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 
 /// A law of the core that a function of `polhode.loads` makes.
-pub(super) trait Registered {
+pub(super) trait RegisteredLaw {
     /// Adds the function to the module.
     fn declare(module: &Bound<'_, PyModule>) -> PyResult<()>;
 }
@@ -11,7 +11,7 @@ pub(super) trait Registered {
 /// Says which function makes a law.
 macro_rules! register {
     ($law:ident by $function:ident) => {
-        impl crate::loads::registry::Registered for polhode::motion::loads::$law {
+        impl crate::loads::registry::RegisteredLaw for polhode::motion::loads::$law {
             fn declare(module: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {
                 use pyo3::types::PyModuleMethods;
                 module.add_function(pyo3::wrap_pyfunction!($function, module)?)
@@ -26,7 +26,7 @@ pub(super) use register;
 pub(crate) fn declare_laws(module: &Bound<'_, PyModule>) -> PyResult<()> {
     macro_rules! all {
         ($($law:ident)+) => {
-            $(<polhode::motion::loads::$law as Registered>::declare(module)?;)+
+            $(<polhode::motion::loads::$law as RegisteredLaw>::declare(module)?;)+
         };
     }
     polhode::for_each_law!(all);

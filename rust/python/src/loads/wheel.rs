@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
 
 use super::callbacks::check_name;
-use super::load::{Acts, PyLoad};
+use super::load::{LoadPart, PyLoad};
 use super::pickle_recipe::{recipe, unfold};
 use super::registry::register;
 use crate::arrays::{
@@ -263,7 +263,10 @@ impl PyWheel {
             momentum: momenta,
             turns: if is_held { Turns::Held } else { Turns::Free },
         };
-        numbers.acting(py, PyLoad::one(Acts::Term(terms), recipe).with_name(name))
+        numbers.acting(
+            py,
+            PyLoad::one(LoadPart::Term(terms), recipe).with_name(name),
+        )
     }
 
     fn __getitem__(slf: &Bound<'_, Self>, key: &Bound<'_, PyAny>) -> PyResult<Py<Self>> {
@@ -582,7 +585,7 @@ pub(crate) fn wheel(
     let moment = write_of(py, &inertia, |x| *x)?;
     let arguments = (write(py, &axis)?, moment, number(rate, &rates)?, options);
     let recipe = recipe(py, "wheel", arguments)?;
-    let load = PyLoad::one(Acts::Term(terms), recipe).with_name(name);
+    let load = PyLoad::one(LoadPart::Term(terms), recipe).with_name(name);
     let acts = |numbers: &Stack<f64>| numbers.rows.iter().any(|x| *x != 0.0);
     let turns = match speed {
         _ if torque.is_some() => Turns::Driven("torque"),

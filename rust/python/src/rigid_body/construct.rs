@@ -3,11 +3,13 @@
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
-use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use polhode::error::{BodyFault, CellFault};
 use polhode::mass::density::{Effort, Estimate, from_density, from_radial_density};
 use polhode::mass::inertial_parameters::InertialParameters;
-use polhode::mass::particles::{labelled_particles, particle_stack, particles_watched};
+use polhode::mass::particles::{
+    label_ranks, labelled_particles, particle_stack, particles_watched,
+};
 use polhode::mass::polyhedron::{Index, MeshSolid, Options, closure, polyhedron_watched};
 use polhode::mass::regions::Region;
 use polhode::mass::tetrahedra::{CellDensity, tetrahedra};
@@ -18,6 +20,7 @@ use polhode::uncertainty::{
     FromPrincipal, FromTensor, FromTensorAboutOrigin, of_mesh, of_particles,
 };
 use polhode::{Error, RigidBody};
+use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -828,14 +831,20 @@ impl PyRigidBody {
     /// positions : array_like, shape (n, 3)
     /// labels : array_like of int, shape (n,)
     ///     Number of the body of each particle, counted from 0, in any order; −1 for a particle of no body.
-    ///     Every number up to the largest must have some mass. For labels with gaps see
-    ///     :mod:`polhode.labelled`.
+    ///     Every number up to the largest must have some mass.
+    /// return_labels : bool, optional
+    ///     If true, the labels may be any whole numbers, also with gaps; −1 is still a particle of no body.
     ///
     /// Returns
     /// -------
     /// RigidBody
     ///     A stack with one body for each label. Each has the same bits as `from_particles` gives for its
-    ///     particles alone.
+    ///     particles alone. With `return_labels` a pair: the labels, ascending, shape (k,), and the stack of
+    ///     their bodies.
+    ///
+    /// See Also
+    /// --------
+    /// LabelledMassAccumulator : The same for particles in chunks.
     ///
     /// Examples
     /// --------
@@ -847,28 +856,48 @@ impl PyRigidBody {
     /// >>> bodies.principal_moments
     /// array([[ 0., 12., 12.],
     ///        [ 0.,  4.,  4.]])
+    ///
+    /// Labels with gaps:
+    ///
+    /// >>> names = [4, 1007, 4, 1007, -1]
+    /// >>> labels, bodies = RigidBody.from_labelled_particles(
+    /// ...     [1, 2, 3, 2, 7], positions, names, return_labels=True
+    /// ... )
+    /// >>> labels
+    /// array([   4, 1007])
     #[staticmethod]
-    fn from_labelled_particles(
-        py: Python<'_>,
-        masses: &Bound<'_, PyAny>,
-        positions: &Bound<'_, PyAny>,
-        labels: &Bound<'_, PyAny>,
-    ) -> PyResult<Self> {
+    #[pyo3(signature = (masses, positions, labels, *, return_labels=false))]
+    fn from_labelled_particles<'py>(
+        py: Python<'py>,
+        masses: &Bound<'py, PyAny>,
+        positions: &Bound<'py, PyAny>,
+        labels: &Bound<'py, PyAny>,
+        return_labels: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let arrays = ParticleArrays::read(masses, positions, "n")?;
         let rows = arrays.rows()?;
         let labels = read_labels(labels, rows.masses.len())?;
         let labels = labels.as_slice()?;
+        let ranked = return_labels.then(|| py.detach(|| label_ranks(labels)));
+        let ranks = ranked.as_ref().map_or(labels, |(_, ranks)| ranks);
         let bodies = watched(py, |watch| {
-            labelled_particles(rows.masses, rows.positions, labels, watch)
+            labelled_particles(rows.masses, rows.positions, ranks, watch)
         })?;
-        match bodies {
-            Err((None, error)) => Err(to_py(py, &error)),
-            Err((Some(label), error)) => {
+        let bodies = match bodies {
+            Err((None, error)) => return Err(to_py(py, &error)),
+            Err((Some(rank), error)) => {
+                let label = match &ranked {
+                    Some((names, _)) => names[rank],
+                    None => i64::try_from(rank)?,
+                };
                 let way_out = way_out_of_label(&error);
-                let error = to_py(py, &error);
-                Err(at_label(py, label, way_out, &error))
+                return Err(at_label(py, label, way_out, &to_py(py, &error)));
             }
-            Ok(bodies) => stack(py, vec![bodies.len()], Ok(bodies)),
+            Ok(bodies) => stack(py, vec![bodies.len()], Ok(bodies))?,
+        };
+        match ranked {
+            Some((names, _)) => (PyArray1::from_vec(py, names), bodies).into_bound_py_any(py),
+            None => bodies.into_bound_py_any(py),
         }
     }
 
@@ -1015,7 +1044,7 @@ fn stack(
 fn way_out_of_label(error: &Error) -> &'static str {
     match error {
         Error::Body(BodyFault::NoMass { count: 0, .. }) => {
-            "; every label from 0 to the largest needs a particle here: polhode.labelled.bodies takes labels with gaps"
+            "; every label from 0 to the largest needs a particle here: return_labels=True takes labels with gaps"
         }
         Error::Body(BodyFault::NoMass { .. }) => {
             "; give its particles their masses, or the label -1 where they belong to no body"

@@ -10,7 +10,7 @@ use polhode::mass::assemblies::combined;
 use polhode::motion::angular_momentum::{AngularMomentum, angular_momentum};
 use polhode::motion::euler_equations::EulerEquations;
 use polhode::motion::kinetic_energy::{KineticEnergy, kinetic_energy};
-use polhode::uncertainty::{Rotated, Scaled, Translated, together};
+use polhode::uncertainty::{Rotation, Scaling, Translation, together};
 use pyo3::basic::CompareOp;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -201,7 +201,7 @@ impl PyRigidBody {
         let is_uncertain = self.uncertainties.is_some() || d.is_uncertain();
         let uncertainties = if d.is_uncertain() {
             propagate_rows(py, &grid, is_uncertain, |[b, i]| {
-                self.propagate_row(b, &Translated, &d.row(i))
+                self.propagate_row(b, &Translation, &d.row(i))
             })?
         } else if moved.shape == self.bodies.shape {
             self.uncertainties.clone()
@@ -249,7 +249,7 @@ impl PyRigidBody {
             for (angle, form) in small.iter_mut().zip(angles.iter().flatten()) {
                 angle.1 = form;
             }
-            self.propagate_row(b, &Rotated(rotations[r]), &small)
+            self.propagate_row(b, &Rotation(rotations[r]), &small)
         })?;
         let figures = self.place_figures(&grid, |[_, r]| Placement {
             turn: rotations[r],
@@ -291,7 +291,7 @@ impl PyRigidBody {
             if is_linear {
                 return Ok(self.row(b).1.map(|change| change.scaled(s[i], k[j])));
             }
-            self.propagate_row(b, &Scaled, &[length.row(i), mass.row(j)].concat())
+            self.propagate_row(b, &Scaling, &[length.row(i), mass.row(j)].concat())
         })?;
         let figures = self.place_figures(&grid, |[_, i, _]| Placement {
             turn: Matrix3::identity() * s[i],

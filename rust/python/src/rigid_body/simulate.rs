@@ -21,7 +21,7 @@ use crate::lazy_arrays::{handed_over, is_any};
 use crate::loads::PyLoad;
 use crate::stack::Stack;
 use crate::times::read_times;
-use crate::uncertain::StartGiven;
+use crate::uncertain::StartArguments;
 
 /// An optional argument of any array-like kind.
 type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
@@ -203,7 +203,7 @@ impl PyRigidBody {
                 .map_err(|_| hints::not_a_load(load))?
                 .get(),
         };
-        let given = StartGiven::read(omega, attitude)?;
+        let given = StartArguments::read(omega, attitude)?;
         let start = Start {
             bodies: &slf.get().bodies,
             omega: read(&given.omega, "omega")?,

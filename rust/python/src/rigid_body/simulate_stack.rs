@@ -13,7 +13,7 @@ use crate::body::PyRigidBody;
 use crate::errors::{at_row, to_py};
 use crate::events::{Functions, States};
 use crate::interrupt::{Beat, Interrupt};
-use crate::loads::{Acting, Fault, PyLoad, report_states};
+use crate::loads::{ActingLoad, Fault, PyLoad, report_states};
 use crate::memory;
 use crate::stack::{BLOCK, Broadcast, Stack};
 
@@ -211,11 +211,11 @@ impl Batch for Ensemble<'_> {
         let (load, terms, subject) = (self.load, self.terms(row.number), row.body());
         match self.callbacks() {
             CallbackPolicy::Nothing | CallbackPolicy::OnAnyThread => {
-                let mut load = Acting::new(load, terms, subject, None);
+                let mut load = ActingLoad::new(load, terms, subject, None);
                 row.integrate(&mut load, &mut NoEvents::new())
             }
             CallbackPolicy::OnThisThread => Python::attach(|py| {
-                let mut load = Acting::new(load, terms, subject, Some(py));
+                let mut load = ActingLoad::new(load, terms, subject, Some(py));
                 let states = States {
                     slots: self.load.slots(),
                     terms,

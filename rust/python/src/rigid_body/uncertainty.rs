@@ -8,8 +8,8 @@ use polhode::mass::inertial_parameters::place;
 use polhode::uncertainty::linear_uncertainty::plus;
 use polhode::uncertainty::propagate::directly;
 use polhode::uncertainty::{
-    Deviations, LinearForms, LinearUncertainty, PROBES, Source, Tangent, Variable,
-    check_covariance, deviations, deviations_about,
+    LinearForms, LinearUncertainty, PROBES, Sigma, Source, Tangent, Variable, check_covariance,
+    sigma, sigma_about,
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -346,9 +346,9 @@ impl PyRigidBody {
 }
 
 /// As `polhode.results.Sigma`.
-fn sigma_of<'py>(py: Python<'py>, found: &Stack<Deviations>) -> PyResult<Bound<'py, PyAny>> {
-    let center = |d: &Deviations| -> [f64; 3] { std::array::from_fn(|k| d.numbers[1 + k]) };
-    let tensor = |d: &Deviations| Matrix3::from_fn(|i, j| d.numbers[4 + place(i, j)]);
+fn sigma_of<'py>(py: Python<'py>, found: &Stack<Sigma>) -> PyResult<Bound<'py, PyAny>> {
+    let center = |d: &Sigma| -> [f64; 3] { std::array::from_fn(|k| d.numbers[1 + k]) };
+    let tensor = |d: &Sigma| Matrix3::from_fn(|i, j| d.numbers[4 + place(i, j)]);
     let results = py.import("polhode.results")?;
     let linear = results.getattr("Linear")?.call1((
         flags(py, found, &[], |d, out| out.push(d.is_linear[0]))?,
@@ -374,7 +374,7 @@ fn sigma_of<'py>(py: Python<'py>, found: &Stack<Deviations>) -> PyResult<Bound<'
 /// Attach the standard deviations to a `polhode.results.PrincipalAxes`.
 fn attach_sigma<'py>(
     principal: Bound<'py, PyAny>,
-    found: Option<&Stack<Deviations>>,
+    found: Option<&Stack<Sigma>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let Some(found) = found else {
         return Ok(principal);
@@ -398,9 +398,9 @@ fn attach_sigma<'py>(
 /// An array of flags; one flag for one value without axes.
 fn flags<'py>(
     py: Python<'py>,
-    found: &Stack<Deviations>,
+    found: &Stack<Sigma>,
     tail: &[usize],
-    of: impl Fn(&Deviations, &mut Vec<bool>),
+    of: impl Fn(&Sigma, &mut Vec<bool>),
 ) -> PyResult<Bound<'py, PyAny>> {
     let mut all = Vec::new();
     found.rows.iter().for_each(|d| of(d, &mut all));
@@ -417,7 +417,7 @@ impl PyRigidBody {
         &self,
         py: Python<'_>,
         points: Option<&Stack<Vector3<f64>>>,
-    ) -> PyResult<Option<Stack<Deviations>>> {
+    ) -> PyResult<Option<Stack<Sigma>>> {
         if self.uncertainties.is_none() {
             return Ok(None);
         }
@@ -425,12 +425,12 @@ impl PyRigidBody {
         let found = match points {
             None => Broadcast::of(["body"], [&self.bodies.shape])?.try_map(py, |[row]| {
                 let (body, uncertainty) = of(row);
-                Ok(deviations(body, uncertainty))
+                Ok(sigma(body, uncertainty))
             }),
             Some(points) => self.with("point", points)?.try_map(py, |[row, p]| {
                 let (body, uncertainty) = of(row);
                 body.check_about(&points[p])?;
-                deviations_about(body, uncertainty, &points[p])
+                sigma_about(body, uncertainty, &points[p])
             }),
         };
         found.map(Some)

@@ -15,6 +15,6 @@ pub(crate) mod sums;
 
 pub(super) use single::{ORDINARY, check, sample_center};
 pub use single::{Particles, particles, particles_watched};
-pub use stack::{labelled_particles, particle_stack};
+pub use stack::{label_ranks, labelled_particles, particle_stack};
 
 pub use crate::numerics::threads::Watch;

@@ -226,6 +226,36 @@ pub fn labelled_particles(
     particle_stack(bodies, size, row, watch).map_err(named)
 }
 
+/// The labels that name a body, ascending, and for each particle the rank of its label among them.
+///
+/// The ranks are labels without gaps, as [`labelled_particles`] takes them; the label −1 stays what it is.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::particles::label_ranks;
+///
+/// assert_eq!(label_ranks(&[1007, 4, -1, 1007]), (vec![4, 1007], vec![1, 0, -1, 1]));
+/// ```
+#[must_use]
+pub fn label_ranks(labels: &[i64]) -> (Vec<i64>, Vec<i64>) {
+    let mut names = labels.to_vec();
+    names.sort_unstable();
+    names.dedup();
+    names.retain(|&name| name != NO_BODY);
+    let rank = |label: &i64| {
+        names
+            .binary_search(label)
+            .ok()
+            .and_then(|rank| rank.try_into().ok())
+    };
+    let ranks = labels
+        .iter()
+        .map(|label| rank(label).unwrap_or(NO_BODY))
+        .collect();
+    (names, ranks)
+}
+
 /// Where the particles of each body begin when they are brought together, and after the last body where they end.
 fn ends_of_bodies(labels: &[i64]) -> Result<Vec<usize>, Error> {
     if let Some(index) = labels.iter().position(|&label| label < NO_BODY) {

@@ -125,7 +125,7 @@ pub(super) trait Replay {
 }
 
 /// An edge that is run along more often one way than the other.
-pub(super) struct Unbalanced {
+pub(super) struct UnbalancedEdge {
     /// A face that runs along it the more frequent way.
     pub(super) face: usize,
     /// Another one, where the edge has no open side.
@@ -151,7 +151,7 @@ const RUNS: usize = 1 << 20;
 /// collects the runs in them.
 pub(super) fn find_unbalanced<R: Replay>(
     triangles: &mut R,
-) -> Result<Option<Unbalanced>, R::Error> {
+) -> Result<Option<UnbalancedEdge>, R::Error> {
     let mut sums = vec![0_u64; BUCKETS];
     let mut sizes = vec![0_usize; BUCKETS];
     triangles.each(&mut |face, triangle| {
@@ -200,12 +200,14 @@ pub(super) fn find_unbalanced<R: Replay>(
             (is_even, face, faces.next().filter(|_| is_even), way, ends)
         })
         .min_by_key(|fault| (fault.0, fault.1));
-    Ok(fault.map(|(_, face, second, way, [low, high])| Unbalanced {
-        face,
-        second,
-        ends: if way { [low, high] } else { [high, low] },
-        count: Count { seen, is_least },
-    }))
+    Ok(
+        fault.map(|(_, face, second, way, [low, high])| UnbalancedEdge {
+            face,
+            second,
+            ends: if way { [low, high] } else { [high, low] },
+            count: Count { seen, is_least },
+        }),
+    )
 }
 
 fn bucket(hash: u64) -> usize {

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use super::boundary::{Boundary, Marks, Replay, Triangle, find_repeats};
 use super::nesting::{InsideOut, find_inside_out};
-use super::solid::{Checked, Options, Triangles, solid};
+use super::solid::{MarkedBoundary, Options, Triangles, solid};
 use super::view::{Index, View};
 use crate::error::{Corner, Error, MeshFault};
 use crate::mass::amount::Amount;
@@ -214,7 +214,7 @@ impl<I: Index> Triangles for Faces<'_, I> {
         &mut self,
         frame: &LocalFrame,
         check: bool,
-    ) -> Result<(Sums, Option<Checked>), Halt<Error>> {
+    ) -> Result<(Sums, Option<MarkedBoundary>), Halt<Error>> {
         let mesh = self.mesh;
         if !check {
             return Ok((sums::<_, Solid, 3>(&mesh, frame, self.watch)?, None));
@@ -248,7 +248,7 @@ impl<I: Index> Triangles for Faces<'_, I> {
             .iter()
             .fold(Boundary::default(), |sum, part| sum.and(part.boundary));
         drop(parts);
-        let checked = Checked {
+        let checked = MarkedBoundary {
             boundary,
             marks: Marks::all(marks),
         };

@@ -42,7 +42,7 @@ pub(super) trait Triangles: Replay<Error: From<Error>> {
         &mut self,
         frame: &LocalFrame,
         check: bool,
-    ) -> Result<(Sums, Option<Checked>), Self::Error>;
+    ) -> Result<(Sums, Option<MarkedBoundary>), Self::Error>;
     /// The triangles as a shell.
     fn shell_sums(&mut self, frame: &LocalFrame) -> Result<Sums, Self::Error>;
     /// The first index that names no vertex, or the first coordinate that is not finite.
@@ -55,7 +55,7 @@ pub(super) trait Triangles: Replay<Error: From<Error>> {
 }
 
 /// The boundary of the triangles, and their marks.
-pub(super) struct Checked {
+pub(super) struct MarkedBoundary {
     pub(super) boundary: Boundary,
     pub(super) marks: Marks,
 }
@@ -113,7 +113,10 @@ fn mesh_error<E: From<Error>>(fault: MeshFault) -> E {
 }
 
 /// Duplicates are told first: what stands twice is not balanced either.
-fn check_boundary<T: Triangles>(triangles: &mut T, checked: Checked) -> Result<Checks, T::Error> {
+fn check_boundary<T: Triangles>(
+    triangles: &mut T,
+    checked: MarkedBoundary,
+) -> Result<Checks, T::Error> {
     let checks = Checks::CLOSED.and(Checks::WINDING).and(Checks::DUPLICATES);
     if let Some(fault) = checked.marks.find_duplicates(triangles)? {
         return Err(mesh_error(fault));

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use super::boundary::{Boundary, Marks, ROOM, Replay, Triangle, find_repeats};
 use super::in_memory::polyhedron_watched;
 use super::nesting::{InsideOut, find_inside_out};
-use super::solid::{Checked, Options, Triangles, solid};
+use super::solid::{MarkedBoundary, Options, Triangles, solid};
 use super::stream::{StreamError, TriangleStream};
 use super::view::{View, widen};
 use crate::error::{Corner, MeshFault};
@@ -74,7 +74,7 @@ pub fn stream_solid(
 /// A stream with what the first time through has shown.
 struct Stream<'a> {
     passes: Passes<'a>,
-    seen: Option<Seen>,
+    seen: Option<StreamSummary>,
     /// The corners of all triangles, where they are few.
     kept: Option<Vec<[f64; 3]>>,
     /// Whether a component is wound the wrong way.
@@ -82,7 +82,7 @@ struct Stream<'a> {
 }
 
 #[derive(Clone, Copy)]
-struct Seen {
+struct StreamSummary {
     count: usize,
     area: f64,
     frame: LocalFrame,
@@ -168,7 +168,7 @@ impl Triangles for Stream<'_> {
         &mut self,
         frame: &LocalFrame,
         check: bool,
-    ) -> Result<(Sums, Option<Checked>), StreamError> {
+    ) -> Result<(Sums, Option<MarkedBoundary>), StreamError> {
         if self.seen.is_some() {
             return Ok((self.passes.sums::<Solid>(frame)?, None));
         }
@@ -202,12 +202,12 @@ impl Triangles for Stream<'_> {
         })?;
         self.kept = kept;
         let shell = Sums::new::<Shell, 3>(&merge(&pass.shell), pass.count, frame);
-        self.seen = Some(Seen {
+        self.seen = Some(StreamSummary {
             count: pass.count,
             area: shell.content * frame.unit * frame.unit,
             frame: LocalFrame::of_box(&Vector3::from(low), &Vector3::from(high)),
         });
-        let checked = check.then_some(Checked {
+        let checked = check.then_some(MarkedBoundary {
             boundary: pass.boundary,
             marks,
         });

@@ -7,7 +7,7 @@ use super::propagator::Propagator;
 use super::propagator::Secular;
 use super::separation::Separation;
 use super::steady_or_symmetric;
-use super::tumbling::Tumbling;
+use super::tumbling::TumblingMotion;
 use crate::error::{Error, all_finite};
 use crate::mass::RigidBody;
 use crate::mass::refined::{RefinedPrincipal, Vector};
@@ -90,7 +90,7 @@ impl FreeMotion {
                     steady_or_symmetric::steady_spin(&scaled_omega, attitude),
                 )
             } else {
-                let tumbling = Tumbling::of(&moments, &w, &separation);
+                let tumbling = TumblingMotion::of(&moments, &w, &separation);
                 (tumbling.mode, tumbling.motion(&axes, attitude))
             }
         };

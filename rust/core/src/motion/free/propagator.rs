@@ -221,19 +221,19 @@ impl ChooseFormula for Propagator {
     fn choose<U: UseFormula>(&self, then: U) -> U::Output {
         let is_endless = matches!(self.clock, EllipticArgument::Endless { .. });
         match self.series {
-            AnySeries::Circular(series) => then.with(&Chosen::<_, false>(self, series)),
+            AnySeries::Circular(series) => then.with(&ChosenSeries::<_, false>(self, series)),
             AnySeries::Hyperbolic(series) if is_endless => {
-                then.with(&Chosen::<_, true>(self, series))
+                then.with(&ChosenSeries::<_, true>(self, series))
             }
-            AnySeries::Hyperbolic(series) => then.with(&Chosen::<_, false>(self, series)),
+            AnySeries::Hyperbolic(series) => then.with(&ChosenSeries::<_, false>(self, series)),
         }
     }
 }
 
 /// A propagator with its series, and whether its clock is endless.
-struct Chosen<'a, S, const ENDLESS: bool>(&'a Propagator, S);
+struct ChosenSeries<'a, S, const ENDLESS: bool>(&'a Propagator, S);
 
-impl<S: FreeSeries, const ENDLESS: bool> StateFormula for Chosen<'_, S, ENDLESS> {
+impl<S: FreeSeries, const ENDLESS: bool> StateFormula for ChosenSeries<'_, S, ENDLESS> {
     #[inline(always)]
     fn state<L: Lane>(&self, t: L) -> [L; 7] {
         self.0.state::<L, ENDLESS>(&self.1, t)

@@ -28,7 +28,7 @@ const CIRCULAR: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// The constants of the motion in its own axes x, y, z.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Tumbling {
+pub(super) struct TumblingMotion {
     pub(super) mode: Mode,
     /// Which principal axes x, y, z are.
     axes: [usize; 3],
@@ -55,7 +55,7 @@ pub(super) struct Tumbling {
     start: [f64; 2],
 }
 
-impl Tumbling {
+impl TumblingMotion {
     /// Of distinct moments and an ω that is along none of their axes.
     pub(super) fn of(moments: &Vector, w: &Vector, separation: &Separation) -> Self {
         // L² − 2T I₂ in units of the larger of ω₁ and ω₃, and its like below: tiny rates keep their digits.

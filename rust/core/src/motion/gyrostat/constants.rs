@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use super::products::Ratios;
-use super::products::{Given, omega, squares};
+use super::products::{GyrostatStart, omega, squares};
 use super::propagator::{EndlessArgument, PeriodicArgument, Propagator, TimeArgument};
 use super::spinor::{Regime, Spinor};
 use super::start::Start;
@@ -91,7 +91,7 @@ struct Pace {
 
 /// The motion of a start that is not steady.
 pub(super) fn moving_propagator(
-    given: &Given<'_>,
+    given: &GyrostatStart<'_>,
     start: &Start,
     spinor: &Spinor,
 ) -> (Propagator, Secular) {
@@ -340,7 +340,7 @@ fn circular(spinor: &Spinor) -> Circular {
 /// From the two theta functions to the attitude: `q_NM ∘ (Im χ₂, −Re χ₂, Im χ₁, Re χ₁) ∘ q_FB`, the spinor turned by so many
 /// turns.
 fn attitude(
-    given: &Given<'_>,
+    given: &GyrostatStart<'_>,
     start: &Start,
     columns: &[[Number; 2]; 2],
     turned: f64,

@@ -7,7 +7,7 @@ use super::curve::{Curve, apart};
 use super::mode::Mode;
 use super::pencil::Pencil;
 use super::pencil::value_near_separatrix;
-use super::products::Given;
+use super::products::GyrostatStart;
 use super::propagator::Propagator;
 use super::spinor::Spinor;
 use super::start::{Start, dot};
@@ -113,7 +113,7 @@ impl GyrostatMotion {
         let (mode, (propagator, secular)) = match found {
             None => (Mode::Steady, steady_propagator(&scaled_omega, attitude)),
             Some(solved) => {
-                let given = Given {
+                let given = GyrostatStart {
                     moments: &moments,
                     rotor: &rotor_along,
                     principal,

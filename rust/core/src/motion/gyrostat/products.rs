@@ -254,7 +254,7 @@ fn sum(up: DoubleDouble, down: DoubleDouble, step: DoubleDouble) -> DoubleDouble
 }
 
 /// What a motion is made from, in the units of the start.
-pub(super) struct Given<'a> {
+pub(super) struct GyrostatStart<'a> {
     /// Principal moments.
     pub(super) moments: &'a Vector,
     /// h along the principal axes.
@@ -266,7 +266,7 @@ pub(super) struct Given<'a> {
 /// Moments that are further apart than that are those of a slender body.
 const SLENDER: f64 = 16.0;
 
-impl Given<'_> {
+impl GyrostatStart<'_> {
     /// Whether roundings of the products may count for more than others: as many times as the moments are apart.
     pub(super) fn is_slender(&self) -> bool {
         SLENDER * self.moments[0].high < self.moments[2].high
@@ -297,7 +297,7 @@ pub(super) fn squares([u, v]: &[[Number; 2]; 2]) -> Squares {
 /// From the products of the two theta functions to D ω: `ω_i = (|L| n_i − h_i)/I_i` along the principal axes, `D n = χ†σχ`. The
 /// products are the four series of `ratios` where they are given.
 pub(super) fn omega(
-    given: &Given<'_>,
+    given: &GyrostatStart<'_>,
     start: &Start,
     squares: &Squares,
     ratios: Option<&Ratios>,

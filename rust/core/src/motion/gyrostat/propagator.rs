@@ -204,24 +204,32 @@ impl ChooseFormula for Propagator {
     #[inline(always)]
     fn choose<U: UseFormula>(&self, then: U) -> U::Output {
         match self.clocked {
-            TimeArgument::Circular(series, clock) => then.with(&Chosen(self, series, clock)),
-            TimeArgument::Hyperbolic(series, clock) => then.with(&Chosen(self, series, clock)),
-            TimeArgument::Alternating(series, clock) => then.with(&Chosen(self, series, clock)),
-            TimeArgument::CircularApart(series, clock) => then.with(&Chosen(self, series, clock)),
-            TimeArgument::HyperbolicApart(series, clock) => then.with(&Chosen(self, series, clock)),
-            TimeArgument::AlternatingApart(series, clock) => {
-                then.with(&Chosen(self, series, clock))
+            TimeArgument::Circular(series, clock) => then.with(&ChosenSeries(self, series, clock)),
+            TimeArgument::Hyperbolic(series, clock) => {
+                then.with(&ChosenSeries(self, series, clock))
             }
-            TimeArgument::Endless(series, clock) => then.with(&Chosen(self, series, clock)),
-            TimeArgument::Rational(series, clock) => then.with(&Chosen(self, series, clock)),
+            TimeArgument::Alternating(series, clock) => {
+                then.with(&ChosenSeries(self, series, clock))
+            }
+            TimeArgument::CircularApart(series, clock) => {
+                then.with(&ChosenSeries(self, series, clock))
+            }
+            TimeArgument::HyperbolicApart(series, clock) => {
+                then.with(&ChosenSeries(self, series, clock))
+            }
+            TimeArgument::AlternatingApart(series, clock) => {
+                then.with(&ChosenSeries(self, series, clock))
+            }
+            TimeArgument::Endless(series, clock) => then.with(&ChosenSeries(self, series, clock)),
+            TimeArgument::Rational(series, clock) => then.with(&ChosenSeries(self, series, clock)),
         }
     }
 }
 
 /// A propagator with its series and its clock.
-struct Chosen<'a, S, C>(&'a Propagator, S, C);
+struct ChosenSeries<'a, S, C>(&'a Propagator, S, C);
 
-impl<S: ThetaSeries, C: ThetaArgument> StateFormula for Chosen<'_, S, C> {
+impl<S: ThetaSeries, C: ThetaArgument> StateFormula for ChosenSeries<'_, S, C> {
     #[inline(always)]
     fn state<L: Lane>(&self, t: L) -> [L; 7] {
         self.0.state(self.2, &self.1, t)

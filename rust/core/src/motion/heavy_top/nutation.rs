@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::phases::Phases;
-use super::reduced::Reduced;
+use super::reduced::ReducedTop;
 use super::top_data::times;
 use super::turning_points::TurningPoints;
 use crate::numerics::double_double::DoubleDouble;
@@ -69,7 +69,7 @@ pub struct Nutation {
 }
 
 impl Nutation {
-    pub(super) fn steady(motion: &Reduced) -> Self {
+    pub(super) fn steady(motion: &ReducedTop) -> Self {
         let inclination = angle(motion.bottom, motion.top);
         Self {
             mode: Mode::Steady,
@@ -81,7 +81,7 @@ impl Nutation {
     }
 
     pub(super) fn of(
-        motion: &Reduced,
+        motion: &ReducedTop,
         points: &TurningPoints,
         phases: &Phases,
         drift: DoubleDouble,
@@ -105,7 +105,7 @@ impl Nutation {
     }
 }
 
-fn mode(motion: &Reduced, points: &TurningPoints, phases: &Phases) -> Mode {
+fn mode(motion: &ReducedTop, points: &TurningPoints, phases: &Phases) -> Mode {
     if phases.clock.high == 0.0 {
         return Mode::Asymptotic;
     }

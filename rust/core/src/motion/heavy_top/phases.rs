@@ -10,7 +10,7 @@
 //!
 //! with `s_α = −sgn(a + b)`, `s_β = −sgn(a − b)`, `s_W = sgn(a − b u_e)`.
 
-use super::reduced::Reduced;
+use super::reduced::ReducedTop;
 use super::turning_points::TurningPoints;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::{MultiPrecision, complete_first, complete_third, incomplete_first};
@@ -44,7 +44,7 @@ pub(super) struct Phases {
 }
 
 impl Phases {
-    pub(super) fn of<T: MultiPrecision>(motion: &Reduced<T>, points: &TurningPoints<T>) -> Self {
+    pub(super) fn of<T: MultiPrecision>(motion: &ReducedTop<T>, points: &TurningPoints<T>) -> Self {
         let (zero, one) = (T::from(0.0), T::from(1.0));
         let two_kappa = motion.kappa.scaled(2.0);
         let (sum, difference, rest) = (motion.sum(), motion.difference(), motion.rest());
@@ -144,7 +144,7 @@ fn beta_rate<T: MultiPrecision>(
 
 /// z at time zero: in turns, or on the separatrix the argument itself. From the nearer of the two turning points.
 fn start<T: MultiPrecision>(
-    motion: &Reduced<T>,
+    motion: &ReducedTop<T>,
     points: &TurningPoints<T>,
     k_prime: f64,
     k: f64,

@@ -10,7 +10,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 use super::nutation::Nutation;
 use super::phases::{Phases, TURN};
 use super::pivoted_top::PivotedTop;
-use super::reduced::Reduced;
+use super::reduced::ReducedTop;
 use super::top_data::times;
 use super::turning_points::TurningPoints;
 use crate::motion::closed_form::{ChooseFormula, StateFormula, UseFormula};
@@ -210,7 +210,7 @@ impl TopConstants {
         attitude: &UnitQuaternion<f64>,
         gravity: &Vector3<f64>,
     ) -> (Self, Nutation) {
-        let mut motion = Reduced::of(top.source(), omega, attitude, gravity);
+        let mut motion = ReducedTop::of(top.source(), omega, attitude, gravity);
         let half_spin = (motion.axial * TURN).scaled(0.5);
         if !motion.is_steady() {
             let points = TurningPoints::of(&motion);
@@ -220,7 +220,7 @@ impl TopConstants {
             }
             if points.height.high > 0.0 {
                 let finest =
-                    Reduced::of(&top.finest(), omega, attitude, gravity).without_rounding();
+                    ReducedTop::of(&top.finest(), omega, attitude, gravity).without_rounding();
                 motion = finest.twofold();
                 if !finest.is_steady() {
                     let points = TurningPoints::of(&finest).without_rounding(&finest);
@@ -240,7 +240,7 @@ impl TopConstants {
     }
 
     fn with_moving_axis(
-        motion: &Reduced,
+        motion: &ReducedTop,
         points: &TurningPoints,
         phases: &Phases,
         half_spin: DoubleDouble,
@@ -296,7 +296,7 @@ impl TopConstants {
         (constants, Nutation::of(motion, points, phases, drift))
     }
 
-    fn with(motion: &Reduced, series: &TopSeries) -> Self {
+    fn with(motion: &ReducedTop, series: &TopSeries) -> Self {
         let [x, y, z] = turned_basis(&motion.aligning, 2);
         let spin = times_power_of_two(motion.axial.rounded(), motion.exponent);
         Self {
@@ -326,7 +326,7 @@ impl TopConstants {
     /// relative to the largest each becomes. At u₁ the three have `W α β* = ½ i (a − b u₁)`.
     fn phase_constants(
         &self,
-        motion: &Reduced,
+        motion: &ReducedTop,
         points: &TurningPoints,
         phases: &Phases,
     ) -> [Complex; 3] {
@@ -374,7 +374,7 @@ impl TopConstants {
     }
 
     /// The matrices from the three functions to attitude and ω.
-    fn frame(&mut self, motion: &Reduced, phase_constants: [Complex; 3]) {
+    fn frame(&mut self, motion: &ReducedTop, phase_constants: [Complex; 3]) {
         let [alpha, beta, w] = phase_constants;
         // (x, y, z, w) of the unit values of Re α, Im α, Re β, Im β.
         let columns = [

@@ -27,7 +27,7 @@ type Components<T> = [T; 4];
 
 /// The state of a top at the start, in units of the rate `2^exponent`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Reduced<T = DoubleDouble> {
+pub(super) struct ReducedTop<T = DoubleDouble> {
     /// The unit of all rates is 2 to this power.
     pub(super) exponent: i32,
     /// `κ = m g l/I_t`.
@@ -65,7 +65,7 @@ const FINER_ROUNDING: f64 = 6.2e-61; // 2⁻²⁰⁰
 /// Squares of leans and rates below this part of what they are squares of are none: their products would be lost.
 const LEAST: f64 = 1e-280;
 
-impl Reduced<QuadDouble> {
+impl ReducedTop<QuadDouble> {
     /// Upright, hanging or without a rate across the axis where no more of it is left than what turning the frames rounds: so a
     /// top that stands upright along any axis stays there.
     pub(super) fn without_rounding(self) -> Self {
@@ -76,7 +76,7 @@ impl Reduced<QuadDouble> {
     }
 }
 
-impl<T: MultiPrecision> Reduced<T> {
+impl<T: MultiPrecision> ReducedTop<T> {
     /// Of a top with the angular velocity `omega` in B, the attitude `R_NB` and `gravity` in N, all finite.
     pub(super) fn of(
         top: &TopData<T>,
@@ -158,8 +158,8 @@ impl<T: MultiPrecision> Reduced<T> {
     }
 
     /// The same to twice the precision.
-    pub(super) fn twofold(&self) -> Reduced {
-        Reduced {
+    pub(super) fn twofold(&self) -> ReducedTop {
+        ReducedTop {
             exponent: self.exponent,
             kappa: self.kappa.twofold(),
             spin: self.spin.twofold(),

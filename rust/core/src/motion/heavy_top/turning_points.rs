@@ -1,10 +1,10 @@
 //! Where the axis of a heavy top turns back: the roots of its cubic, and their distances from what else is singular.
 //!
-//! With `u = cos θ`, in the units of [`Reduced`], `u̇² = f(u) = (1 − u²) (h − 2κ (u − u₀)) − (a − b u)²`. Each distance that may be
+//! With `u = cos θ`, in the units of [`ReducedTop`], `u̇² = f(u) = (1 − u²) (h − 2κ (u − u₀)) − (a − b u)²`. Each distance that may be
 //! small is found without cancellation: the cubic is solved in `x = u − u₀`, whose coefficients are as small as the motion is
 //! slow, and near a pole by the values of f at the pole and of its slope, which the state gives directly.
 
-use super::reduced::Reduced;
+use super::reduced::ReducedTop;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::MultiPrecision;
 use crate::numerics::quad_double::QuadDouble;
@@ -50,14 +50,14 @@ const FINER_ROUNDING: f64 = 8.1e-28; // 2⁻⁹⁰
 
 impl TurningPoints {
     /// Whether k′² has the digits that long times need.
-    pub(super) fn are_good(&self, motion: &Reduced) -> bool {
+    pub(super) fn are_good(&self, motion: &ReducedTop) -> bool {
         self.gap.high * self.depth.high * HARMLESS >= motion.rounding_loss()
     }
 }
 
 impl TurningPoints<QuadDouble> {
     /// On the separatrix where nothing is left of the distance from it.
-    pub(super) fn without_rounding(self, motion: &Reduced<QuadDouble>) -> Self {
+    pub(super) fn without_rounding(self, motion: &ReducedTop<QuadDouble>) -> Self {
         let left = self.gap.rounded() * self.depth.rounded();
         if left <= FINER_ROUNDING * motion.rounding_loss() {
             let gap = QuadDouble::default();
@@ -87,8 +87,8 @@ impl<T: MultiPrecision> TurningPoints<T> {
     }
 
     /// Of a motion that is not steady.
-    pub(super) fn of(motion: &Reduced<T>) -> Self {
-        let &Reduced {
+    pub(super) fn of(motion: &ReducedTop<T>) -> Self {
+        let &ReducedTop {
             kappa,
             spin: b,
             square: h,

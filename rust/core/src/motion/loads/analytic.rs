@@ -1,12 +1,12 @@
-//! Sums of analytic terms.
+//! The load `Analytic`: a sum of terms, each of one of the analytic laws.
 
 use super::body_at_point::BodyAtPoint;
-use super::carried::Carried;
-use super::carried::Now;
-use super::law_switches::{LawSwitch, Switch};
+use super::carried_momentum::CarriedMomentum;
+use super::carried_momentum::Now;
 use super::laws::Term;
 use super::load::Load;
 use super::stiction::Bearing;
+use super::switch::{LawSwitch, Switch};
 use super::wrench::Wrench;
 use crate::error::Error;
 use crate::motion::state::Phase;
@@ -175,7 +175,7 @@ impl Load for Analytic<'_> {
         self.act(t, phase, &mut [])
     }
 
-    fn carried(&self) -> Vec<&dyn Carried> {
+    fn carried(&self) -> Vec<&dyn CarriedMomentum> {
         (self.terms.iter().filter_map(Term::carried)).collect()
     }
 

@@ -1,12 +1,12 @@
-//! What every analytic law of a load is asked.
+//! The trait `Law`: the questions that every analytic law of a load answers.
 
 use nalgebra::Vector3;
 
 use super::body_at_point::BodyAtPoint;
-use super::carried::Carried;
-use super::law_switches::Switch;
+use super::carried_momentum::CarriedMomentum;
 use super::principal_frame::{LawNumber, PrincipalFrame};
 use super::series_terms::SeriesTerms;
+use super::switch::Switch;
 use super::variables::Parameter;
 use super::wrench::Wrench;
 use crate::error::Error;
@@ -17,18 +17,18 @@ use crate::motion::state::Phase;
 /// # Examples
 ///
 /// ```
-/// use polhode::motion::loads::{Kept, Term};
+/// use polhode::motion::loads::{ConservedMomentum, Term};
 /// use polhode::nalgebra::Vector3;
 ///
 /// // Gravity leaves the angular momentum of a pivoted body about the vertical, and all of a free one's.
 /// let weight = Term::uniform_gravity(&Vector3::new(0.0, 0.0, -9.81))?;
-/// assert!(matches!(weight.keeps(true), Kept::Along(axis) if axis.z.abs() == 1.0));
-/// assert_eq!(weight.keeps(false), Kept::All);
-/// assert_eq!(Kept::All.and(Kept::Nothing), Kept::Nothing);
+/// assert!(matches!(weight.keeps(true), ConservedMomentum::Along(axis) if axis.z.abs() == 1.0));
+/// assert_eq!(weight.keeps(false), ConservedMomentum::All);
+/// assert_eq!(ConservedMomentum::All.and(ConservedMomentum::Nothing), ConservedMomentum::Nothing);
 /// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kept {
+pub enum ConservedMomentum {
     /// All of it: the load has no torque.
     All,
     /// Its component along a unit vector, in N: the torque of a uniform field is across the field.
@@ -37,7 +37,7 @@ pub enum Kept {
     Nothing,
 }
 
-impl Kept {
+impl ConservedMomentum {
     /// What two loads together leave.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
@@ -69,7 +69,7 @@ pub struct Traits {
     /// Whether it begins with the motion, wherever in time that is.
     pub needs_epoch: bool,
     /// What of the angular momentum about the reference point it leaves as it is.
-    pub keeps: Kept,
+    pub keeps: ConservedMomentum,
     /// Whether [`Law::add_to`] states it: a method that needs series cannot serve a load without them.
     pub has_series: bool,
 }
@@ -144,7 +144,7 @@ pub(super) trait Law: Sized {
     }
 
     /// What it carries along in the body. [`Self::wrench`] of a law with states is that where a motion starts.
-    fn carried(&self) -> Option<&dyn Carried> {
+    fn carried(&self) -> Option<&dyn CarriedMomentum> {
         None
     }
 }

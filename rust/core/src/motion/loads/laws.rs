@@ -1,4 +1,4 @@
-//! The list of the laws. Each stands in a file of its own in `laws`, which answers what a [`Law`] is asked; here its module is
+//! The list of the analytic laws, and the enum `Term` that is made of it. Each law stands in a file of its own in `laws`, which answers what a [`Law`] is asked; here its module is
 //! declared, its type handed on, and its variant listed.
 
 use nalgebra::{Vector3, Vector4};
@@ -28,12 +28,12 @@ pub use self::uniform_gravity::UniformGravity;
 pub use self::wheel::{Drive, Wheel};
 
 use super::body_at_point::BodyAtPoint;
-use super::carried::Carried;
-use super::law::{Kept, Law, Traits};
-use super::law_switches::Switch;
+use super::carried_momentum::CarriedMomentum;
+use super::law::{ConservedMomentum, Law, Traits};
 use super::principal_frame::{LawNumber, PrincipalFrame};
 use super::schedule::Windows;
 use super::series_terms::SeriesTerms;
+use super::switch::Switch;
 use super::variables::Parameter;
 use super::wrench::Wrench;
 use crate::error::{Error, MotionFault, finite};
@@ -219,7 +219,7 @@ macro_rules! laws {
 
             /// What it carries along in the body.
             #[must_use]
-            pub fn carried(&self) -> Option<&dyn Carried> {
+            pub fn carried(&self) -> Option<&dyn CarriedMomentum> {
                 match self {
                     $(Self::$law(law) => law.carried(),)+
                     Self::Scheduled { .. } => None, // what is carried along cannot be scheduled
@@ -336,7 +336,7 @@ impl Term {
     /// How many internal states it has.
     #[must_use]
     pub fn internal_states(&self) -> usize {
-        self.carried().map_or(0, Carried::count)
+        self.carried().map_or(0, CarriedMomentum::count)
     }
 
     /// How many numbers it has.
@@ -371,7 +371,7 @@ impl Term {
 
     /// What of the angular momentum about the reference point it leaves as it is, on a pivoted body or on a free one.
     #[must_use]
-    pub fn keeps(&self, pivoted: bool) -> Kept {
+    pub fn keeps(&self, pivoted: bool) -> ConservedMomentum {
         self.traits(pivoted).keeps
     }
 }

@@ -1,9 +1,9 @@
-//! A load, whoever computes it.
+//! The trait `Load`: what a run asks of whatever acts on the body, analytic or a function of the caller.
 
-use super::carried::Carried;
-use super::law_switches::LawSwitch;
+use super::carried_momentum::CarriedMomentum;
 use super::laws::Term;
 use super::stiction::{Bearing, Stiction};
+use super::switch::LawSwitch;
 use super::wrench::Wrench;
 use crate::error::Error;
 use crate::motion::euler_equations::EulerEquations;
@@ -16,12 +16,12 @@ use crate::motion::state::Phase;
 /// ```
 /// use std::ops::ControlFlow;
 /// use polhode::mass::{Amount, solids};
-/// use polhode::motion::loads::{Bearing, Carried, LawSwitch, Load, Wrench};
+/// use polhode::motion::loads::{Bearing, CarriedMomentum, LawSwitch, Load, Wrench};
 /// use polhode::motion::simulate::{Method, NoEvents, Phase, State, Task, Tolerance, simulate};
 /// use polhode::nalgebra::{UnitQuaternion, Vector3};
 ///
 /// /// A brake that is on for the first second. A closure would do ([`Callback`](super::Callback)); what a trait adds are
-/// /// internal states and laws that switch: [`Carried`], [`LawSwitch`], [`Bearing`].
+/// /// internal states and laws that switch: [`CarriedMomentum`], [`LawSwitch`], [`Bearing`].
 /// struct Brake {
 ///     is_on: bool,
 /// }
@@ -52,7 +52,7 @@ use crate::motion::state::Phase;
 /// let tolerance = Tolerance::new(1e-12, 0.0)?;
 /// let task = Task::free(&ball, Phase::in_place(&state), &[0.0, 3.0], Method::Auto, tolerance);
 /// let mut brake = Brake { is_on: true };
-/// let (carried, changes, bearings): (Vec<&dyn Carried>, Vec<LawSwitch>, &[Bearing]) =
+/// let (carried, changes, bearings): (Vec<&dyn CarriedMomentum>, Vec<LawSwitch>, &[Bearing]) =
 ///     (brake.carried(), brake.law_switches(), brake.bearings());
 /// assert!(carried.is_empty() && changes.is_empty() && bearings.is_empty());
 /// let go_on = &mut |_| ControlFlow::Continue(());
@@ -108,7 +108,7 @@ pub trait Load {
     }
 
     /// Of the wheel whose momentum is the state of that number, by how much more than its limit the motor is asked for; see
-    /// [`Carried::over_limit`].
+    /// [`CarriedMomentum::over_limit`].
     fn over_limit(&self, state: usize, t: f64, phase: &Phase) -> f64 {
         let _ = (state, t, phase);
         -1.0
@@ -121,7 +121,7 @@ pub trait Load {
     fn wrench(&mut self, t: f64, phase: &Phase) -> Result<Wrench, Self::Error>;
 
     /// What it carries along in the body.
-    fn carried(&self) -> Vec<&dyn Carried> {
+    fn carried(&self) -> Vec<&dyn CarriedMomentum> {
         Vec::new()
     }
 

@@ -10,8 +10,8 @@
 //! | `load`, `analytic`, [`Callback`] | a load, whoever computes it: sums of terms, closures |
 //! | `series_terms`, `principal_frame`, `variables` | what a law adds to the equations of a series, and in which numbers |
 //! | `orbit_model`, [`kepler`], `oblate` | orbits |
-//! | `attitude_target`, `law_switches` | where a feedback turns the body, and by which sign |
-//! | `carried`, `stiction`, [`piecewise_signal`] | wheels and slugs, dry friction, what motors are told |
+//! | `attitude_target`, `switch` | where a feedback turns the body, and by which sign |
+//! | `carried_momentum`, `stiction`, [`piecewise_signal`] | wheels and slugs, dry friction, what motors are told |
 //!
 //! A new law is a new file in `laws`, which answers what a `Law` is asked, and its lines in the list, `laws.rs`.
 //!
@@ -62,10 +62,9 @@ mod analytic;
 mod attitude_target;
 mod body_at_point;
 mod callback;
-mod carried;
+mod carried_momentum;
 pub mod kepler;
 mod law;
-mod law_switches;
 mod laws;
 mod load;
 mod oblate;
@@ -76,6 +75,7 @@ pub mod schedule;
 mod series_terms;
 mod spline;
 mod stiction;
+mod switch;
 pub(in crate::motion) mod variables;
 mod wrench;
 
@@ -83,9 +83,8 @@ pub use self::analytic::Analytic;
 pub use self::attitude_target::{AttitudeTarget, Sampling};
 pub use self::body_at_point::BodyAtPoint;
 pub use self::callback::Callback;
-pub use self::carried::Carried;
-pub use self::law::Kept;
-pub use self::law_switches::{LawSwitch, Switch};
+pub use self::carried_momentum::CarriedMomentum;
+pub use self::law::ConservedMomentum;
 pub use self::laws::*;
 pub use self::load::{Load, wrench_at};
 pub use self::oblate::Oblate;
@@ -100,6 +99,7 @@ pub(crate) use self::series_terms::{InternalState, SeriesStructure, SeriesTerms}
 pub(crate) use self::series_terms::{OMEGA, Steps};
 pub use self::stiction::Bearing;
 pub(in crate::motion) use self::stiction::Stiction;
+pub use self::switch::{LawSwitch, Switch};
 pub use self::variables::Parameter;
 pub(crate) use self::variables::ParameterColumns;
 pub use self::wrench::Wrench;

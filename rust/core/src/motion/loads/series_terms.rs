@@ -25,9 +25,9 @@ pub(crate) struct SeriesTerms<'a, X: LawNumber> {
     force: Option<Vector3<X>>,
     thrust: Option<Vector3<X>>,
     /// Torques that depend on the time, each with the index of its term.
-    pub timed: Vec<(usize, &'a dyn Timed<X>)>,
+    pub timed: Vec<(usize, &'a dyn CubicTorque<X>)>,
     /// Gravity gradients, likewise.
-    pub gradients: Vec<(usize, &'a dyn Orbiting<X>)>,
+    pub gradients: Vec<(usize, &'a dyn OrbitTorque<X>)>,
     /// The internal states of the load.
     pub internal_states: Vec<InternalState<X>>,
     /// Σ J a aᵀ of the wheels that turn freely, which is not part of the tensor of the equations, but is pulled by gravity.
@@ -389,7 +389,7 @@ pub(crate) struct When<X> {
 }
 
 /// A torque that depends on the time: a cubic between two breaks.
-pub(crate) trait Timed<X: LawNumber>: Debug {
+pub(crate) trait CubicTorque<X: LawNumber>: Debug {
     /// The frame that its components are in.
     fn frame(&self) -> Frame;
 
@@ -405,7 +405,7 @@ pub(crate) trait Timed<X: LawNumber>: Debug {
 }
 
 /// A gravity gradient, whose torque `r×I r` has no component along an axis without a moment.
-pub(crate) trait Orbiting<X: LawNumber>: Debug {
+pub(crate) trait OrbitTorque<X: LawNumber>: Debug {
     /// Where the body is at a time.
     fn on_orbit(&self, axes: &PrincipalFrame<'_, X>, when: &When<X>) -> OnOrbit<X>;
 

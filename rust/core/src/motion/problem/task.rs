@@ -5,7 +5,7 @@ use crate::error::{Error, all_finite, finite};
 use crate::mass::RigidBody;
 use crate::mass::refined::RefinedPrincipal;
 use crate::motion::euler_equations::EulerEquations;
-use crate::motion::loads::{BodyAtPoint, Carried};
+use crate::motion::loads::{BodyAtPoint, CarriedMomentum};
 use crate::motion::state::Phase;
 
 /// A body and the point its motion refers to: what all motions of the body have in common.
@@ -139,7 +139,7 @@ impl<'a> Task<'a> {
     /// [`MotionFault::WheelsTooHeavy`](crate::error::MotionFault::WheelsTooHeavy).
     pub fn with_carried<'c>(
         mut self,
-        carried: impl Iterator<Item = &'c dyn Carried>,
+        carried: impl Iterator<Item = &'c dyn CarriedMomentum>,
     ) -> Result<Self, Error> {
         let carried: Vec<_> = carried.collect();
         if self.initial.internal_state.is_empty() {

@@ -19,7 +19,7 @@
 //! ```
 //! use std::ops::ControlFlow;
 //! use polhode::mass::{Amount, solids};
-//! use polhode::motion::loads::{Callback, Carried, BodyAtPoint, Term};
+//! use polhode::motion::loads::{Callback, CarriedMomentum, BodyAtPoint, Term};
 //! use polhode::motion::simulate::{
 //!     Crossing, Direction, End, Events, ReferencePoint, MOST_STEPS, Method, Phase, Rule, Run, State, TIGHTEST, TIGHTEST_TWOFOLD, Task,
 //!     Tolerance, Watched, check_scales, simulate,
@@ -69,7 +69,7 @@
 //! // Another error, as of a caller's own type; and a task whose load carries something along.
 //! assert_eq!(run.with_error(|error| error.to_string()).end, End::Event);
 //! let slug = Term::Slug(polhode::motion::loads::Slug::new(0.01, 0.1)?);
-//! let carried: Option<&dyn Carried> = slug.carried();
+//! let carried: Option<&dyn CarriedMomentum> = slug.carried();
 //! assert_eq!(task.with_carried(carried.into_iter())?.initial.internal_state.len(), 3);
 //! # Ok::<(), polhode::Error>(())
 //! ```

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use crate::error::{Error, all_finite};
 use crate::motion::kinematics::Frame;
 use crate::motion::loads::body_at_point::BodyAtPoint;
-use crate::motion::loads::law::{Kept, Law, Traits};
+use crate::motion::loads::law::{ConservedMomentum, Law, Traits};
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
 use crate::motion::loads::series_terms::SeriesTerms;
 use crate::motion::loads::variables::Parameter;
@@ -74,9 +74,9 @@ impl Law for ConstantForce {
             needs_body: true,
             needs_epoch: false,
             keeps: match self.frame {
-                _ if !self.turns(pivoted) => Kept::All,
-                Frame::Space => Kept::along(&self.vector),
-                Frame::Body => Kept::Nothing,
+                _ if !self.turns(pivoted) => ConservedMomentum::All,
+                Frame::Space => ConservedMomentum::along(&self.vector),
+                Frame::Body => ConservedMomentum::Nothing,
             },
             has_series: true,
         }

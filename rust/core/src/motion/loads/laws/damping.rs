@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::error::{Error, all_finite};
 use crate::motion::loads::body_at_point::BodyAtPoint;
-use crate::motion::loads::law::{Kept, Law, Traits};
+use crate::motion::loads::law::{ConservedMomentum, Law, Traits};
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
 use crate::motion::loads::series_terms::SeriesTerms;
 use crate::motion::loads::series_terms::{OMEGA, Steps};
@@ -65,7 +65,7 @@ impl Law for Damping {
             depends_on_rates: true,
             needs_body: false,
             needs_epoch: false,
-            keeps: Kept::Nothing,
+            keeps: ConservedMomentum::Nothing,
             has_series: true,
         }
     }

@@ -7,11 +7,11 @@ use nalgebra::{Matrix3, Matrix3x4, UnitQuaternion, Vector3, Vector4};
 use crate::error::{Error, all_finite};
 use crate::motion::loads::attitude_target::AttitudeTarget;
 use crate::motion::loads::body_at_point::BodyAtPoint;
-use crate::motion::loads::carried::Now;
-use crate::motion::loads::law::{Kept, Law, Traits};
-use crate::motion::loads::law_switches::{Switch, attitude_error};
+use crate::motion::loads::carried_momentum::Now;
+use crate::motion::loads::law::{ConservedMomentum, Law, Traits};
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
 use crate::motion::loads::series_terms::SeriesTerms;
+use crate::motion::loads::switch::{Switch, attitude_error};
 use crate::motion::loads::variables::Parameter;
 use crate::motion::loads::variables::Variables;
 use crate::motion::loads::wrench::Wrench;
@@ -110,7 +110,7 @@ impl Law for Feedback {
             depends_on_rates: self.damping.iter().any(|&x| x != 0.0),
             needs_body: false,
             needs_epoch: self.target.needs_epoch(),
-            keeps: Kept::Nothing,
+            keeps: ConservedMomentum::Nothing,
             has_series: self.target.as_fixed().is_some(),
         }
     }

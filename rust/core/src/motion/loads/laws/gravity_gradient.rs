@@ -6,11 +6,11 @@ use super::slug::positive;
 use crate::error::{Error, MotionFault};
 use crate::motion::loads::body_at_point::BodyAtPoint;
 use crate::motion::loads::kepler::Orbit;
-use crate::motion::loads::law::{Kept, Law, Traits};
+use crate::motion::loads::law::{ConservedMomentum, Law, Traits};
 use crate::motion::loads::orbit_model::OrbitModel;
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
 use crate::motion::loads::series_terms::SeriesTerms;
-use crate::motion::loads::series_terms::{OnOrbit, Orbiting, When};
+use crate::motion::loads::series_terms::{OnOrbit, OrbitTorque, When};
 use crate::motion::loads::variables::Parameter;
 use crate::motion::loads::variables::Variables;
 use crate::motion::loads::wrench::Wrench;
@@ -137,7 +137,7 @@ impl Law for GravityGradient {
             depends_on_rates: false,
             needs_body: true,
             needs_epoch: self.orbit.needs_epoch(),
-            keeps: Kept::Nothing,
+            keeps: ConservedMomentum::Nothing,
             has_series: self.orbit.as_kepler().is_some(),
         }
     }
@@ -195,7 +195,7 @@ impl Law for GravityGradient {
     }
 }
 
-impl<X: LawNumber> Orbiting<X> for GravityGradient {
+impl<X: LawNumber> OrbitTorque<X> for GravityGradient {
     fn on_orbit(&self, axes: &PrincipalFrame<'_, X>, when: &When<X>) -> OnOrbit<X> {
         // Others have no series.
         let Some((orbit, epoch)) = self.orbit.as_kepler() else {

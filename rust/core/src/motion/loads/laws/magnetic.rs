@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 use crate::error::{Error, MotionFault, all_finite, finite};
 use crate::motion::loads::body_at_point::BodyAtPoint;
-use crate::motion::loads::law::{Kept, Law, Traits};
+use crate::motion::loads::law::{ConservedMomentum, Law, Traits};
 use crate::motion::loads::orbit_model::OrbitModel;
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
 use crate::motion::loads::series_terms::SeriesTerms;
@@ -219,8 +219,8 @@ impl Law for Magnetic {
                 FieldModel::Uniform(_) | FieldModel::Sampled(_) => false,
             },
             keeps: match &self.field.0 {
-                FieldModel::Uniform(field) => Kept::along(field),
-                FieldModel::Sampled(_) | FieldModel::Dipole { .. } => Kept::Nothing,
+                FieldModel::Uniform(field) => ConservedMomentum::along(field),
+                FieldModel::Sampled(_) | FieldModel::Dipole { .. } => ConservedMomentum::Nothing,
             },
             has_series: self.constant().is_some(),
         }

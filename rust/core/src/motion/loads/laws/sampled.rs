@@ -8,10 +8,10 @@ use nalgebra::Vector3;
 use crate::error::Error;
 use crate::motion::kinematics::Frame;
 use crate::motion::loads::body_at_point::BodyAtPoint;
-use crate::motion::loads::law::{Kept, Law, Traits};
+use crate::motion::loads::law::{ConservedMomentum, Law, Traits};
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame, exact};
 use crate::motion::loads::series_terms::SeriesTerms;
-use crate::motion::loads::series_terms::{Timed, When};
+use crate::motion::loads::series_terms::{CubicTorque, When};
 use crate::motion::loads::spline::{Spline, pieces};
 use crate::motion::loads::variables::Parameter;
 use crate::motion::loads::variables::Variables;
@@ -165,7 +165,7 @@ impl Law for Sampled {
             depends_on_rates: false,
             needs_body: false,
             needs_epoch: false,
-            keeps: Kept::Nothing,
+            keeps: ConservedMomentum::Nothing,
             has_series: true,
         }
     }
@@ -212,7 +212,7 @@ impl Law for Sampled {
     }
 }
 
-impl<X: LawNumber> Timed<X> for Sampled {
+impl<X: LawNumber> CubicTorque<X> for Sampled {
     fn frame(&self) -> Frame {
         self.frame
     }

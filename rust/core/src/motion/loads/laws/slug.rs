@@ -4,9 +4,9 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::error::{Error, MotionFault, finite};
 use crate::motion::loads::body_at_point::BodyAtPoint;
-use crate::motion::loads::carried::Carried;
-use crate::motion::loads::carried::Now;
-use crate::motion::loads::law::{Kept, Law, Traits};
+use crate::motion::loads::carried_momentum::CarriedMomentum;
+use crate::motion::loads::carried_momentum::Now;
+use crate::motion::loads::law::{ConservedMomentum, Law, Traits};
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
 use crate::motion::loads::series_terms::{InternalState, SeriesTerms};
 use crate::motion::loads::variables::Parameter;
@@ -62,7 +62,7 @@ impl Law for Slug {
             depends_on_rates: true,
             needs_body: false,
             needs_epoch: false,
-            keeps: Kept::All,
+            keeps: ConservedMomentum::All,
             has_series: true,
         }
     }
@@ -124,12 +124,12 @@ impl Law for Slug {
         }
     }
 
-    fn carried(&self) -> Option<&dyn Carried> {
+    fn carried(&self) -> Option<&dyn CarriedMomentum> {
         Some(self)
     }
 }
 
-impl Carried for Slug {
+impl CarriedMomentum for Slug {
     fn count(&self) -> usize {
         3
     }

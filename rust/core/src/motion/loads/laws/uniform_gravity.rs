@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::error::{Error, all_finite};
 use crate::motion::loads::body_at_point::BodyAtPoint;
-use crate::motion::loads::law::{Kept, Law, Traits};
+use crate::motion::loads::law::{ConservedMomentum, Law, Traits};
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
 use crate::motion::loads::series_terms::SeriesTerms;
 use crate::motion::loads::variables::Parameter;
@@ -44,9 +44,9 @@ impl Law for UniformGravity {
             needs_body: true,
             needs_epoch: false,
             keeps: if pivoted {
-                Kept::along(&self.gravity)
+                ConservedMomentum::along(&self.gravity)
             } else {
-                Kept::All
+                ConservedMomentum::All
             },
             has_series: true,
         }

@@ -6,12 +6,12 @@ use super::feedback::Feedback;
 use super::slug::{not_negative, positive};
 use crate::error::{Error, MotionFault, finite};
 use crate::motion::loads::body_at_point::BodyAtPoint;
-use crate::motion::loads::carried::{Carried, Now};
-use crate::motion::loads::law::{Kept, Law, Traits};
-use crate::motion::loads::law_switches::Switch;
+use crate::motion::loads::carried_momentum::{CarriedMomentum, Now};
+use crate::motion::loads::law::{ConservedMomentum, Law, Traits};
 use crate::motion::loads::piecewise_signal::PiecewiseSignal;
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame, exact};
 use crate::motion::loads::series_terms::{InternalState, SeriesTerms};
+use crate::motion::loads::switch::Switch;
 use crate::motion::loads::variables::{Parameter, ParameterColumns};
 use crate::motion::loads::wrench::Wrench;
 use crate::motion::state::Phase;
@@ -149,7 +149,7 @@ impl Law for Wheel {
             depends_on_rates: true,
             needs_body: !self.has_speed(),
             needs_epoch: self.feedback().is_some_and(|law| law.target.needs_epoch()),
-            keeps: Kept::All,
+            keeps: ConservedMomentum::All,
             has_series: !matches!(self.drive, Drive::Limited(..))
                 && self.bearing().is_none()
                 && (self.feedback()).is_none_or(|law| law.target.as_fixed().is_some()),
@@ -282,12 +282,12 @@ impl Law for Wheel {
         self.feedback()?.switch_function(axes)
     }
 
-    fn carried(&self) -> Option<&dyn Carried> {
+    fn carried(&self) -> Option<&dyn CarriedMomentum> {
         Some(self)
     }
 }
 
-impl Carried for Wheel {
+impl CarriedMomentum for Wheel {
     fn count(&self) -> usize {
         1
     }

@@ -136,7 +136,7 @@ class TestKinds:
             _ = load(atoms).mesh
         assert load(atoms).molecule.labels == read_xyz(atoms).labels
         assert np.array_equal(load(mesh).mesh.vertices, read_mesh(mesh).vertices)
-        assert repr(load(mesh)) == f"<Loaded v/f text from {mesh}>"
+        assert repr(load(mesh)) == f"<FileContent v/f text from {mesh}>"
 
 
 class TestErrors:

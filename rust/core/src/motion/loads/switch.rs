@@ -1,4 +1,4 @@
-//! Signs that change the law of a load.
+//! What changes the law of a load within a step: the sign of a feedback, a wheel that stops or begins to slip.
 
 use std::sync::Arc;
 

@@ -11,7 +11,7 @@ const TINY: f64 = 0.5 / 18_446_744_073_709_551_616.0;
 /// # Examples
 ///
 /// ```
-/// use polhode::random::laws::uniform;
+/// use polhode::random::distributions::uniform;
 ///
 /// assert_eq!(uniform(1 << 63), 0.5 + 2.0_f64.powi(-53));
 /// ```
@@ -27,7 +27,7 @@ pub fn uniform(word: u64) -> f64 {
 /// # Examples
 ///
 /// ```
-/// use polhode::random::laws::normal;
+/// use polhode::random::distributions::normal;
 ///
 /// let word = 0x1234_5678_9abc_def0;
 /// assert_eq!(normal(word), -normal(word | 1 << 63)); // the first bit is the sign

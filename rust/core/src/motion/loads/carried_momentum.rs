@@ -8,7 +8,7 @@ use crate::motion::state::Phase;
 /// What a law carries along in the body: an angular momentum beside I ω, and internal states that go on with the motion.
 ///
 /// I is the tensor of the body with its wheels locked, ω that of B relative to N; all components in B. `state`: the states.
-pub trait Carried {
+pub trait CarriedMomentum {
     /// How many states it has.
     fn count(&self) -> usize;
 

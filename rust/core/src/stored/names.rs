@@ -1,4 +1,4 @@
-//! From a value to its stored form and back: names for what is one of a few, plain numbers for what has parts.
+//! Names as stored forms of values that are one of a few; four numbers as that of an attitude.
 
 use nalgebra::{Quaternion, UnitQuaternion};
 

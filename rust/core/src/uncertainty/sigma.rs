@@ -28,7 +28,7 @@ const ANYWHERE: f64 = 1.0;
 
 /// Standard deviations of a body's numbers, and whether each is linear enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Deviations {
+pub struct Sigma {
     /// Of the ten numbers.
     pub numbers: [f64; 10],
     /// Of the principal moments.
@@ -49,7 +49,7 @@ pub struct Deviations {
 
 /// Standard deviations of mass, centre and tensor, of the principal moments and axes about C, and of the radii of gyration.
 #[must_use]
-pub fn deviations(body: &RigidBody, uncertainty: &LinearUncertainty) -> Deviations {
+pub fn sigma(body: &RigidBody, uncertainty: &LinearUncertainty) -> Sigma {
     of(
         &InertialParameters::of(body),
         &body.principal(),
@@ -57,15 +57,15 @@ pub fn deviations(body: &RigidBody, uncertainty: &LinearUncertainty) -> Deviatio
     )
 }
 
-/// As [`deviations`], with tensor, moments, axes and radii about a point of the body frame.
+/// As [`sigma`], with tensor, moments, axes and radii about a point of the body frame.
 ///
 /// # Errors
 /// Those of [`propagate`]; a point is in the domain of every body, so that there are none.
-pub fn deviations_about(
+pub fn sigma_about(
     body: &RigidBody,
     uncertainty: &LinearUncertainty,
     point: &Vector3<f64>,
-) -> Result<Deviations, Error> {
+) -> Result<Sigma, Error> {
     let numbers = InertialParameters::of(body);
     let from = Inputs {
         bodies: &[(numbers, uncertainty)],
@@ -84,7 +84,7 @@ fn of(
     numbers: &InertialParameters<f64>,
     principal: &PrincipalAxes,
     uncertainty: &LinearUncertainty,
-) -> Deviations {
+) -> Sigma {
     let largest = principal.moments[2];
     let BodyTerms {
         own,
@@ -130,7 +130,7 @@ fn of(
         1..4 => radius,
         _ => largest,
     };
-    Deviations {
+    Sigma {
         numbers: own.map(Terms::deviation),
         moments: moments.map(Terms::deviation),
         radii: std::array::from_fn(|k| match (is_zero(k), rests(k)) {
@@ -268,12 +268,13 @@ impl BodyTerms {
             let ends = [1.0, -1.0].map(|sign| {
                 let tensor = numbers.tensor() + slope.tensor() * sign + curvature.tensor();
                 let mass = numbers.mass + slope.mass * sign + curvature.mass;
-                Stepped::from(principal, lengths, &principal_axes(&tensor), mass)
+                StepChange::from(principal, lengths, &principal_axes(&tensor), mass)
             });
             let change = TensorStep::of(principal, &slope.tensor()).change;
             let bend_of_moments = TensorStep::of(principal, &curvature.tensor()).moments();
             for (k, (moment, angle)) in seconds.iter().enumerate() {
-                let mean = |of: fn(&Stepped) -> [f64; 3]| 0.5 * (of(&ends[0])[k] + of(&ends[1])[k]);
+                let mean =
+                    |of: fn(&StepChange) -> [f64; 3]| 0.5 * (of(&ends[0])[k] + of(&ends[1])[k]);
                 let closed = moment.of(&change);
                 self.to_second_order[k].add(closed + bend_of_moments[k]);
                 evens[0][k].add(mean(|end| end.moments), closed);
@@ -621,7 +622,7 @@ impl TensorStep {
 }
 
 /// What moments and axes have become after a step.
-pub(super) struct Stepped {
+pub(super) struct StepChange {
     /// By how much the moments are others.
     pub(super) moments: [f64; 3],
     /// And the radii of gyration; NaN where a body has none.
@@ -630,7 +631,7 @@ pub(super) struct Stepped {
     pub(super) angles: [f64; 3],
 }
 
-impl Stepped {
+impl StepChange {
     pub(super) fn from(
         start: &PrincipalAxes,
         radii: [f64; 3],
@@ -702,7 +703,7 @@ mod tests {
     #[test]
     fn axes_between_equal_moments_are_not_determined() {
         let uncertainty = uncertainty([1e-3, 0.0, 0.0, 0.0, 0.0, 0.0]);
-        let top = deviations(&body([1.0, 2.0, 2.0]), &uncertainty);
+        let top = sigma(&body([1.0, 2.0, 2.0]), &uncertainty);
         assert!(top.axes[0].is_nan() && top.axes[1] == 0.0 && top.axes[2] == 0.0);
         assert_eq!(top.axes_are_linear, [false, true, true]);
         // The two moments that are equal stay so: they are as linear as the other.
@@ -710,7 +711,7 @@ mod tests {
             (top.moments, top.moments_are_linear),
             ([1e-3, 0.0, 0.0], [true; 3])
         );
-        let apart = deviations(&body([1.0, 2.0, 2.1]), &uncertainty);
+        let apart = sigma(&body([1.0, 2.0, 2.1]), &uncertainty);
         assert_eq!((apart.axes, apart.axes_are_linear), ([0.0; 3], [true; 3]));
     }
 
@@ -718,12 +719,12 @@ mod tests {
     fn moments_that_may_change_places_are_told_on_both_sides_of_the_limit() {
         let uncertainty = uncertainty([0.0, 0.0, 0.01, 0.0, 0.0, 0.0]);
         for (gap, moments) in [(0.99 * GAPS[0], false), (1.01 * GAPS[0], true)] {
-            let found = deviations(&body([1.0, 1.5, 1.5 + 0.01 * gap]), &uncertainty);
+            let found = sigma(&body([1.0, 1.5, 1.5 + 0.01 * gap]), &uncertainty);
             assert_eq!(found.moments_are_linear, [true, moments, moments]);
             assert_eq!(found.axes_are_linear, [false, moments, moments]);
         }
         for (gap, axes) in [(0.99 * GAPS[1], false), (1.01 * GAPS[1], true)] {
-            let found = deviations(&body([1.0, 1.5, 1.5 + 0.01 * gap]), &uncertainty);
+            let found = sigma(&body([1.0, 1.5, 1.5 + 0.01 * gap]), &uncertainty);
             assert_eq!(found.axes_are_linear, [axes, true, true]);
         }
     }
@@ -868,7 +869,7 @@ mod tests {
         let h = 1e-4;
         let tensor = Matrix3::from_diagonal(&Vector3::from(principal.moments));
         let [above, below] = [h, -h].map(|h| {
-            Stepped::from(
+            StepChange::from(
                 &principal,
                 [1.0; 3],
                 &principal_axes(&(tensor + slope * h)),
