@@ -13,6 +13,9 @@
 use std::cell::RefCell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use super::jet::Jet;
+use super::number::Real;
+
 /// Numbers in which a formula is written.
 pub(crate) trait Arithmetic:
     Copy
@@ -31,6 +34,12 @@ pub(crate) trait Arithmetic:
 impl Arithmetic for f64 {
     fn root(self) -> Self {
         self.sqrt()
+    }
+}
+
+impl<const N: usize> Arithmetic for Jet<N> {
+    fn root(self) -> Self {
+        Real::root(self)
     }
 }
 
@@ -344,7 +353,11 @@ mod tests {
     #[test]
     fn series_of_known_functions() {
         // ẋ = x² from 1: 1/(1 − t).
-        assert!(series(1.0, |x| x * x).iter().all(|c| (c - 1.0).abs() < 1e-15));
+        assert!(
+            series(1.0, |x| x * x)
+                .iter()
+                .all(|c| (c - 1.0).abs() < 1e-15)
+        );
         // ẋ = 1/x from 1: √(1 + 2t); as ẋ = 1/√(x²) too.
         let mut exact = 1.0;
         let (quotient, root) = (
@@ -380,6 +393,9 @@ mod tests {
         let (a, b) = ([1.0, 2.0, 3.0], [-2.0, 0.5, 4.0]);
         assert_eq!(dot(a, cross(a, b)), 0.0);
         assert_eq!(plus(minus(a, b), b), a);
-        assert_eq!(scaled(a, 2.0), transformed(&(nalgebra::Matrix3::identity() * 2.0), a));
+        assert_eq!(
+            scaled(a, 2.0),
+            transformed(&(nalgebra::Matrix3::identity() * 2.0), a)
+        );
     }
 }

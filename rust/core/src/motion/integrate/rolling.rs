@@ -61,7 +61,11 @@ impl RollingSeries {
         let [mass, weight, turntable, size] = equations.scales();
         let length = power_below(size);
         let fastest = (start.omega.norm().max(turntable)).max((weight / size).sqrt());
-        let rate = power_below(if fastest > 0.0 { fastest } else { 1.0 / span.abs() });
+        let rate = power_below(if fastest > 0.0 {
+            fastest
+        } else {
+            1.0 / span.abs()
+        });
         let state = equations.state(contact, start);
         let equations = equations.in_units(1.0 / length, 1.0 / power_below(mass), 1.0 / rate);
         let mut value = state.variables();
@@ -129,7 +133,11 @@ impl RollingSeries {
         }
         self.before = [self.value, self.rest];
         self.from = self.now;
-        self.now = if is_last { (self.end, 0.0) } else { (next, error) };
+        self.now = if is_last {
+            (self.end, 0.0)
+        } else {
+            (next, error)
+        };
         let sums = self.increments(step);
         for (i, sum) in sums.into_iter().enumerate() {
             (self.value[i], self.rest[i]) = two_sum(self.value[i], sum + self.rest[i]);
@@ -143,7 +151,13 @@ impl RollingSeries {
     fn longest_step(&self) -> f64 {
         let coefficients = self.series.coefficients();
         let scale = |number: usize| match number {
-            4..7 => if self.fastest > 0.0 { self.fastest } else { 1.0 },
+            4..7 => {
+                if self.fastest > 0.0 {
+                    self.fastest
+                } else {
+                    1.0
+                }
+            }
             10.. => self.farthest,
             _ => 1.0,
         };
@@ -158,7 +172,11 @@ impl RollingSeries {
             // A NaN is lost in the maximum, but not in the sum.
             let log = log2_step(largest, order, self.last_term) + 0.0 * sum;
             let step = exp2(log) + 0.0 * log;
-            longest = if step < longest || step.is_nan() { step } else { longest };
+            longest = if step < longest || step.is_nan() {
+                step
+            } else {
+                longest
+            };
         }
         longest
     }

@@ -160,7 +160,9 @@ mod tests {
             contact.start(&body, omega, UnitQuaternion::identity(), Some(position))
         };
         let velocity = start(0.5 + 1e-11).expect("a start").velocity;
-        assert!((velocity - Vector3::new(0.0, 2.0, 0.0).cross(&*contact.normal) * 0.5).norm() < 1e-15);
+        assert!(
+            (velocity - Vector3::new(0.0, 2.0, 0.0).cross(&*contact.normal) * 0.5).norm() < 1e-15
+        );
         for off in [1e-8, -1e-8, f64::NAN] {
             let refused = start(0.5 + off);
             assert!(matches!(

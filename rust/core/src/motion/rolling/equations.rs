@@ -17,9 +17,7 @@ use super::contact::Contact;
 use super::surface::Surface;
 use crate::mass::RigidBody;
 use crate::motion::state::Phase;
-use crate::numerics::power_series::{
-    Arithmetic, cross, dot, minus, plus, scaled, transformed,
-};
+use crate::numerics::power_series::{Arithmetic, cross, dot, minus, plus, scaled, transformed};
 
 /// A body, its surface and the plane, in axes W of the plane: the third is its normal, the origin the point it turns about.
 #[derive(Clone, Debug)]
@@ -82,9 +80,7 @@ impl Equations {
         Self {
             mass: body.mass(),
             inertia: body.inertia(),
-            surface: contact
-                .surface
-                .relative_to(&body.center_of_mass(), 1.0),
+            surface: contact.surface.relative_to(&body.center_of_mass(), 1.0),
             gravity: contact.plane_axes().transpose() * gravity,
             turntable: contact.turntable,
         }
@@ -141,10 +137,7 @@ impl Equations {
         // u̇ − g − ω×(ρ̇ + ω×ρ)
         let swept = cross(omega, arm);
         let inward = cross(omega, plus(arm_rate, swept));
-        let without_turn = minus(
-            plus(push, normal.map(|x| x * -self.gravity.z)),
-            inward,
-        );
+        let without_turn = minus(plus(push, normal.map(|x| x * -self.gravity.z)), inward);
         let torque = cross(arm, without_turn.map(|x| x * self.mass));
         let gyroscopic = cross(omega, transformed(&self.inertia, omega));
         let turn = solve(self.about_contact(arm), minus(torque, gyroscopic));

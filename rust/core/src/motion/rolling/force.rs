@@ -63,7 +63,8 @@ pub fn instant(
     let level = motion.level.map(Vector3::from);
     let normal_force = lift.dot(&normal);
     let tangential = lift.dot(&level[0]).hypot(lift.dot(&level[1]));
-    let force = contact.plane_axes() * Vector3::new(lift.dot(&level[0]), lift.dot(&level[1]), normal_force);
+    let force =
+        contact.plane_axes() * Vector3::new(lift.dot(&level[0]), lift.dot(&level[1]), normal_force);
     let point = phase.position + phase.attitude * arm;
     let plane = contact.plane_velocity(&point);
     let slip = phase.velocity + phase.attitude * phase.omega.cross(&arm) - plane;

@@ -42,12 +42,7 @@ pub struct Kept {
 /// # Ok::<(), polhode::Error>(())
 /// ```
 #[must_use]
-pub fn kept(
-    body: &RigidBody,
-    contact: &Contact,
-    gravity: &Vector3<f64>,
-    phase: &Phase,
-) -> Kept {
+pub fn kept(body: &RigidBody, contact: &Contact, gravity: &Vector3<f64>, phase: &Phase) -> Kept {
     let is_level = contact.normal.cross(gravity).norm() <= ROUNDING * gravity.norm();
     let Some(radius) = contact.surface.sphere_radius() else {
         return Kept::default();
@@ -78,7 +73,8 @@ pub fn kept(
     };
     let along = axis.dot(&(inertia * axis));
     let across = 0.5 * (inertia.trace() - along);
-    let tensor = nalgebra::Matrix3::identity() * across + axis * axis.transpose() * (along - across);
+    let tensor =
+        nalgebra::Matrix3::identity() * across + axis * axis.transpose() * (along - across);
     if (tensor - inertia).abs().max() > ROUNDING * inertia.trace() {
         return Kept {
             chaplygin,

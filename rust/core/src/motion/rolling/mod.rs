@@ -11,6 +11,7 @@
 //! | Newton's and Euler's equations with the constraint of rolling solved | `equations` |
 //! | force, friction needed, power | [`force`] |
 //! | what stays constant | [`invariants`] |
+//! | steady motions, critical rates, rattleback, tippe top | [`mod@steady`] |
 //!
 //! Source: Routh, Advanced Rigid Dynamics (1884), §§ 244–255; Borisov & Mamaev, Regular and Chaotic Dynamics 7 (2002) 177.
 
@@ -22,6 +23,7 @@ pub mod force;
 pub mod invariants;
 mod paraboloid;
 mod sphere;
+pub mod steady;
 pub mod surface;
 mod torus;
 

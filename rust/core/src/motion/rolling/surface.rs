@@ -136,14 +136,21 @@ impl Surface {
         // dp = −H dγ; the eigenvalues of H across γ are the radii of curvature.
         let across = axes_of(&Unit::new_unchecked(*normal));
         let (one, other) = (across.column(0).into(), across.column(1).into());
-        let (a, b) = (self.contact_rate(normal, &one), self.contact_rate(normal, &other));
+        let (a, b) = (
+            self.contact_rate(normal, &one),
+            self.contact_rate(normal, &other),
+        );
         let [xx, xy, yy] = [-a.dot(&one), -a.dot(&other), -b.dot(&other)];
         let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy).hypot(2.0 * xy));
         let largest = mean + half;
         // The smaller radius from the determinant, which cancels less; of a sharp edge it is rounding of zero.
         let smallest = (xx * yy - xy * xy) / largest;
         let is_edge = matches!(self.shape, Shape::Disk { .. });
-        let sharpest = if is_edge { f64::INFINITY } else { 1.0 / smallest };
+        let sharpest = if is_edge {
+            f64::INFINITY
+        } else {
+            1.0 / smallest
+        };
         [1.0 / largest, sharpest]
     }
 
@@ -170,12 +177,21 @@ impl Surface {
             Shape::Ellipsoid {
                 semi_axes: [a, b, _],
             } if a == b => Some(own(2)),
-            Shape::Ellipsoid { semi_axes: [_, b, c] } if b == c => Some(own(0)),
-            Shape::Ellipsoid { semi_axes: [a, _, c] } if a == c => Some(own(1)),
+            Shape::Ellipsoid {
+                semi_axes: [_, b, c],
+            } if b == c => Some(own(0)),
+            Shape::Ellipsoid {
+                semi_axes: [a, _, c],
+            } if a == c => Some(own(1)),
             Shape::Disk { .. } | Shape::Torus { .. } => Some(own(2)),
             Shape::Paraboloid { radii: [a, b], .. } if a == b => Some(own(2)),
             Shape::Ellipsoid { .. } | Shape::Paraboloid { .. } => None,
         }
+    }
+
+    /// Return the third of its own axes, in body axes.
+    pub(crate) fn own_axis(&self) -> Vector3<f64> {
+        self.axes.column(2).into()
     }
 
     /// Return the center of the surface.
@@ -270,9 +286,7 @@ impl Surface {
             Shape::Ellipsoid { semi_axes } => ellipsoid::contact(semi_axes, normal, rate),
             Shape::Disk { radius } => disk::contact(*radius, normal, rate),
             Shape::Torus { radii } => torus::contact(*radii, normal, rate),
-            Shape::Paraboloid { radii, apex } => {
-                paraboloid::contact(radii, *apex, normal, rate)
-            }
+            Shape::Paraboloid { radii, apex } => paraboloid::contact(radii, *apex, normal, rate),
         };
         let point = transformed(&self.axes, point);
         let center = &self.center;
@@ -378,7 +392,10 @@ mod tests {
             let ahead = surface.contact(&(normal + rate * 1e-6).normalize());
             let behind = surface.contact(&(normal - rate * 1e-6).normalize());
             let found = surface.contact_rate(&normal, &rate);
-            assert!(((ahead - behind) / 2e-6 - found).norm() < 1e-8, "{surface:?}");
+            assert!(
+                ((ahead - behind) / 2e-6 - found).norm() < 1e-8,
+                "{surface:?}"
+            );
             assert!(found.dot(&normal).abs() < 1e-15);
         }
     }

@@ -282,7 +282,10 @@ impl Extremes {
         };
         let place = |part: usize| from + (to - from) * (part as f64 / PARTS as f64);
         let nodes: [[f64; 2]; PARTS + 1] = std::array::from_fn(|part| values(place(part)));
-        let best = [self.found.friction_needed, self.found.normal_force.map(|x| x)];
+        let best = [
+            self.found.friction_needed,
+            self.found.normal_force.map(|x| x),
+        ];
         let mut best = [best[0], [-best[1][0], best[1][1]]];
         for which in 0..2 {
             let value = |part: usize| nodes[part][which];
