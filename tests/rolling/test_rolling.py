@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from polhode import RigidBody, loads, rolling, solids
 from polhode.errors import ContactError, PolhodeError
-from scipy.integrate import quad
 
 G = loads.uniform_gravity((0, 0, -9.81))
 
@@ -54,12 +53,14 @@ def test_an_eccentric_disk_lifts_off_where_energy_says() -> None:
         turn = (g * e * np.sin(angle) + a * e * np.sin(angle) * w * w) / moment_about_contact(angle)
         return float(g - e * np.cos(angle) * w * w - e * np.sin(angle) * turn)
 
-    low, high = 1.0, 2.5
+    low, high = 1.0, 2.0
     assert normal(low) > 0 > normal(high)
     while high - low > 1e-16 * high and 0.5 * (low + high) not in (low, high):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if normal(middle) > 0 else (low, middle)
-    time = quad(lambda angle: 1 / rate(angle), 0, low, epsabs=1e-15, epsrel=1e-14)[0]
+    # By Gauss's rule: the integrand is analytic beside the interval.
+    places, weights = np.polynomial.legendre.leggauss(200)
+    time = float(np.sum(weights * [0.5 * low / rate(0.5 * low * (x + 1)) for x in places]))
     assert low == pytest.approx(1.809661, abs=5e-7)
     assert time == pytest.approx(1.482721, abs=5e-7)
 
@@ -353,14 +354,16 @@ def test_a_boat_that_rolls_over_its_rim_says_so() -> None:
         ContactError, match=r"the contact is lost at t = 0\.\d+: the paraboloid touches on its rim"
     ):
         boat.simulate(
-            [0, 5], (0.5, 0, 0), load=G, contact=rolling.plane(rolling.paraboloid((0.2, 0.3), 0.05))
+            [0, 5], (0, 0.5, 0), load=G, contact=rolling.plane(rolling.paraboloid((0.2, 0.3), 0.05))
         )
 
 
 def test_a_disk_that_falls_flat_says_so() -> None:
     disk = solids.cylinder(0.5, 0.0, mass=1.0)
     with pytest.raises(ContactError, match=r"the contact is lost at t = 0\.\d+: .*lies flat"):
-        disk.simulate([0, 5], (0, 0, 0), about_x(1.4), load=G, contact=rolling.plane(rolling.disk(0.5)))
+        disk.simulate(
+            [0, 5], (0, 0, 0), about_x(1.4), load=G, contact=rolling.plane(rolling.disk(0.5), lift="hold")
+        )
 
 
 def test_a_start_at_which_the_plane_would_pull_lifts_off_at_once() -> None:

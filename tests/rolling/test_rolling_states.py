@@ -102,7 +102,11 @@ def test_height_slip_and_energy(number: int) -> None:
     case = CASES[number]
     found = run(case, np.linspace(0, case["t"], 101))
     assert found.contact is not None
-    assert np.max(np.abs(found.contact.residual)) <= 1e-14
+    # Rounding of the attitude moves the contact by the radius of curvature, which is large near a rim or lying flat.
+    surface, normal = surface_of(case), np.array(case["normal"])
+    in_body = rotate(found.quaternion, normal / np.linalg.norm(normal), inverse=True)
+    radius = np.max(1 / surface.curvatures(in_body)[:, 0])
+    assert np.max(np.abs(found.contact.residual)) <= 1e-14 * max(1.0, radius)
     kept = found.invariants()
     if case["turntable"]:
         assert kept.energy is None
