@@ -201,9 +201,13 @@ def steady(
     (<Steady: turn=8, spin=...stable>,)
     """
     found = []
-    for *columns, squared in rolling_steady(body, surface, inclination, gravity, turn, spin):
+    for omega, quaternion, *numbers, squared in rolling_steady(
+        body, surface, inclination, gravity, turn, spin
+    ):
         root = np.sqrt(complex(squared))
-        found.append(Steady(*columns, np.array([root, -root]), squared < 0.0))
+        turning, spinning, radius, friction = numbers
+        pair = np.array([root, -root])
+        found.append(Steady(omega, quaternion, turning, spinning, radius, friction, pair, squared < 0.0))
     return tuple(found)
 
 

@@ -41,7 +41,7 @@ def test_an_eccentric_disk_lifts_off_where_energy_says() -> None:
     a, e, moment, g, start = 1.0, 0.9, 0.09, 9.81, 0.5
 
     def moment_about_contact(angle: float) -> float:
-        return moment + a * a + e * e + 2 * a * e * np.cos(angle)
+        return float(moment + a * a + e * e + 2 * a * e * np.cos(angle))
 
     energy = 0.5 * moment_about_contact(0.0) * start**2 + g * e
 
@@ -90,10 +90,10 @@ def test_a_contact_that_holds_goes_on() -> None:
 def test_extremes_are_located_and_not_sampled() -> None:
     """The same at two outputs as at many, and where a fine sampling has them."""
     body = solids.cylinder(0.5, 0.0, mass=1.0)
-    start = {"omega": (0.3, 0.1, 6.0), "attitude": about_x(1.2), "load": G, "rtol": 1e-13}
+    start: dict[str, Any] = {"omega": (0.3, 0.1, 6.0), "attitude": about_x(1.2), "load": G, "rtol": 1e-13}
     contact = rolling.plane(rolling.disk(0.5))
-    few = body.simulate([0, 4], contact=contact, **start).contact
-    many = body.simulate(np.linspace(0, 4, 20001), contact=contact, **start).contact
+    few: Any = body.simulate([0, 4], contact=contact, **start).contact
+    many: Any = body.simulate(np.linspace(0, 4, 20001), contact=contact, **start).contact
     most = many.friction_needed.max()
     assert few.largest_friction_needed.value == pytest.approx(many.largest_friction_needed.value, rel=1e-13)
     assert most <= few.largest_friction_needed.value <= most * (1 + 1e-6)
@@ -111,7 +111,7 @@ def test_a_ball_on_a_turntable_goes_in_circles(tilt: float) -> None:
     normal = np.array([np.sin(tilt), 0, np.cos(tilt)])
     contact = rolling.plane(rolling.sphere(0.2), normal=normal, turntable=rate)
     t = np.linspace(0, 20, 41)
-    found = ball.simulate(t, (1.0, -2.0, 0.5), load=G, contact=contact, rtol=1e-14)
+    found: Any = ball.simulate(t, (1.0, -2.0, 0.5), load=G, contact=contact, rtol=1e-14)
     one = np.cross([0, 1.0, 0], normal)
     two = np.cross(normal, one)
     pull = 5 / 7 * np.array([0, 0, -g]) @ np.array([one, two]).T
@@ -141,7 +141,7 @@ def test_a_rolling_coin_precesses_steadily() -> None:
     body = solids.cylinder(a, 0.0, mass=m)
     angle = np.pi / 2 - theta
     omega = (0.0, turn * np.sin(angle), spin)
-    found = body.simulate(
+    found: Any = body.simulate(
         np.linspace(0, 10, 21),
         omega,
         about_x(angle),
@@ -176,7 +176,7 @@ def test_ten_thousand_rotations_of_chaplygins_ball(turns: int) -> None:
     ball = RigidBody.from_principal(1.0, (0.08, 0.1, 0.13))
     t = np.linspace(0, turns * 2 * np.pi / 3.74, 1001)
     contact = rolling.plane(rolling.sphere(0.5))
-    found = ball.simulate(t, (1.0, 2.0, 3.0), load=G, contact=contact, rtol=2.3e-15)
+    found: Any = ball.simulate(t, (1.0, 2.0, 3.0), load=G, contact=contact, rtol=2.3e-15)
     kept = found.invariants()
     assert kept.chaplygin_drift <= 1e-12
     assert kept.energy_drift <= 1e-12
@@ -188,7 +188,7 @@ def test_ten_thousand_rotations_of_chaplygins_ball(turns: int) -> None:
 def test_ten_thousand_rotations_of_a_disk(turns: int) -> None:
     body = solids.cylinder(0.5, 0.0, mass=1.0)
     t = np.linspace(0, turns * 2 * np.pi / 8, 1001)
-    found = body.simulate(
+    found: Any = body.simulate(
         t, (0.3, 1.0, 8.0), about_x(1.2), load=G, contact=rolling.plane(rolling.disk(0.5)), rtol=2.3e-15
     )
     assert found.status == "complete"
@@ -198,7 +198,7 @@ def test_ten_thousand_rotations_of_a_disk(turns: int) -> None:
 def test_jellett_and_routh_of_a_loaded_ball() -> None:
     ball = RigidBody.from_principal(1.0, (0.08, 0.08, 0.13), center_of_mass=(0, 0, -0.05))
     contact = rolling.plane(rolling.sphere(0.5))
-    found = ball.simulate(
+    found: Any = ball.simulate(
         np.linspace(0, 100, 101), (1.0, 2.0, 6.0), about_x(0.5), load=G, contact=contact, rtol=2.3e-15
     )
     kept = found.invariants()
@@ -236,9 +236,9 @@ def test_the_rattleback_reverses() -> None:
 def test_a_motion_goes_on_back_and_in_stacks() -> None:
     ball = RigidBody.from_principal(1.0, (0.08, 0.1, 0.13))
     contact = rolling.plane(rolling.sphere(0.5), normal=(0.1, 0.2, 1.0), point=(1, 2, 3), turntable=0.5)
-    given = {"load": G, "contact": contact, "rtol": 1e-14}
+    given: dict[str, Any] = {"load": G, "contact": contact, "rtol": 1e-14}
     omega = np.array([[1.0, 2.0, 3.0], [0.5, -1.0, 2.0]])
-    both = ball.simulate([0, 1, 2], omega, **given)
+    both: Any = ball.simulate([0, 1, 2], omega, **given)
     assert both.omega.shape == (2, 3, 3)
     assert both.contact.force.shape == (2, 3, 3)
     assert both.contact.largest_friction_needed.value.shape == (2,)
@@ -262,7 +262,7 @@ def test_events_of_functions_are_found() -> None:
         return float(state[2][0] - 1.0)
 
     at_one.terminal = True  # type: ignore[attr-defined]
-    found = ball.simulate(
+    found: Any = ball.simulate(
         [0, 10], (0, 2.0, 0), load=G, contact=rolling.plane(rolling.sphere(0.5)), events=at_one
     )
     assert found.status == "event"
@@ -368,7 +368,7 @@ def test_a_disk_that_falls_flat_says_so() -> None:
 
 def test_a_start_at_which_the_plane_would_pull_lifts_off_at_once() -> None:
     body = RigidBody.from_principal(1.0, (0.05, 0.05, 0.05), center_of_mass=(0, 0, 0.4))
-    found = body.simulate([0, 1], (20.0, 0, 0), load=G, contact=rolling.plane(rolling.sphere(0.5)))
+    found: Any = body.simulate([0, 1], (20.0, 0, 0), load=G, contact=rolling.plane(rolling.sphere(0.5)))
     assert found.status == "lift-off"
     assert found.events.t.tolist() == [0.0]
     assert not np.isnan(found.omega[0]).any()

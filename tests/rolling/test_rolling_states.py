@@ -87,10 +87,10 @@ def test_forces_and_accelerations_of_states(number: int) -> None:
             state = [mpf(float(x)) for x in flat(found, index)]
             rates, force, velocity = RollingBody(case).solve(state)
         exact = np.array([float(x) for x in force])
-        size = max(np.linalg.norm(exact), case["mass"] * 9.81)
+        size = max(float(np.linalg.norm(exact)), case["mass"] * 9.81)
         assert np.max(np.abs(found.contact.force[index] - exact)) <= 1e-12 * size
         turn = np.array([float(x) for x in rates[4:7]])
-        assert np.max(np.abs(acceleration[index] - turn)) <= 1e-11 * max(1.0, np.linalg.norm(turn))
+        assert np.max(np.abs(acceleration[index] - turn)) <= 1e-11 * max(1.0, float(np.linalg.norm(turn)))
         exact_velocity = np.array([float(x) for x in velocity])
         assert np.max(np.abs(found.velocity[index] - exact_velocity)) <= 1e-13 * (
             1 + np.linalg.norm(found.omega[index])
@@ -102,7 +102,7 @@ def test_height_slip_and_energy(number: int) -> None:
     case = CASES[number]
     found = run(case, np.linspace(0, case["t"], 101))
     assert found.contact is not None
-    # Rounding of the attitude moves the contact by the radius of curvature, which is large near a rim or lying flat.
+    # Rounding of the attitude moves the contact by the radius of curvature, which is large near lying flat.
     surface, normal = surface_of(case), np.array(case["normal"])
     in_body = rotate(found.quaternion, normal / np.linalg.norm(normal), inverse=True)
     radius = np.max(1 / surface.curvatures(in_body)[:, 0])
