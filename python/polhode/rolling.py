@@ -330,7 +330,7 @@ def tippe_top(body: RigidBody, surface: Surface, spin: float, gravity: ArrayLike
     Examples
     --------
     >>> from polhode import RigidBody, rolling
-    >>> top = RigidBody.from_principal(0.006, (8e-7, 8e-7, 7e-7), center_of_mass=(0, 0, -0.003))
+    >>> top = RigidBody.from_principal(0.006, (8e-7, 8e-7, 8e-7), center_of_mass=(0, 0, -0.003))
     >>> rolling.tippe_top(top, rolling.sphere(0.02), spin=200.0).verdict
     'inverts'
     >>> rolling.tippe_top(top, rolling.sphere(0.02), spin=1.0).verdict

@@ -390,7 +390,7 @@ def draw(number: int, rng: random.Random) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Write the table of 50 motions; this takes minutes. With the number of a kind of surface, print its part."""
+    """Write the table, which takes minutes; with numbers of kinds of surfaces, print their part."""
     rng = random.Random(47)
     drawn = [draw(number, rng) for number in range(50)]
     for kind in map(int, sys.argv[1:]) if sys.argv[1:] else range(5):
@@ -406,7 +406,8 @@ def main() -> None:
                 case["end"] = [np.format_float_scientific(x, unique=False, precision=20) for x in end]
             left, before = list(compress(left, ~is_known)), now[~is_known]
     # Of what comes to lie flat nothing is known.
-    found = [case for case in drawn if "end" in case and np.isfinite(np.array(case["end"], dtype=float)).all()]
+    ended = (case for case in drawn if "end" in case)
+    found = [case for case in ended if np.isfinite(np.array(case["end"], dtype=float)).all()]
     text = json.dumps(found, indent=1) + "\n"
     if sys.argv[1:]:
         print(text)

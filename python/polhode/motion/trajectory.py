@@ -963,6 +963,10 @@ class Trajectory(metaclass=Hinting):
         """Return whether a load acted, which a motion from a file does not have."""
         return self.load is not None or self._origin.loaded
 
+    def _is_driven(self) -> bool:
+        """Return whether a load or a plane acted, which a file of the motion does not hold."""
+        return self._is_loaded() or self._contact is not None
+
     def _about_word(self) -> Literal["origin", "center_of_mass"]:
         return "origin" if self.pivoted else "center_of_mass"
 

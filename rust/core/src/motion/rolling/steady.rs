@@ -421,7 +421,7 @@ pub struct TippeTop {
 /// use polhode::nalgebra::{Matrix3, Vector3};
 ///
 /// // C is 3 mm below the centre of a ball of 2 cm.
-/// let (moments, center) = ([8e-7, 8e-7, 7e-7], Vector3::new(0.0, 0.0, -0.003));
+/// let (moments, center) = ([8e-7, 8e-7, 8e-7], Vector3::new(0.0, 0.0, -0.003));
 /// let body = RigidBody::from_principal(0.006, &moments, &Matrix3::identity(), &center, 0.0)?;
 /// let surface = Surface::sphere(0.02, Vector3::zeros())?;
 /// let gravity = Vector3::new(0.0, 0.0, -9.81);

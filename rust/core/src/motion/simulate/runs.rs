@@ -98,7 +98,7 @@ pub fn roll<E: From<Error>>(
 /// Check that a task is one of rolling.
 fn check_rolling(task: &Task<'_>) -> Result<(), Error> {
     let needs = if task.body_at_point.pivoted {
-        "about=\"center_of_mass\": a body on a plane has no fixed point"
+        "a body on a plane has no fixed point: its centre of mass is free"
     } else if !matches!(task.method, Method::Auto | Method::Taylor) {
         "the method \"taylor\" (or \"auto\") rolls; the others do not solve the constraint"
     } else if task.tolerance.is_beyond_doubles() {
