@@ -29,6 +29,7 @@ from polhode.results import (
 from polhode.uncertainty.motion import FromPeriods, PeriodsSigma
 
 __all__ = [
+    "Contact",
     "FreeMotion",
     "Gyrostat",
     "GyrostatMotion",
@@ -38,6 +39,7 @@ __all__ = [
     "Region",
     "RigidBody",
     "Slabs",
+    "Surface",
     "Uncertain",
     "Wheel",
     "__version__",
@@ -53,6 +55,8 @@ __all__ = [
     "cone",
     "constant_force",
     "constant_torque",
+    "contact_history",
+    "contact_invariants",
     "covariance_factor",
     "cube",
     "cylinder",
@@ -107,6 +111,11 @@ __all__ = [
     "region_mesh",
     "ring",
     "rod",
+    "rolling_critical_rate",
+    "rolling_modes",
+    "rolling_plane",
+    "rolling_steady",
+    "rolling_tippe_top",
     "rotate",
     "rotor",
     "sampled",
@@ -118,6 +127,11 @@ __all__ = [
     "stick",
     "stream_solid",
     "surface_area",
+    "surface_disk",
+    "surface_ellipsoid",
+    "surface_paraboloid",
+    "surface_sphere",
+    "surface_torus",
     "tetrahedron",
     "to_log_cholesky",
     "to_parameters",
@@ -538,6 +552,7 @@ class RigidBody:
         attitude: _Attitude | Uncertain | None = None,
         *,
         load: Load | None = None,
+        contact: Contact | None = None,
         position: ArrayLike | None = None,
         velocity: ArrayLike | None = None,
         about: _Reference = "center_of_mass",
@@ -569,6 +584,24 @@ class RigidBody:
 
 @final
 class Region: ...
+
+@final
+class Surface:
+    def contact(self, normal: ArrayLike) -> _Floats: ...
+    def curvatures(self, normal: ArrayLike) -> _Floats: ...
+
+@final
+class Contact:
+    @property
+    def surface(self) -> Surface: ...
+    @property
+    def normal(self) -> _Floats: ...
+    @property
+    def point(self) -> _Floats: ...
+    @property
+    def turntable(self) -> float: ...
+    @property
+    def lift(self) -> str: ...
 
 @final
 class Slabs: ...
@@ -921,6 +954,61 @@ def region_ellipsoid(semi_axes: ArrayLike, center: ArrayLike = (0.0, 0.0, 0.0)) 
 def region_cylinder(
     radius: float, height: float, center: ArrayLike = (0.0, 0.0, 0.0), *, inner_radius: float = 0.0
 ) -> Region: ...
+def rolling_plane(
+    surface: Surface,
+    *,
+    normal: ArrayLike = (0.0, 0.0, 1.0),
+    point: ArrayLike = (0.0, 0.0, 0.0),
+    turntable: float = 0.0,
+    lift: Literal["stop", "hold"] = "stop",
+) -> Contact: ...
+def surface_sphere(radius: float, center: ArrayLike = (0.0, 0.0, 0.0)) -> Surface: ...
+def surface_ellipsoid(
+    semi_axes: ArrayLike, center: ArrayLike = (0.0, 0.0, 0.0), axes: ArrayLike | None = None
+) -> Surface: ...
+def surface_disk(
+    radius: float, axis: ArrayLike = (0.0, 0.0, 1.0), center: ArrayLike = (0.0, 0.0, 0.0)
+) -> Surface: ...
+def surface_torus(
+    major_radius: float,
+    minor_radius: float,
+    axis: ArrayLike = (0.0, 0.0, 1.0),
+    center: ArrayLike = (0.0, 0.0, 0.0),
+) -> Surface: ...
+def surface_paraboloid(radii: ArrayLike, apex: float, axes: ArrayLike | None = None) -> Surface: ...
+def rolling_steady(
+    body: RigidBody,
+    surface: Surface,
+    inclination: float,
+    gravity: ArrayLike,
+    turn: float | None,
+    spin: float | None,
+) -> list[Any]: ...
+def rolling_critical_rate(body: RigidBody, surface: Surface, gravity: ArrayLike, motion: str) -> float: ...
+def rolling_tippe_top(
+    body: RigidBody, surface: Surface, spin: float, gravity: ArrayLike
+) -> tuple[float, float, float, float]: ...
+def rolling_modes(
+    body: RigidBody, surface: Surface, gravity: ArrayLike, rate: float
+) -> list[list[float]]: ...
+def contact_history(
+    body: RigidBody,
+    contact: Contact,
+    load: Load | None,
+    omega: ArrayLike,
+    quaternion: ArrayLike,
+    position: ArrayLike,
+    velocity: ArrayLike,
+) -> dict[str, _Floats]: ...
+def contact_invariants(
+    body: RigidBody,
+    contact: Contact,
+    load: Load | None,
+    omega: ArrayLike,
+    quaternion: ArrayLike,
+    position: ArrayLike,
+    velocity: ArrayLike,
+) -> dict[str, Any]: ...
 def region_mesh(vertices: ArrayLike, faces: ArrayLike) -> Region: ...
 def to_positive_products(body: RigidBody) -> tuple[_Floats, _Floats]: ...
 def to_pseudo_inertia(body: RigidBody) -> _Floats: ...

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from polhode.motion.trajectory import Trajectory
 
 __all__ = [
+    "ContactError",
     "FileFormatError",
     "IntegrationError",
     "InvalidInertiaError",
@@ -87,6 +88,14 @@ class PolhodeError(ValueError):
 
 class InvalidInertiaError(PolhodeError):
     """Mass properties that no real body can have."""
+
+
+class ContactError(PolhodeError):
+    """A body that cannot touch a plane as it should.
+
+    It hovers over the plane or sinks into it, lies flat, touches beyond the end of its surface, or is asked
+    for what a contact cannot do.
+    """
 
 
 class MeshError(PolhodeError):

@@ -327,12 +327,27 @@ class Invariants(NamedTuple):
     energy_drift, angular_momentum_drift : float or numpy.ndarray, shape (...), or None
         Largest change since the start: of the energy, relative to the largest sum of the absolute values of
         kinetic and potential energy; of the angular momentum, relative to the largest angular momentum.
+    jellett : numpy.ndarray, shape (..., T), or None
+        Of a body that rolls: Jellett's integral ``-(I ω)·r`` with r from C to the contact, for a sphere whose
+        matter is one of revolution, on a level plane at rest. None in all other cases, so for all below.
+    routh : numpy.ndarray, shape (..., T), or None
+        Routh's integral ``ω_s √(I_t I_s + m r·I r)`` of the same.
+    chaplygin : numpy.ndarray, shape (..., T, 3), or None
+        Chaplygin's vector ``R (I ω + m r×(ω×r))`` in space, for a sphere about C with any tensor.
+    jellett_drift, routh_drift, chaplygin_drift : float or numpy.ndarray, shape (...), or None
+        Largest change of each since the start, relative to its largest size.
     """
 
     energy: Floats | None
     angular_momentum: Floats | None
     energy_drift: Any
     angular_momentum_drift: Any
+    jellett: Floats | None = None
+    routh: Floats | None = None
+    chaplygin: Floats | None = None
+    jellett_drift: Any = None
+    routh_drift: Any = None
+    chaplygin_drift: Any = None
 
     def __repr__(self) -> str:
         return short(self)

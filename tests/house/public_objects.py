@@ -19,6 +19,7 @@ MODULES = [
     "polhode.reductions",
     "polhode.regions",
     "polhode.rods",
+    "polhode.rolling",
     "polhode.solids",
     "polhode.validity",
     "polhode.loads",

@@ -339,7 +339,7 @@ def _save_json(trajectory: Trajectory, path: Path) -> None:
     fields: dict[str, Any] = {"format": _MOTION_FORMAT}
     fields["body"] = in_json(body_fields(trajectory.body), path)
     fields |= {name: getattr(trajectory, name) for name in _FIELDS}
-    fields[_LOADED] = trajectory._is_loaded()
+    fields[_LOADED] = trajectory._is_driven()
     fields |= _carried_of(trajectory) | _began_of(trajectory)
     if trajectory.states:
         fields[_STATES_OF_LOAD] = in_json(trajectory.states, path)
@@ -356,7 +356,7 @@ def _save_npz(trajectory: Trajectory, path: Path) -> None:
     """
     check_kind(trajectory, "trajectory", "Trajectory")
     arrays = {name: getattr(trajectory, name) for name in _FIELDS}
-    arrays[_LOADED] = np.array(trajectory._is_loaded())
+    arrays[_LOADED] = np.array(trajectory._is_driven())
     arrays |= _carried_of(trajectory) | _began_of(trajectory)
     arrays |= {f"{_STATES_OF_LOAD}_{name}": values for name, values in trajectory.states.items()}
     arrays |= {name: getattr(trajectory.body, name) for name in BODY_ARRAYS}

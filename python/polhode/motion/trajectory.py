@@ -11,6 +11,7 @@ import numpy as np
 
 from polhode import _core
 from polhode._hints import ClassWithHints, no_attribute
+from polhode.motion.contact import ContactHistory, Extreme
 from polhode.motion.events import Events
 from polhode.motion.gyrostat import Wheel, wheel
 from polhode.motion.invariants import drift, lengths
@@ -90,9 +91,9 @@ class Trajectory(metaclass=ClassWithHints):
     load : Load or None
         What acted on the body.
     status : str or numpy.ndarray of str, shape (...)
-        How the run of each body ended: ``"complete"``; ``"event"``, at a terminal event; ``"failed"``;
-        ``"stopped"``, by Ctrl-C; or ``"not run"``, since another body failed first. States after the end are
-        NaN.
+        How the run of each body ended: ``"complete"``; ``"event"``, at a terminal event; ``"lift-off"``,
+        where a body that rolls leaves the plane; ``"failed"``; ``"stopped"``, by Ctrl-C; or ``"not run"``,
+        since another body failed first. States after the end are NaN.
     events : Events
         The passages of the event functions through zero, as a table.
     failures : tuple of PolhodeError
@@ -137,6 +138,8 @@ class Trajectory(metaclass=ClassWithHints):
     states: dict[str, Floats] = field(default_factory=dict)
     carried: tuple[Floats, Floats] | None = field(default_factory=lambda: None)
     _origin: Origin = field(default=Origin(), init=False)
+    _contact: _core.Contact | None = field(default=None, init=False)
+    _contact_extremes: tuple[Floats, Floats] | None = field(default=None, init=False)
 
     @classmethod
     def _of_run(cls, known: dict[str, Any]) -> Trajectory:
@@ -175,6 +178,18 @@ class Trajectory(metaclass=ClassWithHints):
         ends = np.unique(self.status).tolist()
         ended = f", {' or '.join(ends)}" if ends != ["complete"] else ""
         return f"Trajectory({bodies}{count} times{span}{ended})"
+
+    @cached_property
+    def contact(self) -> ContactHistory | None:
+        """Return the contact of a body that rolls: force, friction needed and more; None without one."""
+        if self._contact is None or self._contact_extremes is None:
+            return None
+        load = None if self.load is None else self._over_time(self.load)
+        known = _core.contact_history(
+            self._bodies(), self._contact, load, self.omega, self.quaternion, self.position, self.velocity
+        )
+        most, least = (Extreme(*np.moveaxis(one, -1, 0)) for one in self._contact_extremes)
+        return ContactHistory(**known, largest_friction_needed=most, smallest_normal_force=least)
 
     @cached_property
     def rotation(self) -> Rotation:
@@ -273,6 +288,8 @@ class Trajectory(metaclass=ClassWithHints):
         (True, True)
         """
         kinetic, potential = self.kinetic_energy().total, self._potential()
+        if self._contact is not None and self._contact.turntable:
+            potential = None  # the plane does work
         spin = self.angular_momentum().spin
         energy = None if potential is None else kinetic + potential
         kept = self._kept_directions()
@@ -292,7 +309,22 @@ class Trajectory(metaclass=ClassWithHints):
             along,
             None if potential is None else relative_drift(kinetic + potential, kinetic + np.abs(potential)),
             None if along is None else relative_drift(along, lengths(spin)),
+            **self._kept_by_rolling(relative_drift),
         )
+
+    def _kept_by_rolling(self, relative_drift: Any) -> dict[str, Any]:
+        """Return what the contact keeps, and how far the numbers have drifted from it."""
+        if self._contact is None:
+            return {}
+        load = None if self.load is None else self._over_time(self.load)
+        kept = _core.contact_invariants(
+            self._bodies(), self._contact, load, self.omega, self.quaternion, self.position, self.velocity
+        )
+        for name, values in list(kept.items()):
+            if values is not None:
+                size = lengths(values) if name == "chaplygin" else np.abs(values)
+                kept[f"{name}_drift"] = relative_drift(values, size)
+        return kept
 
     def state(self, index: int = -1) -> State:
         """Return the state at one of the times, for example to start another simulation with it.
@@ -438,11 +470,17 @@ class Trajectory(metaclass=ClassWithHints):
     def angular_acceleration(self) -> Floats:
         """Compute the angular acceleration at every time by Euler's equations, components in the body frame.
 
+        The torque is that of the load, and of the plane on which a body rolls.
+
         Returns
         -------
         numpy.ndarray, shape (..., T, 3)
         """
-        return self._bodies().angular_acceleration(self.omega, self.torque(), about=self._reference())
+        torque = self.torque()
+        if self.contact is not None:
+            arm = self.contact.point_in_body - self._reference()
+            torque = torque + np.cross(arm, _core.rotate(self.quaternion, self.contact.force, inverse=True))
+        return self._bodies().angular_acceleration(self.omega, torque, about=self._reference())
 
     def potential_energy(self) -> Floats:
         """Compute the potential energy in the field of the load at every time.
@@ -569,6 +607,11 @@ class Trajectory(metaclass=ClassWithHints):
         >>> slopes.state.shape, slopes.load[0]["gravity"].shape
         ((2, 6, 6), (2, 6, 3))
         """
+        if self._contact is not None:
+            raise ValueError(
+                "sensitivity: the derivatives of a body that rolls are not known; take differences of "
+                "motions from starts a little apart, simulated tightly"
+            )
         self._check_series("sensitivity", "; FreeMotion.sensitivity(t) has those of a free body at any times")
         if method == "differences":
             from polhode.motion.finite_differences import by_differences
@@ -646,8 +689,9 @@ class Trajectory(metaclass=ClassWithHints):
                     f"body.simulate(t, **motion.state()._asdict() | {{{name!r}: ...}})"
                 )
         given = state._asdict() | {"about": about}
-        if self.pivoted:
+        if self.pivoted or self._contact is not None:
             del given["velocity"]
+        given["contact"] = self._contact
         first = float(self.t.flat[0]) if self._origin.start is None else self._origin.start
         is_another = "load" in options or "states" in options
         load = options.pop("load") if "load" in options else self._acting("resume", -1)
@@ -919,6 +963,10 @@ class Trajectory(metaclass=ClassWithHints):
         """Return whether a load acted, which a motion from a file does not have."""
         return self.load is not None or self._origin.loaded
 
+    def _is_driven(self) -> bool:
+        """Return whether a load or a plane acted, which a file of the motion does not hold."""
+        return self._is_loaded() or self._contact is not None
+
     def _about_word(self) -> Literal["origin", "center_of_mass"]:
         return "origin" if self.pivoted else "center_of_mass"
 
@@ -938,6 +986,8 @@ class Trajectory(metaclass=ClassWithHints):
 
     def _kept_directions(self) -> Any:
         """Return the directions along which L is conserved: True for all, unit vectors, or None."""
+        if self._contact is not None:
+            return None
         if self.load is None:
             return None if self._is_loaded() else True
         return self.load.keeps_momentum(self._about_word())
@@ -1017,7 +1067,7 @@ class Trajectory(metaclass=ClassWithHints):
 
     def _exact(self) -> _core.FreeMotion | _core.GyrostatMotion | None:
         """Return the motion in closed form from the first state on, of one body; None where none is known."""
-        if self._is_loaded() or self.pivoted:
+        if self._is_loaded() or self.pivoted or self._contact is not None:
             return None
         motion = self._origin.motion
         if motion is None:

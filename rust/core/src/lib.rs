@@ -66,6 +66,7 @@
 //! | `I = V diag(I₁, I₂, I₃) Vᵀ`: axes, and what kind of top it is | [`principal`] |
 //! | `T = ½ ω·I ω`, `L = I ω`, `I ω̇ + ω × I ω = N` at one instant | [`motion::kinetic_energy`], [`motion::angular_momentum`], [`motion::euler_equations`] |
 //! | motions in closed form | [`motion::free`], [`motion::gyrostat`], [`motion::heavy_top`] |
+//! | rolling on a plane | [`motion::rolling`] |
 //! | motions under loads | [`motion::loads`], [`motion::simulate`](mod@motion::simulate) |
 //! | `Σ = S Sᵀ`: what is not known of a body, and what it makes of all that follows | [`uncertainty`] |
 //! | numbers drawn for the members of an ensemble | [`random`] |

@@ -19,6 +19,7 @@ pub(crate) fn to_py(py: Python<'_>, error: &Error) -> PyErr {
         Kind::File => "FileFormatError",
         Kind::SingularAttitude => "SingularAttitudeError",
         Kind::Quadrature => "QuadratureError",
+        Kind::Contact => "ContactError",
         Kind::Integration => "IntegrationError",
         Kind::Memory => return PyMemoryError::new_err(in_words(error)),
         _ => "PolhodeError",

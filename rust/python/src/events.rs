@@ -99,6 +99,10 @@ impl Functions {
         Ok(())
     }
 
+    pub(crate) fn len(&self) -> usize {
+        self.functions.len()
+    }
+
     pub(crate) fn is_empty(&self) -> bool {
         self.functions.is_empty()
     }

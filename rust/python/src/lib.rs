@@ -60,6 +60,7 @@ mod realizable;
 mod regions;
 mod rigid_body;
 mod rods;
+mod rolling;
 mod rotations;
 mod sensitivity;
 mod shape;
@@ -136,6 +137,12 @@ mod _core {
     use crate::regions::{ellipsoid as ellipsoid_region, mesh};
     #[pymodule_export]
     use crate::rods::{arc, ring, rod};
+    #[pymodule_export]
+    use crate::rolling::{
+        PyContact, PySurface, contact_history, contact_invariants, disk as surface_disk,
+        ellipsoid as surface_ellipsoid, paraboloid, plane, rolling_critical_rate, rolling_modes,
+        rolling_steady, rolling_tippe_top, sphere as surface_sphere, torus as surface_torus,
+    };
     #[pymodule_export]
     use crate::rotations::{
         euler_angles_from_quaternion, quaternion_from_euler_angles, quaternion_from_matrix, rotate,

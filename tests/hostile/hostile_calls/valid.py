@@ -25,6 +25,7 @@ from polhode import (
     loads,
     molecules,
     orbits,
+    rolling,
     solids,
     validity,
 )
@@ -121,6 +122,8 @@ VALUES: dict[str, Any] = {
     "elapsed": 0.5, "limit": None, "strength": [0.0, 0.5, 0.25],
     "law": "normal", "seed": 7, "stream": 9, "first": 3, "count": 5, "width": 4,
     "value": [1.0, 2.0], "sigma": [0.125, 0.25], "covariance": None, "source": None,
+    "contact": None, "normal": [0.25, 0.0, 1.0], "apex": 0.5, "turntable": 0.25, "lift": "hold",
+    "surface": rolling.sphere(0.5),
 }  # fmt: skip
 """What a parameter of this name takes; numbers that float32 has too."""
 
@@ -174,6 +177,12 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "Gyrostat.equilibria": {"momentum": 2.0},
     "GyrostatMotion.equilibria": {"self": [TUMBLER.gyrostat((0.0, 0.5, 2.0)).free_motion(OMEGA)]},
     "Trajectory.sensitivity": {"method": "series"},
+    "surface_ellipsoid": {"axes": np.eye(3).tolist()},
+    "surface_paraboloid": {"radii": [1.0, 0.5], "axes": np.eye(3).tolist()},
+    **{
+        name: {"contact": rolling.plane(rolling.sphere(0.5)), "load": loads.uniform_gravity((0.0, 0.0, -8.0))}
+        for name in ("contact_history", "contact_invariants")
+    },
     "schedule": {"load": loads.constant_torque((0.5, 0.0, 0.25))},
     "callback": {"function": push},
     "from_pseudo_inertia": {"pseudo_inertia": _core.to_pseudo_inertia(TUMBLER).tolist()},
@@ -284,6 +293,7 @@ def receivers() -> dict[str, tuple[Any, ...]]:
         "Load": (loads.constant_torque((0.5, 0.0, 0.25)), load_of_all()),
         "MassAccumulator": (accumulator,),
         "PrincipalAxes": (TUMBLER.principal, STACK.principal),
+        "Surface": (rolling.sphere(0.5), rolling.paraboloid((1.0, 0.5), 0.5)),
         "Trajectory": (motion, TUMBLER.free_motion(OMEGA).at([0.0, 0.5])),
         "Wheel": (polhode.wheel(axis=[0.0, 0.5, 1.0], inertia=[0.25, 0.125], rate=2.0),),
     }

@@ -18,6 +18,8 @@ pub enum Kind {
     Quadrature,
     /// An integration that could not go on.
     Integration,
+    /// A body that cannot touch a plane as it should.
+    Contact,
     /// More than there is memory for.
     Memory,
 }

@@ -254,6 +254,36 @@ pub enum MotionFault {
         /// The largest.
         reach: f64,
     },
+    /// A body that does not touch the plane on which it is to roll.
+    #[error(
+        "position: the body {} by {:?}, where 1e-9 of the size {size:?} of its surface is allowed: a body that rolls touches the plane; \
+         leave position out to put it there",
+        if *gap > 0.0 { "hovers over the plane" } else { "sinks into the plane" },
+        gap.abs()
+    )]
+    NoContact {
+        /// The height of the contact over the plane.
+        gap: f64,
+        /// The size of the surface.
+        size: f64,
+    },
+    /// A surface that touches the plane in no point of its own, or in more than one.
+    #[error("{}: {law}", match time {
+        Some(time) => format!("the contact is lost at t = {time:?}"),
+        None => "attitude: there is no contact at the start".to_owned(),
+    })]
+    NoPointOfContact {
+        /// When; none at the start.
+        time: Option<f64>,
+        /// Why, and the way out.
+        law: &'static str,
+    },
+    /// Something that a contact cannot do.
+    #[error("contact: {needs}")]
+    ContactCannotServe {
+        /// What it needs.
+        needs: &'static str,
+    },
     /// The step of an integration fell below what the clock can tell apart.
     #[error(
         "the integration cannot go on at t = {time:?}: its step would have to be {step:.2e}, too small to advance the \
@@ -328,6 +358,9 @@ impl MotionFault {
             Self::TorqueAlongMasslessAxis { .. }
             | Self::MasslessGyrostat { .. }
             | Self::WheelsTooHeavy { .. } => Kind::Inertia,
+            Self::NoContact { .. }
+            | Self::NoPointOfContact { .. }
+            | Self::ContactCannotServe { .. } => Kind::Contact,
             Self::GimbalLock { .. } | Self::SingularEulerRates { .. } => Kind::SingularAttitude,
             Self::StepTooSmall { .. }
             | Self::TooManySteps { .. }

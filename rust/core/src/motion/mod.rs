@@ -15,6 +15,7 @@
 //! | torque-free symmetric top: body cone and space cone | [`mod@free_precession`] |
 //! | what internal dissipation does to its nutation | [`mod@nutation_damping`] |
 //! | symmetric top in a uniform field: steady precession, sleeping | [`heavy_top`] |
+//! | a body that rolls on a plane | [`rolling`] |
 //! | attitude, ω, position and velocity together | [`state`] |
 //! | motions in closed form: states at one time and at many | [`closed_form`] |
 //! | what acts on the body | [`loads`] |
@@ -38,6 +39,7 @@ pub mod loads;
 pub mod nutation_damping;
 pub mod pivot_reaction;
 pub(crate) mod problem;
+pub mod rolling;
 pub mod simulate;
 pub mod stability;
 pub mod state;

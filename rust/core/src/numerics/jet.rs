@@ -58,6 +58,16 @@ impl<const N: usize> Add for Jet<N> {
     }
 }
 
+impl<const N: usize> Add<f64> for Jet<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(mut self, number: f64) -> Self {
+        self.value += number;
+        self
+    }
+}
+
 impl<const N: usize> Sub for Jet<N> {
     type Output = Self;
 

@@ -13,6 +13,7 @@
 //! | [`twofold`] | numbers of twice the precision in kernels |
 //! | [`number`] | one algorithm for doubles and for numbers of twice the precision |
 //! | [`power_of_two`] | scales that keep all digits |
+//! | [`power_series`] | formulas as Taylor series in time |
 //! | [`split_vector`] | differences, scalar products and determinants that survive cancellation |
 //! | [`elliptic`] | elliptic integrals by means and duplication |
 //! | [`theta`] | Jacobi's functions and the phase of Θ |
@@ -45,6 +46,7 @@ pub(crate) mod jet;
 pub(crate) mod lane;
 pub(crate) mod number;
 pub(crate) mod power_of_two;
+pub(crate) mod power_series;
 pub(crate) mod quad_double;
 pub(crate) mod quadrature;
 pub(crate) mod quaternion;

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use numpy::{PyArray1, PyArrayMethods, PyFixedUnicode};
 use polhode::motion::attitude::components;
-use polhode::motion::simulate::{Crossing, Effort, End, Run};
+use polhode::motion::simulate::{ContactExtremes, Crossing, Effort, End, Run};
 use polhode::motion::state::Phase;
 use pyo3::exceptions::PyMemoryError;
 use pyo3::intern;
@@ -29,6 +29,8 @@ pub(crate) struct Outcome {
     efforts: Vec<Effort>,
     /// Each with its row.
     crossings: Vec<(usize, Crossing)>,
+    /// How many functions there are whose passages are events.
+    functions: usize,
     /// The states of the load by name.
     slots: Vec<Slot>,
     /// The states of a run that Ctrl-C ended: to put them into arrays takes too long for whoever pressed it.
@@ -60,6 +62,15 @@ impl Outcome {
             )?;
         }
         Ok(named)
+    }
+
+    /// The number of an event among the functions; −1 where the body lifts off.
+    fn number(&self, crossing: &Crossing) -> i64 {
+        if crossing.event < self.functions {
+            i64::try_from(crossing.event).unwrap_or(i64::MAX)
+        } else {
+            -1
+        }
     }
 
     fn counts<'py>(&self, py: Python<'py>, of: fn(&Effort) -> u64) -> PyResult<Bound<'py, PyAny>> {
@@ -134,16 +145,24 @@ impl Outcome {
         let columns = (
             self.states_of_events(py)?,
             counts(|found| found.0),
-            counts(|found| found.1.event),
+            PyArray1::from_vec(
+                py,
+                self.crossings
+                    .iter()
+                    .map(|found| self.number(&found.1))
+                    .collect(),
+            ),
             write_of(py, &found, |found| found.1.time)?,
             write_of(py, &found, |found| found.1.phase.omega)?,
             write_of(py, &found, |found| components(&found.1.phase.attitude))?,
             write_of(py, &found, |found| found.1.phase.position)?,
             write_of(py, &found, |found| found.1.phase.velocity)?,
         );
-        py.import("polhode.motion.events")?
+        let table = py
+            .import("polhode.motion.events")?
             .getattr("Events")?
-            .call_method1("with_states", columns)
+            .call_method1("with_states", columns)?;
+        Ok(table)
     }
 }
 
@@ -175,6 +194,20 @@ impl Ensemble<'_> {
             interrupt.stop(error);
         }
         let keeps = interrupt.is_stopped();
+        if self.rolling.is_some() {
+            let extremes = |of: fn(&ContactExtremes) -> [f64; 2]| {
+                let rows = runs.iter().map(|run| {
+                    let contact = run.as_ref().and_then(|run| run.contact.as_ref());
+                    contact.map_or([f64::NAN; 2], of)
+                });
+                let rows = rows.collect();
+                let shape = self.grid.shape.clone();
+                write(py, &Stack { rows, shape })
+            };
+            let friction = extremes(|contact| contact.friction_needed)?;
+            let normal = extremes(|contact| contact.normal_force)?;
+            fields.set_item(intern!(py, "_contact_extremes"), (friction, normal))?;
+        }
         let mut efforts = memory::vector("result", &self.grid.shape, 0)?;
         let (mut crossings, mut samples) = (Vec::new(), Vec::new());
         for (row, run) in runs.into_iter().enumerate() {
@@ -196,6 +229,7 @@ impl Ensemble<'_> {
             },
             efforts,
             crossings,
+            functions: self.events.len(),
             slots,
             samples,
         };
@@ -210,6 +244,7 @@ impl Ensemble<'_> {
             None => "not run",
             Some(End::Complete) => "complete",
             Some(End::Event) => "event",
+            Some(End::LiftOff) => "lift-off",
             Some(End::Stopped) => "stopped",
             Some(End::Failed(_)) => "failed",
         };

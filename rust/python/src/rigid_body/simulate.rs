@@ -6,7 +6,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::simulate_stack::{Ensemble, Start};
+use super::simulate_stack::{Ensemble, Rolling, Start};
 use crate::about::is_pivot;
 use crate::arrays::{read, read_scalar};
 use crate::attitudes::read_attitude_exactly;
@@ -19,6 +19,7 @@ use crate::hints;
 use crate::interrupt::Interrupt;
 use crate::lazy_arrays::{handed_over, is_any};
 use crate::loads::PyLoad;
+use crate::rolling::read_contact;
 use crate::stack::Stack;
 use crate::times::read_times;
 use crate::uncertain::StartArguments;
@@ -47,6 +48,12 @@ impl PyRigidBody {
     ///     point `about`. Forces move the centre of mass of a free body.
     /// position, velocity : array_like, shape (..., 3), optional
     ///     Position and velocity of the point `about` at the start, in space; zero by default.
+    ///     With `contact`, position None puts the body on the plane, and the velocity is that of rolling.
+    /// contact : Contact, optional
+    ///     A plane on which the body rolls without slipping, from :func:`polhode.rolling.plane`; none by
+    ///     default. The load is then uniform gravity, or nothing, and the method "taylor" serves the run.
+    ///     ``contact`` of the trajectory has the force of the plane and what else the contact tells. Where the
+    ///     normal force falls through zero the run ends with the status "lift-off".
     /// about : {"center_of_mass", "origin"}, optional
     ///     The centre of mass of a body that moves freely, or the origin of the body frame when that
     ///     point is fixed in space.
@@ -135,11 +142,12 @@ impl PyRigidBody {
     /// array([ 12.618391, -17.397475,  31.119589])
     #[pyo3(
         signature = (
-            t=None, omega=None, attitude=None, *, load=None, position=None, velocity=None, about="center_of_mass",
+            t=None, omega=None, attitude=None, *, load=None, contact=None, position=None, velocity=None,
+            about="center_of_mass",
             method="auto", rtol=1e-10, atol=None, events=None, on_failure="raise", progress=None, states=None,
             max_steps=None, **unknown
         ),
-        text_signature = "($self, t, omega, attitude=None, *, load=None, position=None, velocity=None, about=\"center_of_mass\", method=\"auto\", rtol=1e-10, atol=None, events=None, on_failure=\"raise\", progress=None, states=None, max_steps=None)"
+        text_signature = "($self, t, omega, attitude=None, *, load=None, contact=None, position=None, velocity=None, about=\"center_of_mass\", method=\"auto\", rtol=1e-10, atol=None, events=None, on_failure=\"raise\", progress=None, states=None, max_steps=None)"
     )]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
     fn simulate<'py>(
@@ -149,6 +157,7 @@ impl PyRigidBody {
         omega: Given<'_, 'py>,
         attitude: Given<'_, 'py>,
         load: Given<'_, 'py>,
+        contact: Given<'_, 'py>,
         position: Given<'_, 'py>,
         velocity: Given<'_, 'py>,
         #[pyo3(from_py_with = read_scalar)] about: &str,
@@ -165,7 +174,7 @@ impl PyRigidBody {
         hints::refuse_unknown("RigidBody.simulate", &KEYWORDS, unknown)?;
         let [t, omega] = hints::require("RigidBody.simulate", [("t", t), ("omega", omega)])?;
         if is_any(&[Some(omega), attitude, position, velocity]) {
-            let arrays = [load, position, velocity, events, states];
+            let arrays = [load, contact, position, velocity, events, states];
             let words = (about, method, on_failure);
             let numbers = (rtol, atol, max_steps);
             let options = options_of(py, arrays, words, numbers, progress.as_ref())?;
@@ -179,6 +188,12 @@ impl PyRigidBody {
         if pivoted && velocity.is_some() {
             return Err(PyValueError::new_err(
                 "velocity: with about=\"origin\" that point is fixed in space and has no velocity",
+            ));
+        }
+        let contact = read_contact(contact)?;
+        if contact.is_some() && velocity.is_some_and(|velocity| !velocity.is_none()) {
+            return Err(PyValueError::new_err(
+                "velocity: a body that rolls has the velocity u - omega x r of rolling; leave it out",
             ));
         }
         let raises = match on_failure {
@@ -213,6 +228,14 @@ impl PyRigidBody {
             terms: acts.terms(py)?,
             states: acts.read_states(states, false)?,
         };
+        let rolling = match contact {
+            None => None,
+            Some(contact) => {
+                let is_placed = position.is_some_and(|position| !position.is_none());
+                let plane = contact.get().contact;
+                Some(Rolling::new(py, plane, &start, acts, is_placed)?)
+            }
+        };
         let events = Functions::read(events, acts, &start.terms)?;
         let of_one = most_demanding(&start.terms.rows, pivoted);
         let interrupt = Interrupt::new(progress);
@@ -220,7 +243,11 @@ impl PyRigidBody {
             &start.bodies.rows,
             pivoted,
             &times,
-            parse_method(method)?,
+            // Rolling has series, and no closed form that serves here.
+            match parse_method(method)? {
+                Method::Auto if rolling.is_some() => Method::Taylor,
+                method => method,
+            },
             tolerance,
             acts.is_analytic().then_some(of_one),
             &|done| interrupt.poll(done),
@@ -240,9 +267,14 @@ impl PyRigidBody {
             load: acts,
             events: &events,
             raises,
+            rolling,
         };
         ensemble.check(py)?;
         let (trajectory, has_failures) = ensemble.run(py, slf, load, &interrupt)?;
+        if let Some(contact) = contact {
+            let known = trajectory.getattr("__dict__")?;
+            known.set_item("_contact", contact)?;
+        }
         if given.uncertain.is_any() {
             let known = trajectory.getattr("__dict__")?;
             known.set_item("uncertain_start", given.uncertain.to_python(py)?)?;
@@ -269,7 +301,7 @@ impl PyRigidBody {
 /// The keywords as Python has them.
 fn options_of<'py>(
     py: Python<'py>,
-    [load, position, velocity, events, states]: [Given<'_, 'py>; 5],
+    [load, contact, position, velocity, events, states]: [Given<'_, 'py>; 6],
     (about, method, on_failure): (&str, &str, &str),
     (rtol, atol, max_steps): (f64, Option<f64>, Option<i128>),
     progress: Option<&Py<PyAny>>,
@@ -277,6 +309,7 @@ fn options_of<'py>(
     let options = PyDict::new(py);
     for (name, value) in [
         ("load", load),
+        ("contact", contact),
         ("position", position),
         ("velocity", velocity),
         ("events", events),
@@ -305,11 +338,12 @@ fn most_steps(given: Option<i128>) -> PyResult<u64> {
     }
 }
 
-const KEYWORDS: [&str; 15] = [
+const KEYWORDS: [&str; 16] = [
     "t",
     "omega",
     "attitude",
     "load",
+    "contact",
     "position",
     "velocity",
     "about",

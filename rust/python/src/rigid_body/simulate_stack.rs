@@ -3,6 +3,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::RigidBody;
 use polhode::motion::loads::Term;
+use polhode::motion::rolling::Contact;
 use polhode::motion::simulate::{
     Batch, CallbackPolicy, End, Member, NoEvents, Plan, Run, simulate_many,
 };
@@ -15,6 +16,7 @@ use crate::events::{Functions, States};
 use crate::interrupt::{Beat, Interrupt};
 use crate::loads::{ActingLoad, Fault, PyLoad, report_states};
 use crate::memory;
+use crate::rolling::gravity_of;
 use crate::stack::{BLOCK, Broadcast, Stack};
 
 /// Bodies, their states at the start and the analytic terms of the load on each.
@@ -58,6 +60,44 @@ pub(super) struct Ensemble<'a> {
     pub(super) events: &'a Functions,
     /// Whether the first row that fails ends the run.
     pub(super) raises: bool,
+    /// The plane that the bodies roll on.
+    pub(super) rolling: Option<Rolling>,
+}
+
+/// A plane, and how each row starts on it and which gravity acts there.
+pub(super) struct Rolling {
+    pub(super) contact: Contact,
+    pub(super) rows: Vec<(Phase, Vector3<f64>)>,
+}
+
+impl Rolling {
+    /// Put every row on the plane: where it is given, which must touch, or at the point of the plane.
+    pub(super) fn new(
+        py: Python<'_>,
+        contact: Contact,
+        start: &Start<'_>,
+        load: &PyLoad,
+        is_placed: bool,
+    ) -> PyResult<Self> {
+        let grid = start.grid()?;
+        let mut rows = memory::vector("simulate: rows of the stack", &grid.shape, 0)?;
+        for row in 0..grid.len() {
+            let [b, w, q, r, _, l, _] = grid.operands(row);
+            let gravity = gravity_of(py, load, &start.terms[l])?;
+            // The plane needs a unit quaternion to the last digit.
+            let attitude = UnitQuaternion::new_normalize(start.attitude[q].into_inner());
+            let phase = contact
+                .start(
+                    &start.bodies[b],
+                    start.omega[w],
+                    attitude,
+                    is_placed.then(|| start.position[r]),
+                )
+                .map_err(|error| at_row(&grid.shape, row, &to_py(py, &error), py))?;
+            rows.push((phase, gravity));
+        }
+        Ok(Self { contact, rows })
+    }
 }
 
 /// One run for each row, as far as they were begun.
@@ -176,7 +216,7 @@ impl Batch for Ensemble<'_> {
     fn callbacks(&self) -> CallbackPolicy {
         if self.load.calls_python() || !self.events.is_empty() {
             CallbackPolicy::OnThisThread
-        } else if self.load.is_analytic() {
+        } else if self.load.is_analytic() && self.rolling.is_none() {
             CallbackPolicy::Nothing
         } else {
             CallbackPolicy::OnAnyThread
@@ -185,6 +225,9 @@ impl Batch for Ensemble<'_> {
 
     fn start(&self, row: usize) -> (usize, Phase) {
         let [b, w, q, r, v, l, s] = self.grid.operands(row);
+        if let Some(rolling) = &self.rolling {
+            return (b, rolling.rows[row].0.clone());
+        }
         let omega = self.start.omega[w];
         let own = self.load.initial_states(
             &self.start.terms[l],
@@ -209,6 +252,20 @@ impl Batch for Ensemble<'_> {
 
     fn run(&self, row: Member<'_>) -> Run<Fault> {
         let (load, terms, subject) = (self.load, self.terms(row.number), row.body());
+        if let Some(Rolling { contact, rows }) = &self.rolling {
+            let gravity = &rows[row.number].1;
+            if self.events.is_empty() {
+                return row.roll(contact, gravity, &mut NoEvents::new());
+            }
+            return Python::attach(|py| {
+                let states = States {
+                    slots: self.load.slots(),
+                    terms,
+                };
+                let events = &mut self.events.with_callbacks(py, states);
+                row.roll(contact, gravity, events)
+            });
+        }
         match self.callbacks() {
             CallbackPolicy::Nothing | CallbackPolicy::OnAnyThread => {
                 let mut load = ActingLoad::new(load, terms, subject, None);

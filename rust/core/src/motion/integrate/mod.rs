@@ -3,6 +3,7 @@
 //! | method | file | for |
 //! |---|---|---|
 //! | Taylor series | [`taylor`] | analytic loads: as accurate as the numbers can be |
+//! | Taylor series of rolling | `rolling` | a body on a plane |
 //! | DOP853 | `dop853` | loads whose series are not known: callbacks |
 //! | Radau IIA | `radau` | stiff loads: strong damping, stiff control |
 //! | Taylor series with derivatives | [`variation`] | how a motion under analytic loads depends on what it is computed from |
@@ -10,6 +11,7 @@
 
 pub(crate) mod dop853;
 pub(crate) mod radau;
+pub(crate) mod rolling;
 mod runge_kutta;
 pub(crate) mod splitting;
 pub mod taylor;

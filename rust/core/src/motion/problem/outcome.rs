@@ -20,6 +20,8 @@ pub enum End<E> {
     Complete,
     /// At an event that ends it.
     Event,
+    /// Where a body that rolls lifts off.
+    LiftOff,
     /// Where the watch asked for it.
     Stopped,
     /// Where the equations or the load failed.
@@ -41,6 +43,17 @@ pub struct Run<E> {
     pub phase: Phase,
     /// How it ended.
     pub end: End<E>,
+    /// What a contact came to, of a body that rolls.
+    pub contact: Option<ContactExtremes>,
+}
+
+/// The extremes of a contact over a whole run, located between the outputs: each a value and its time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactExtremes {
+    /// The largest ratio of the force across the normal to that along it.
+    pub friction_needed: [f64; 2],
+    /// The smallest force along the normal.
+    pub normal_force: [f64; 2],
 }
 
 impl<E> Run<E> {
@@ -56,10 +69,11 @@ impl<E> Run<E> {
             time: task.times.first().copied().unwrap_or(f64::NAN),
             phase: task.initial.clone(),
             end,
+            contact: None,
         }
     }
 
-    /// The run, where it came to its end: at the last time, or at an event that ends it.
+    /// The run, where it came to its end: at the last time, at an event that ends it, or where the body lifts off.
     ///
     /// # Errors
     /// What failed, or [`Error::Stopped`] where the watch stopped it. Who wants the states until then looks at [`Self::end`] instead.
@@ -68,7 +82,7 @@ impl<E> Run<E> {
         E: From<Error>,
     {
         match self.end {
-            End::Complete | End::Event => Ok(self),
+            End::Complete | End::Event | End::LiftOff => Ok(self),
             End::Stopped => Err(Error::Stopped.into()),
             End::Failed(error) => Err(error),
         }
@@ -86,9 +100,11 @@ impl<E> Run<E> {
             end: match self.end {
                 End::Complete => End::Complete,
                 End::Event => End::Event,
+                End::LiftOff => End::LiftOff,
                 End::Stopped => End::Stopped,
                 End::Failed(error) => End::Failed(f(error)),
             },
+            contact: self.contact,
         }
     }
 }

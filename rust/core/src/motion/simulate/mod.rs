@@ -10,6 +10,7 @@
 //! | what a run needs of a method of steps | `stepper` |
 //! | the methods: Runge-Kutta, splitting, Taylor series with events | `runge_kutta_run`, `splitting_run`, `taylor_run_with_events` |
 //! | bodies and tops in closed form | `closed_form_run` |
+//! | a body that rolls on a plane | `rolling_run` |
 //! | the search for events | [`events`] |
 //! | all zeros of a function within a step | `roots_in_step` |
 //! | where a load changes its law with the state | `law_switches` |
@@ -78,6 +79,7 @@ mod closed_form_run;
 pub mod events;
 mod law_switches;
 mod plan;
+mod rolling_run;
 mod roots_in_step;
 mod run_loop;
 mod runge_kutta_run;
@@ -87,10 +89,10 @@ mod stepper;
 mod taylor_run_with_events;
 
 pub use self::events::{Events, NoEvents};
-pub use self::plan::{Ask, Plan, Refusal, most_demanding};
-pub use self::runs::{Batch, CallbackPolicy, Member, simulate, simulate_many};
+pub use self::plan::{Ask, Plan, Refusal, gravity_alone, most_demanding};
+pub use self::runs::{Batch, CallbackPolicy, Member, roll, simulate, simulate_many};
 pub use super::problem::{
-    Crossing, Direction, Effort, End, MOST_STEPS, Method, ReferencePoint, Rule, Run, TIGHTEST,
-    TIGHTEST_TWOFOLD, Task, Tolerance, Watched, check_scales, check_times,
+    ContactExtremes, Crossing, Direction, Effort, End, MOST_STEPS, Method, ReferencePoint, Rule,
+    Run, TIGHTEST, TIGHTEST_TWOFOLD, Task, Tolerance, Watched, check_scales, check_times,
 };
 pub use super::state::{Phase, State};

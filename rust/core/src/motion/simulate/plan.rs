@@ -318,7 +318,8 @@ pub(super) fn closed_top(body: &RigidBody) -> Result<PivotedTop, Error> {
 }
 
 /// The acceleration of free fall, of a load that is uniform gravity alone or nothing at all.
-pub(super) fn gravity_alone(terms: &[Term]) -> Option<Vector3<f64>> {
+#[must_use]
+pub fn gravity_alone(terms: &[Term]) -> Option<Vector3<f64>> {
     terms
         .iter()
         .try_fold(Vector3::zeros(), |sum, term| match term {

@@ -3,13 +3,16 @@
 use std::ops::ControlFlow;
 use std::slice;
 
+use nalgebra::Vector3;
+
 use super::events::Events;
 use super::plan::{Ask, Plan};
-use super::{closed_form_run, taylor_run_with_events};
-use crate::error::Error;
+use super::{closed_form_run, rolling_run, taylor_run_with_events};
+use crate::error::{Error, MotionFault};
 use crate::motion::integrate::taylor;
 use crate::motion::loads::{BodyAtPoint, Load, Term};
 use crate::motion::problem::{End, Method, Run, Task};
+use crate::motion::rolling::Contact;
 use crate::motion::state::Phase;
 use crate::numerics::threads::fill_blocks;
 
@@ -48,6 +51,62 @@ pub fn simulate<L: Load>(
         }
         Err(refusal) => Run::at_start(task, End::Failed(refusal.error.into())),
     }
+}
+
+/// Compute the motion of a body that rolls on a plane under uniform gravity g, by Taylor series.
+///
+/// The start of `task` must touch the plane and roll, as [`Contact::start`] makes it. Events and `watch` as in [`simulate`].
+///
+/// # Examples
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use polhode::mass::{Amount, solids};
+/// use polhode::motion::rolling::{Contact, LiftOff, Surface};
+/// use polhode::motion::simulate::{End, Method, NoEvents, Run, Task, Tolerance, roll};
+/// use polhode::nalgebra::{UnitQuaternion, Vector3};
+///
+/// let ball = solids::sphere(0.5, Amount::Mass(2.0))?;
+/// let surface = Surface::sphere(0.5, Vector3::zeros())?;
+/// let incline = Vector3::new(0.6, 0.0, 0.8);
+/// let contact = Contact::rolling(surface, incline, Vector3::zeros(), 0.0, LiftOff::Stop)?;
+/// let start = contact.start(&ball, Vector3::zeros(), UnitQuaternion::identity(), None)?;
+/// let times = [0.0, 2.0];
+/// let task = Task::free(&ball, start, &times, Method::Auto, Tolerance::new(1e-12, 0.0)?);
+/// let go_on = &mut |_| ControlFlow::Continue(());
+/// let gravity = Vector3::new(0.0, 0.0, -9.81);
+/// let run: Run<polhode::Error> = roll(&task, &contact, &gravity, &mut NoEvents::new(), go_on);
+/// assert_eq!(run.end, End::Complete);
+/// // A ball rolls down with 5/7 g sin α.
+/// assert!((run.phase.velocity.norm() - 5.0 / 7.0 * 9.81 * 0.6 * 2.0).abs() < 1e-11);
+/// assert!((run.contact.unwrap().normal_force[0] - 2.0 * 9.81 * 0.8).abs() < 1e-12);
+/// # Ok::<(), polhode::Error>(())
+/// ```
+pub fn roll<E: From<Error>>(
+    task: &Task<'_>,
+    contact: &Contact,
+    gravity: &Vector3<f64>,
+    events: &mut dyn Events<Error = E>,
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Run<E> {
+    match task.check_start().and_then(|()| check_rolling(task)) {
+        Ok(()) => rolling_run::solve(task, contact, gravity, events, watch),
+        Err(error) => Run::at_start(task, End::Failed(error.into())),
+    }
+}
+
+/// Check that a task is one of rolling.
+fn check_rolling(task: &Task<'_>) -> Result<(), Error> {
+    let needs = if task.body_at_point.pivoted {
+        "a body on a plane has no fixed point: its centre of mass is free"
+    } else if !matches!(task.method, Method::Auto | Method::Taylor) {
+        "the method \"taylor\" (or \"auto\") rolls; the others do not solve the constraint"
+    } else if task.tolerance.is_beyond_doubles() {
+        "an rtol of 2.3e-15 or more (ten units of rounding): series of rolling are in doubles"
+    } else {
+        return Ok(());
+    };
+    Err(Error::Motion(MotionFault::ContactCannotServe { needs }))
 }
 
 /// The motion of `task` by its method, which is known to serve.
@@ -136,6 +195,16 @@ impl Member<'_> {
     ) -> Run<L::Error> {
         by_method(self.task, load, events, self.watch)
     }
+
+    /// Compute its motion on a plane under uniform gravity: see [`roll`].
+    pub fn roll<E: From<Error>>(
+        self,
+        contact: &Contact,
+        gravity: &Vector3<f64>,
+        events: &mut dyn Events<Error = E>,
+    ) -> Run<E> {
+        roll(self.task, contact, gravity, events, self.watch)
+    }
 }
 
 /// The motions of the members of `batch` as `plan` says, into `runs`; every one has the bits of its [`simulate`](super::simulate), in lanes of a
@@ -166,7 +235,7 @@ pub fn simulate_many<R: Batch>(
         let is_over = match &run.end {
             End::Stopped => true,
             End::Failed(error) => batch.ends_all(error),
-            End::Complete | End::Event => false,
+            End::Complete | End::Event | End::LiftOff => false,
         };
         if is_over { Err(()) } else { Ok(()) }
     };

@@ -41,7 +41,7 @@ const VARIATIONAL_STEPS_PER_PROGRESS: u32 = 4;
 
 /// The size of the last term of a series, relative to the tolerance of a step. The terms left out are a quarter of that. At the tightest
 /// tolerance they stay below the rounding of the state even if they all have the same sign.
-const LAST_TERM: f64 = 0.05;
+pub(in crate::motion::integrate) const LAST_TERM: f64 = 0.05;
 
 /// The settings that all motions of a run share.
 #[derive(Clone, Copy, Debug)]
@@ -66,24 +66,28 @@ impl Settings {
         }
     }
 
-    /// Return the settings for equations with these `parts`, with the order at which the work is least: the work grows with the square
-    /// of the order, the step with `tolerance^(1/order)`. The order is at most `highest`.
+    /// Return the settings for equations with these `parts`, with the order at which the work is least, at most `highest`.
     pub(super) fn new(
         relative: f64,
         absolute: f64,
         highest: usize,
         parts: SeriesStructure,
     ) -> Self {
-        let nats = -(LAST_TERM * relative).ln();
-        let mut halves = (4..highest / 2).filter(|&half| half as f64 + 1.0 <= 0.36 * nats);
-        let order = 2 * halves.next_back().map_or(4, |half| half + 1);
         Self {
-            order,
+            order: order_of_least_work(relative, highest),
             last_term: (LAST_TERM * relative).log2(),
             floor: absolute / relative,
             parts,
         }
     }
+}
+
+/// Return the order at which the work is least: the work grows with the square of the order, the step with `tolerance^(1/order)`. It
+/// is even, and at most `highest`.
+pub(in crate::motion::integrate) fn order_of_least_work(relative: f64, highest: usize) -> usize {
+    let nats = -(LAST_TERM * relative).ln();
+    let mut halves = (4..highest / 2).filter(|&half| half as f64 + 1.0 <= 0.36 * nats);
+    2 * halves.next_back().map_or(4, |half| half + 1)
 }
 
 /// A function that gets the samples of a motion in the numbers of its run.

@@ -41,7 +41,9 @@ mod step;
 mod translation;
 mod variational;
 
+pub(super) use driver::{LAST_TERM, order_of_least_work};
 pub(super) use run::solve_variational;
 pub(crate) use run::solve_with_observer;
 pub use run::{solve_many, solve_one};
 pub(crate) use step::Step;
+pub(super) use step::{exp2, log2_step};

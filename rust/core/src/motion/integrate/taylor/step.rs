@@ -184,7 +184,7 @@ fn log2_step_of<L: Number, const R: usize, const B: usize>(
 
 /// Compute the logarithm of the step for which a term, of this size after one unit of time, has the size allowed.
 #[inline(always)]
-pub(super) fn log2_step(size: f64, order: usize, tolerance: f64) -> f64 {
+pub(in crate::motion::integrate) fn log2_step(size: f64, order: usize, tolerance: f64) -> f64 {
     (tolerance - log2(size)) * (1.0 / order as f64)
 }
 
@@ -199,7 +199,7 @@ fn log2(x: f64) -> f64 {
 
 /// Compute two to the power x to a hundredth, for |x| up to a thousand.
 #[inline(always)]
-pub(super) fn exp2(x: f64) -> f64 {
+pub(in crate::motion::integrate) fn exp2(x: f64) -> f64 {
     let x = if x > 1000.0 { 1000.0 } else { x };
     let x = if x > -1000.0 { x } else { -1000.0 };
     let whole = x.floor();

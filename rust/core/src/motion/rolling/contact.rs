@@ -1,0 +1,182 @@
+//! The contact of a surface with a plane: where the plane is, how it turns, and what follows when the body lifts off.
+
+use nalgebra::{Matrix3, Unit, UnitQuaternion, Vector3};
+
+use super::surface::{Surface, axes_of};
+use crate::error::{Error, MotionFault, all_finite, finite};
+use crate::mass::RigidBody;
+use crate::motion::state::Phase;
+use crate::numerics::power_series::dot;
+
+/// What follows when the normal force falls through zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LiftOff {
+    /// The run ends.
+    #[default]
+    Stop,
+    /// The contact holds, and the plane pulls.
+    Hold,
+}
+
+/// A surface that rolls on a plane without slipping: `v_C + ω×r = u(P)` with `r = P − C` and the velocity u of the plane.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::motion::rolling::{Contact, LiftOff, Surface};
+/// use polhode::nalgebra::Vector3;
+///
+/// let ball = Surface::sphere(0.5, Vector3::zeros())?;
+/// let contact = Contact::rolling(ball, Vector3::z(), Vector3::zeros(), 2.0, LiftOff::Stop)?;
+/// // A plane that turns moves with u = Ω n×(P − point).
+/// assert_eq!(contact.plane_velocity(&Vector3::new(3.0, 0.0, 0.0)), Vector3::new(0.0, 6.0, 0.0));
+/// # Ok::<(), polhode::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// The surface of the body.
+    pub surface: Surface,
+    /// The unit normal of the plane in N, towards the body.
+    pub normal: Unit<Vector3<f64>>,
+    /// A point of the plane in N; a turntable turns about the normal through it.
+    pub point: Vector3<f64>,
+    /// The rate of the plane about its normal.
+    pub turntable: f64,
+    /// What follows when the body lifts off.
+    pub lift: LiftOff,
+}
+
+/// How far from the plane a body may be at the start, relative to the size of its surface.
+const TOUCHES: f64 = 1e-9;
+
+impl Contact {
+    /// Make the contact of a surface that rolls.
+    ///
+    /// # Errors
+    /// When a number is not finite or the normal has no direction.
+    pub fn rolling(
+        surface: Surface,
+        normal: Vector3<f64>,
+        point: Vector3<f64>,
+        turntable: f64,
+        lift: LiftOff,
+    ) -> Result<Self, Error> {
+        all_finite("normal", &normal)?;
+        all_finite("point", &point)?;
+        finite("turntable", turntable)?;
+        let Some(normal) = Unit::try_new(normal, 0.0) else {
+            return Err(Error::OutOfDomain {
+                what: "normal",
+                law: "a vector that has a direction",
+                value: normal.norm(),
+            });
+        };
+        Ok(Self {
+            surface,
+            normal,
+            point,
+            turntable,
+            lift,
+        })
+    }
+
+    /// Compute the velocity u of the plane at a point.
+    #[must_use]
+    pub fn plane_velocity(&self, point: &Vector3<f64>) -> Vector3<f64> {
+        self.normal.cross(&(point - self.point)) * self.turntable
+    }
+
+    /// Return the axes of the plane as columns in N: the third is the normal.
+    #[must_use]
+    pub fn plane_axes(&self) -> Matrix3<f64> {
+        axes_of(&self.normal)
+    }
+
+    /// Compute the point of contact from the origin of the body frame, in body axes.
+    #[must_use]
+    pub fn point_in_body(&self, attitude: &UnitQuaternion<f64>) -> Vector3<f64> {
+        self.surface.contact(&(attitude.inverse() * *self.normal))
+    }
+
+    /// Return the start of a motion: the body touches the plane at `point`, or where `position`, of C, puts it, and rolls.
+    ///
+    /// # Errors
+    /// When the body hovers over the plane or sinks into it, or the surface has no point of contact at this attitude.
+    pub fn start(
+        &self,
+        body: &RigidBody,
+        omega: Vector3<f64>,
+        attitude: UnitQuaternion<f64>,
+        position: Option<Vector3<f64>>,
+    ) -> Result<Phase, Error> {
+        let normal = attitude.inverse() * *self.normal;
+        if self.surface.margin(&normal) <= 0.0 {
+            return Err(Error::Motion(MotionFault::NoPointOfContact {
+                time: None,
+                law: self.surface.beyond_margin(),
+            }));
+        }
+        let arm = self.surface.contact(&normal) - body.center_of_mass();
+        let position = match position {
+            None => self.point - attitude * arm,
+            Some(position) => {
+                // Along the normal in body axes: a rotated arm would add its rounding.
+                let height = self.normal.dot(&(position - self.point));
+                let gap = height + dot(normal.into(), arm.into());
+                let size = self.surface.size();
+                // A NaN does not touch.
+                if gap.abs().partial_cmp(&(TOUCHES * size)) != Some(std::cmp::Ordering::Less) {
+                    return Err(Error::Motion(MotionFault::NoContact { gap, size }));
+                }
+                position
+            }
+        };
+        let contact = position + attitude * arm;
+        Ok(Phase {
+            attitude,
+            omega,
+            position,
+            velocity: self.plane_velocity(&contact) - attitude * omega.cross(&arm),
+            internal_state: Box::default(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mass::{Amount, solids};
+
+    #[test]
+    fn a_body_must_touch() {
+        let body = solids::sphere(0.5, Amount::Mass(1.0)).expect("a ball");
+        let surface = Surface::sphere(0.5, Vector3::zeros()).expect("a sphere");
+        let tilted = Vector3::new(0.3, 0.0, 1.0);
+        let contact = Contact::rolling(surface, tilted, Vector3::x(), 0.0, LiftOff::Stop);
+        let contact = contact.expect("a contact");
+        let start = |height: f64| {
+            let position = contact.point + *contact.normal * height;
+            let omega = Vector3::new(0.0, 2.0, 0.0);
+            contact.start(&body, omega, UnitQuaternion::identity(), Some(position))
+        };
+        let velocity = start(0.5 + 1e-11).expect("a start").velocity;
+        assert!(
+            (velocity - Vector3::new(0.0, 2.0, 0.0).cross(&*contact.normal) * 0.5).norm() < 1e-15
+        );
+        for off in [1e-8, -1e-8, f64::NAN] {
+            let refused = start(0.5 + off);
+            assert!(matches!(
+                refused,
+                Err(Error::Motion(MotionFault::NoContact { .. }))
+            ));
+        }
+    }
+
+    #[test]
+    fn a_plane_needs_a_normal() {
+        let surface = Surface::sphere(0.5, Vector3::zeros()).expect("a sphere");
+        let zero = Vector3::zeros();
+        assert!(Contact::rolling(surface, zero, zero, 0.0, LiftOff::Hold).is_err());
+        assert!(Contact::rolling(surface, Vector3::x(), zero, f64::NAN, LiftOff::Hold).is_err());
+    }
+}

@@ -1,0 +1,401 @@
+//! Formulas as Taylor series in time: each operation is a node, and its coefficients come order by order.
+//!
+//! A formula is written once for any [`Arithmetic`]: in doubles it gives a value, in [`Node`]s it records its operations in a
+//! [`PowerSeries`]. With `a_k = a⁽ᵏ⁾/k!` the operations have the coefficients
+//!
+//! ```text
+//! (a b)_k = Σ_j a_j b_{k−j},   c = a/b: c_k = (a_k − Σ_{j<k} c_j b_{k−j})/b_0,   s = √a: s_k = (a_k − Σ_{0<j<k} s_j s_{k−j})/(2 s_0)
+//! ```
+//!
+//! and a variable has `x_{k+1} = ẋ_k/(k + 1)` from the node of its rate.
+//! Source: Griewank & Walther, Evaluating Derivatives (2008), §13.2.
+
+use std::cell::RefCell;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::jet::Jet;
+use super::number::Real;
+
+/// Numbers in which a formula is written.
+pub(crate) trait Arithmetic:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Add<f64, Output = Self>
+    + Mul<f64, Output = Self>
+{
+    /// Compute the square root.
+    fn root(self) -> Self;
+}
+
+impl Arithmetic for f64 {
+    fn root(self) -> Self {
+        self.sqrt()
+    }
+}
+
+impl<const N: usize> Arithmetic for Jet<N> {
+    fn root(self) -> Self {
+        Real::root(self)
+    }
+}
+
+/// Compute a·b.
+pub(crate) fn dot<N: Arithmetic>(a: [N; 3], b: [N; 3]) -> N {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Compute a×b.
+pub(crate) fn cross<N: Arithmetic>(a: [N; 3], b: [N; 3]) -> [N; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// Compute a + b.
+pub(crate) fn plus<N: Arithmetic>(a: [N; 3], b: [N; 3]) -> [N; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+/// Compute a − b.
+pub(crate) fn minus<N: Arithmetic>(a: [N; 3], b: [N; 3]) -> [N; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// Compute s a.
+pub(crate) fn scaled<N: Arithmetic>(a: [N; 3], s: N) -> [N; 3] {
+    a.map(|x| x * s)
+}
+
+/// Compute M a for a constant matrix.
+pub(crate) fn transformed<N: Arithmetic>(matrix: &nalgebra::Matrix3<f64>, a: [N; 3]) -> [N; 3] {
+    [0, 1, 2].map(|i| a[0] * matrix[(i, 0)] + a[1] * matrix[(i, 1)] + a[2] * matrix[(i, 2)])
+}
+
+/// An operation; its operands are numbers of nodes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Operation {
+    Constant(f64),
+    /// The variable of this number.
+    Variable(usize),
+    Sum(usize, usize),
+    Difference(usize, usize),
+    Product(usize, usize),
+    Quotient(usize, usize),
+    Root(usize),
+    Multiple(usize, f64),
+    /// A node plus a number.
+    Shift(usize, f64),
+}
+
+/// The operations of a formula as they are recorded.
+#[derive(Debug, Default)]
+pub(crate) struct Recorder {
+    operations: RefCell<Vec<Operation>>,
+}
+
+/// The result of an operation that is recorded.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Node<'r> {
+    recorder: &'r Recorder,
+    index: usize,
+}
+
+impl Recorder {
+    /// Record the variable of number `number`.
+    pub(crate) fn variable(&self, number: usize) -> Node<'_> {
+        self.record(Operation::Variable(number))
+    }
+
+    fn record(&self, operation: Operation) -> Node<'_> {
+        let mut operations = self.operations.borrow_mut();
+        let known = operations.iter().position(|known| *known == operation);
+        let index = known.unwrap_or_else(|| {
+            operations.push(operation);
+            operations.len() - 1
+        });
+        Node {
+            recorder: self,
+            index,
+        }
+    }
+}
+
+impl Node<'_> {
+    fn constant(&self) -> Option<f64> {
+        match self.recorder.operations.borrow()[self.index] {
+            Operation::Constant(x) => Some(x),
+            _ => None,
+        }
+    }
+
+    fn is_zero(&self) -> bool {
+        self.constant() == Some(0.0)
+    }
+
+    fn then(self, operation: Operation) -> Self {
+        self.recorder.record(operation)
+    }
+}
+
+impl Add for Node<'_> {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        match (self.constant(), other.constant()) {
+            (Some(x), _) => other + x,
+            (_, Some(y)) => self + y,
+            _ => self.then(Operation::Sum(self.index, other.index)),
+        }
+    }
+}
+
+impl Sub for Node<'_> {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        match (self.constant(), other.constant()) {
+            (_, Some(y)) => self + -y,
+            (Some(x), _) => -other + x,
+            _ => self.then(Operation::Difference(self.index, other.index)),
+        }
+    }
+}
+
+impl Mul for Node<'_> {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        match (self.constant(), other.constant()) {
+            (Some(x), _) => other * x,
+            (_, Some(y)) => self * y,
+            _ => {
+                let (a, b) = (self.index, other.index);
+                self.then(Operation::Product(a.min(b), a.max(b)))
+            }
+        }
+    }
+}
+
+impl Div for Node<'_> {
+    type Output = Self;
+
+    fn div(self, other: Self) -> Self {
+        if self.is_zero() {
+            return self;
+        }
+        match other.constant() {
+            Some(y) => self * (1.0 / y),
+            None => self.then(Operation::Quotient(self.index, other.index)),
+        }
+    }
+}
+
+impl Neg for Node<'_> {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        self * -1.0
+    }
+}
+
+impl Add<f64> for Node<'_> {
+    type Output = Self;
+
+    fn add(self, number: f64) -> Self {
+        match self.constant() {
+            Some(x) => self.then(Operation::Constant(x + number)),
+            None if number == 0.0 => self,
+            None => self.then(Operation::Shift(self.index, number)),
+        }
+    }
+}
+
+impl Mul<f64> for Node<'_> {
+    type Output = Self;
+
+    fn mul(self, number: f64) -> Self {
+        match self.constant() {
+            _ if number == 0.0 => self.then(Operation::Constant(0.0)),
+            Some(x) => self.then(Operation::Constant(x * number)),
+            None if number == 1.0 => self,
+            None => self.then(Operation::Multiple(self.index, number)),
+        }
+    }
+}
+
+impl Arithmetic for Node<'_> {
+    fn root(self) -> Self {
+        match self.constant() {
+            Some(x) => self.then(Operation::Constant(x.sqrt())),
+            None => self.then(Operation::Root(self.index)),
+        }
+    }
+}
+
+/// The most coefficients of a series.
+pub(crate) const COUNT: usize = 27;
+
+/// The series of the variables of a system of differential equations.
+#[derive(Clone, Debug)]
+pub(crate) struct PowerSeries {
+    operations: Vec<Operation>,
+    /// The node of the rate of each variable.
+    rates: Vec<usize>,
+    nodes: Vec<[f64; COUNT]>,
+    variables: Vec<[f64; COUNT]>,
+}
+
+impl PowerSeries {
+    /// Make the series of the variables that `rates`, nodes of `recorder`, are the rates of.
+    pub(crate) fn new(recorder: &Recorder, rates: &[Node<'_>]) -> Self {
+        let operations = recorder.operations.borrow().clone();
+        let mut nodes = vec![[0.0; COUNT]; operations.len()];
+        for (node, operation) in nodes.iter_mut().zip(&operations) {
+            if let Operation::Constant(x) = operation {
+                node[0] = *x;
+            }
+        }
+        Self {
+            operations,
+            rates: rates.iter().map(|node| node.index).collect(),
+            nodes,
+            variables: vec![[0.0; COUNT]; rates.len()],
+        }
+    }
+
+    /// Compute the coefficients of all variables up to `order` from their values.
+    pub(crate) fn expand(&mut self, values: &[f64], order: usize) {
+        for (variable, value) in self.variables.iter_mut().zip(values) {
+            variable[0] = *value;
+        }
+        for k in 0..order {
+            for index in 0..self.operations.len() {
+                self.compute(index, k);
+            }
+            for (variable, rate) in self.variables.iter_mut().zip(&self.rates) {
+                variable[k + 1] = self.nodes[*rate][k] / (k + 1) as f64;
+            }
+        }
+    }
+
+    #[inline]
+    fn compute(&mut self, index: usize, k: usize) {
+        let (nodes, rest) = self.nodes.split_at_mut(index);
+        let Some(node) = rest.first_mut() else {
+            return;
+        };
+        node[k] = match self.operations[index] {
+            Operation::Constant(_) => return,
+            Operation::Variable(number) => self.variables[number][k],
+            Operation::Sum(a, b) => nodes[a][k] + nodes[b][k],
+            Operation::Difference(a, b) => nodes[a][k] - nodes[b][k],
+            Operation::Product(a, b) => product(&nodes[a][..=k], &nodes[b][..=k]),
+            Operation::Quotient(a, b) => {
+                let known = product(&node[..k], &nodes[b][1..=k]);
+                (nodes[a][k] - known) / nodes[b][0]
+            }
+            Operation::Root(a) if k == 0 => nodes[a][0].sqrt(),
+            Operation::Root(a) => {
+                let known = product(&node[1..k], &node[1..k]);
+                (nodes[a][k] - known) / (2.0 * node[0])
+            }
+            Operation::Multiple(a, number) => nodes[a][k] * number,
+            Operation::Shift(a, number) if k == 0 => nodes[a][0] + number,
+            Operation::Shift(a, _) => nodes[a][k],
+        };
+    }
+
+    /// Return the coefficients of each variable.
+    pub(crate) fn coefficients(&self) -> &[[f64; COUNT]] {
+        &self.variables
+    }
+}
+
+/// Compute the coefficient `Σ_j a_j b_{n−j}` of a product from as many coefficients of both.
+#[inline(always)]
+fn product(a: &[f64], b: &[f64]) -> f64 {
+    // Four sums side by side: each addition waits for the one before it in its sum alone.
+    let mut sums = [0.0; 4];
+    let (mut left, mut right) = (a.chunks_exact(4), b.rchunks_exact(4));
+    for (x, y) in (&mut left).zip(&mut right) {
+        for i in 0..4 {
+            sums[i] += x[i] * y[3 - i];
+        }
+    }
+    for ((x, y), sum) in (left.remainder().iter())
+        .zip(right.remainder().iter().rev())
+        .zip(&mut sums)
+    {
+        *sum += x * y;
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Record `ẋ = f(x)`, and compute the series of x from `start`.
+    fn series(start: f64, rate: impl Fn(Node<'_>) -> Node<'_>) -> [f64; COUNT] {
+        let recorder = Recorder::default();
+        let rate = rate(recorder.variable(0));
+        let mut series = PowerSeries::new(&recorder, &[rate]);
+        series.expand(&[start], COUNT - 1);
+        series.coefficients()[0]
+    }
+
+    #[test]
+    fn series_of_known_functions() {
+        // ẋ = x² from 1: 1/(1 − t).
+        assert!(
+            series(1.0, |x| x * x)
+                .iter()
+                .all(|c| (c - 1.0).abs() < 1e-15)
+        );
+        // ẋ = 1/x from 1: √(1 + 2t); as ẋ = 1/√(x²) too.
+        let mut exact = 1.0;
+        let (quotient, root) = (
+            series(1.0, |x| (x * 0.0 + 1.0) / x),
+            series(1.0, |x| x / (x * x) / (x * x).root() * x),
+        );
+        for k in 0..COUNT {
+            let size = f64::abs(exact);
+            assert!((quotient[k] - exact).abs() <= 1e-13 * size, "{k}");
+            assert!((root[k] - exact).abs() <= 1e-12 * size, "{k}");
+            exact *= (1.0 - 2.0 * k as f64) / (k + 1) as f64;
+        }
+    }
+
+    #[test]
+    fn constants_are_folded() {
+        let recorder = Recorder::default();
+        let x = recorder.variable(0);
+        let zero = x * 0.0;
+        assert_eq!((x + zero).index, x.index);
+        assert_eq!((x * (zero + 1.0)).index, x.index);
+        assert_eq!((x - zero).index, x.index);
+        assert!((zero / x).is_zero() && (zero * x).is_zero());
+        assert_eq!((zero + 4.0).root().constant(), Some(2.0));
+        assert_eq!(((zero + 4.0) / (zero + 2.0)).constant(), Some(2.0));
+        // What was computed is not computed again.
+        assert_eq!((x * x).index, (x * x).index);
+        assert_eq!(((zero + 3.0) - x * x).constant(), None);
+    }
+
+    #[test]
+    fn vectors() {
+        let (a, b) = ([1.0, 2.0, 3.0], [-2.0, 0.5, 4.0]);
+        assert_eq!(dot(a, cross(a, b)), 0.0);
+        assert_eq!(plus(minus(a, b), b), a);
+        assert_eq!(
+            scaled(a, 2.0),
+            transformed(&(nalgebra::Matrix3::identity() * 2.0), a)
+        );
+    }
+}

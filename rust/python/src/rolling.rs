@@ -1,0 +1,914 @@
+//! Surfaces that roll, their contact with a plane, and what the plane does along a motion.
+
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+use polhode::Error;
+use polhode::mass::RigidBody;
+use polhode::motion::attitude::components;
+use polhode::motion::loads::Term;
+use polhode::motion::rolling::invariants::{Kept, kept};
+use polhode::motion::rolling::steady::{Rate, Upright, critical_rate, modes, steady, tippe_top};
+use polhode::motion::rolling::{Contact, LiftOff, Surface, force};
+use polhode::motion::simulate::gravity_alone;
+use polhode::motion::state::Phase;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::arrays::{Argument, Item, read, read_or, read_scalar, write, write_of};
+use crate::attitudes::read_quaternion;
+use crate::body::PyRigidBody;
+use crate::errors::{new, to_py};
+use crate::loads::PyLoad;
+use crate::shape::tuple;
+use crate::stack::{Broadcast, Stack};
+
+/// A convex surface, fixed in a body. Made by the functions of :mod:`polhode.rolling`.
+///
+/// Examples
+/// --------
+/// >>> from polhode import rolling
+/// >>> egg = rolling.ellipsoid((1, 1, 2))
+/// >>> egg.contact((0, 0, 1))
+/// array([ 0.,  0., -2.])
+#[pyclass(name = "Surface", module = "polhode.rolling", frozen)]
+pub(crate) struct PySurface {
+    surface: Surface,
+    /// The function that made it, and its arguments.
+    function: &'static str,
+    arguments: Vec<(&'static str, Py<PyAny>)>,
+}
+
+#[pymethods]
+impl PySurface {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let given = self.arguments.iter().map(|(name, value)| {
+            let value = value.bind(py).repr()?;
+            Ok(format!("{name}={value}"))
+        });
+        let given = given.collect::<PyResult<Vec<_>>>()?.join(", ");
+        Ok(format!("rolling.{}({given})", self.function))
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let function = py.import("polhode.rolling")?.getattr(self.function)?;
+        let arguments = self.arguments.iter().map(|(_, value)| value.bind(py));
+        Ok((function, PyTuple::new(py, arguments)?))
+    }
+
+    /// Compute the point of contact with a plane.
+    ///
+    /// Parameters
+    /// ----------
+    /// normal : array_like, shape (..., 3)
+    ///     Normal of the plane, towards the body, components in the body frame.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (..., 3)
+    ///     The point whose outward normal is opposite, from the origin of the body frame. NaN where the surface
+    ///     has none, as for a disk that lies flat.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import rolling
+    /// >>> rolling.disk(0.5).contact((1, 0, 1))
+    /// array([-0.5,  0. ,  0. ])
+    fn contact<'py>(
+        &self,
+        py: Python<'py>,
+        normal: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let normals = unit_normals(py, normal)?;
+        let points = normals.map(py, |normal| self.surface.contact(normal))?;
+        Ok(write(py, &points)?.into_any())
+    }
+
+    /// Compute the principal curvatures at the point of contact with a plane.
+    ///
+    /// Parameters
+    /// ----------
+    /// normal : array_like, shape (..., 3)
+    ///     Normal of the plane, towards the body, components in the body frame.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (..., 2)
+    ///     The smaller one first; across a sharp edge inf.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import rolling
+    /// >>> rolling.ellipsoid((1, 2, 4)).curvatures((0, 0, 1))
+    /// array([1., 4.])
+    fn curvatures<'py>(
+        &self,
+        py: Python<'py>,
+        normal: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let normals = unit_normals(py, normal)?;
+        let curvatures = normals.map(py, |normal| self.surface.curvatures(normal))?;
+        Ok(write(py, &curvatures)?.into_any())
+    }
+}
+
+/// Directions as unit vectors.
+fn unit_normals(py: Python<'_>, normal: &Bound<'_, PyAny>) -> PyResult<Stack<Vector3<f64>>> {
+    let normals: Stack<Vector3<f64>> = read(normal, "normal")?;
+    if let Some(flat) = normals.rows.iter().find(|normal| {
+        let length = normal.norm();
+        !(length > 0.0 && length.is_finite())
+    }) {
+        return Err(PyValueError::new_err(format!(
+            "normal: expected vectors that have a direction, got [{}, {}, {}]",
+            flat.x, flat.y, flat.z
+        )));
+    }
+    normals.map(py, Vector3::normalize)
+}
+
+/// Make a sphere.
+///
+/// Parameters
+/// ----------
+/// radius : float
+/// center : array_like, shape (3,), optional
+///     From the origin of the body frame; that origin by default. The centre of mass may be elsewhere.
+///
+/// Returns
+/// -------
+/// Surface
+///
+/// Raises
+/// ------
+/// PolhodeError
+///     If the radius is not positive.
+///
+/// Examples
+/// --------
+/// >>> from polhode import rolling
+/// >>> rolling.sphere(0.5, center=(0, 0, 0.1)).contact((0, 0, 1))
+/// array([ 0. ,  0. , -0.4])
+#[pyfunction]
+#[pyo3(
+    name = "surface_sphere",
+    signature = (radius, center=Argument::default()),
+    text_signature = "(radius, center=(0.0, 0.0, 0.0))"
+)]
+pub(crate) fn sphere(
+    py: Python<'_>,
+    #[pyo3(from_py_with = read_scalar)] radius: f64,
+    center: Argument<'_>,
+) -> PyResult<PySurface> {
+    let center = vector(&center, "center", [0.0; 3])?;
+    let given = [
+        ("radius", number(py, radius)?),
+        ("center", list(py, &center)?),
+    ];
+    surface(py, Surface::sphere(radius, center), "sphere", given)
+}
+
+/// Make an ellipsoid.
+///
+/// Parameters
+/// ----------
+/// semi_axes : array_like, shape (3,)
+/// center : array_like, shape (3,), optional
+///     From the origin of the body frame; that origin by default.
+/// axes : array_like, shape (3, 3), optional
+///     Rotation matrix whose columns are the directions of the semi-axes in the body frame; x, y, z by default.
+///
+/// Returns
+/// -------
+/// Surface
+///
+/// Raises
+/// ------
+/// PolhodeError
+///     If a semi-axis is not positive, or `axes` is no rotation.
+///
+/// Examples
+/// --------
+/// >>> from polhode import rolling
+/// >>> rolling.ellipsoid((3, 2, 1)).contact((0, 1, 0))
+/// array([ 0., -2.,  0.])
+#[pyfunction]
+#[pyo3(
+    name = "surface_ellipsoid",
+    signature = (semi_axes, center=Argument::default(), axes=None),
+    text_signature = "(semi_axes, center=(0.0, 0.0, 0.0), axes=None)"
+)]
+pub(crate) fn ellipsoid(
+    py: Python<'_>,
+    semi_axes: &Bound<'_, PyAny>,
+    center: Argument<'_>,
+    axes: Option<&Bound<'_, PyAny>>,
+) -> PyResult<PySurface> {
+    let semi_axes: [f64; 3] = single(read(semi_axes, "semi_axes")?, "semi_axes")?;
+    let center = vector(&center, "center", [0.0; 3])?;
+    let (axes, kept) = rotation(py, axes)?;
+    let given = [
+        ("semi_axes", list(py, &semi_axes.into())?),
+        ("center", list(py, &center)?),
+        ("axes", kept),
+    ];
+    surface(
+        py,
+        Surface::ellipsoid(semi_axes, center, axes),
+        "ellipsoid",
+        given,
+    )
+}
+
+/// Make a disk, which touches a plane with its sharp edge; a hoop is the same surface.
+///
+/// Parameters
+/// ----------
+/// radius : float
+/// axis : array_like, shape (3,), optional
+///     Normal to the disk, components in the body frame; z by default.
+/// center : array_like, shape (3,), optional
+///     From the origin of the body frame; that origin by default.
+///
+/// Returns
+/// -------
+/// Surface
+///
+/// Raises
+/// ------
+/// PolhodeError
+///     If the radius is not positive, or the axis is zero.
+///
+/// Examples
+/// --------
+/// >>> from polhode import rolling
+/// >>> rolling.disk(0.5).curvatures((1, 0, 0))
+/// array([ 2., inf])
+#[pyfunction]
+#[pyo3(
+    name = "surface_disk",
+    signature = (radius, axis=Argument::default(), center=Argument::default()),
+    text_signature = "(radius, axis=(0.0, 0.0, 1.0), center=(0.0, 0.0, 0.0))"
+)]
+pub(crate) fn disk(
+    py: Python<'_>,
+    #[pyo3(from_py_with = read_scalar)] radius: f64,
+    axis: Argument<'_>,
+    center: Argument<'_>,
+) -> PyResult<PySurface> {
+    let axis = vector(&axis, "axis", [0.0, 0.0, 1.0])?;
+    let center = vector(&center, "center", [0.0; 3])?;
+    let given = [
+        ("radius", number(py, radius)?),
+        ("axis", list(py, &axis)?),
+        ("center", list(py, &center)?),
+    ];
+    surface(py, Surface::disk(radius, axis, center), "disk", given)
+}
+
+/// Make a torus: a disk with a round edge.
+///
+/// Parameters
+/// ----------
+/// major_radius : float
+///     Radius of the circle of centres about `axis`.
+/// minor_radius : float
+///     Radius of the edge.
+/// axis : array_like, shape (3,), optional
+///     Components in the body frame; z by default.
+/// center : array_like, shape (3,), optional
+///     From the origin of the body frame; that origin by default.
+///
+/// Returns
+/// -------
+/// Surface
+///
+/// Raises
+/// ------
+/// PolhodeError
+///     If a radius is not positive, or the axis is zero.
+///
+/// Notes
+/// -----
+/// A plane touches the outer side alone, where the torus is convex.
+///
+/// Examples
+/// --------
+/// >>> from polhode import rolling
+/// >>> rolling.torus(0.5, 0.1).contact((1, 0, 0))
+/// array([-0.6,  0. ,  0. ])
+#[pyfunction]
+#[pyo3(
+    name = "surface_torus",
+    signature = (major_radius, minor_radius, axis=Argument::default(), center=Argument::default()),
+    text_signature = "(major_radius, minor_radius, axis=(0.0, 0.0, 1.0), center=(0.0, 0.0, 0.0))"
+)]
+pub(crate) fn torus(
+    py: Python<'_>,
+    #[pyo3(from_py_with = read_scalar)] major_radius: f64,
+    #[pyo3(from_py_with = read_scalar)] minor_radius: f64,
+    axis: Argument<'_>,
+    center: Argument<'_>,
+) -> PyResult<PySurface> {
+    let axis = vector(&axis, "axis", [0.0, 0.0, 1.0])?;
+    let center = vector(&center, "center", [0.0; 3])?;
+    let given = [
+        ("major_radius", number(py, major_radius)?),
+        ("minor_radius", number(py, minor_radius)?),
+        ("axis", list(py, &axis)?),
+        ("center", list(py, &center)?),
+    ];
+    let made = Surface::torus(major_radius, minor_radius, axis, center);
+    surface(py, made, "torus", given)
+}
+
+/// Make an elliptic paraboloid, as of a boat or a rattleback: ``z = -apex + x²/(2 radii[0]) + y²/(2 radii[1])``.
+///
+/// Parameters
+/// ----------
+/// radii : array_like, shape (2,)
+///     Radii of curvature at the apex.
+/// apex : float
+///     How far the apex is below the origin of the body frame. The surface ends at its rim, z = 0.
+/// axes : array_like, shape (3, 3), optional
+///     Rotation matrix whose columns are the axes of the surface in the body frame; x, y, z by default.
+///
+/// Returns
+/// -------
+/// Surface
+///
+/// Raises
+/// ------
+/// PolhodeError
+///     If a radius or `apex` is not positive, or `axes` is no rotation.
+///
+/// Examples
+/// --------
+/// >>> from polhode import rolling
+/// >>> rolling.paraboloid((0.5, 0.25), apex=0.1).curvatures((0, 0, 1))
+/// array([2., 4.])
+#[pyfunction]
+#[pyo3(name = "surface_paraboloid", signature = (radii, apex, axes=None))]
+pub(crate) fn paraboloid(
+    py: Python<'_>,
+    radii: &Bound<'_, PyAny>,
+    #[pyo3(from_py_with = read_scalar)] apex: f64,
+    axes: Option<&Bound<'_, PyAny>>,
+) -> PyResult<PySurface> {
+    let radii: [f64; 2] = single(read(radii, "radii")?, "radii")?;
+    let (axes, kept) = rotation(py, axes)?;
+    let given = [
+        (
+            "radii",
+            radii.to_vec().into_pyobject(py)?.into_any().unbind(),
+        ),
+        ("apex", number(py, apex)?),
+        ("axes", kept),
+    ];
+    surface(
+        py,
+        Surface::paraboloid(radii, apex, axes),
+        "paraboloid",
+        given,
+    )
+}
+
+/// The contact of a surface with a plane. Made by :func:`polhode.rolling.plane`.
+///
+/// Attributes
+/// ----------
+/// surface : Surface
+/// normal : numpy.ndarray, shape (3,)
+///     Unit normal of the plane, towards the body, in space.
+/// point : numpy.ndarray, shape (3,)
+///     A point of the plane, in space.
+/// turntable : float
+///     Rate of the plane about `normal` through `point`.
+/// lift : str
+///     What follows when the normal force falls through zero: "stop" or "hold".
+///
+/// Examples
+/// --------
+/// >>> from polhode import rolling
+/// >>> rolling.plane(rolling.sphere(0.5), normal=(0, 3, 4)).normal
+/// array([0. , 0.6, 0.8])
+#[pyclass(name = "Contact", module = "polhode.rolling", frozen)]
+pub(crate) struct PyContact {
+    pub(crate) contact: Contact,
+    /// Return the surface of the body.
+    #[pyo3(get)]
+    surface: Py<PySurface>,
+}
+
+#[pymethods]
+impl PyContact {
+    /// Return the unit normal of the plane, in space.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(write(py, &Stack::one(*self.contact.normal))?.into_any())
+    }
+
+    /// Return a point of the plane, in space.
+    #[getter]
+    fn point<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(write(py, &Stack::one(self.contact.point))?.into_any())
+    }
+
+    /// Return the rate of the plane about its normal.
+    #[getter]
+    fn turntable(&self) -> f64 {
+        self.contact.turntable
+    }
+
+    /// Return what follows when the body lifts off.
+    #[getter]
+    fn lift(&self) -> &'static str {
+        match self.contact.lift {
+            LiftOff::Stop => "stop",
+            LiftOff::Hold => "hold",
+        }
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let surface = self.surface.bind(py).repr()?;
+        let [normal, point] = [self.contact.normal.into_inner(), self.contact.point]
+            .map(|vector| format!("{:?}", vector.as_slice()));
+        let (turntable, lift) = (self.contact.turntable, self.lift());
+        Ok(format!(
+            "rolling.plane({surface}, normal={normal}, point={point}, turntable={turntable:?}, lift='{lift}')"
+        ))
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let restore = py.get_type::<Self>().getattr("_from_parts")?;
+        let parts = (
+            self.surface.bind(py),
+            self.normal(py)?,
+            self.point(py)?,
+            self.contact.turntable,
+            self.lift(),
+        );
+        Ok((restore, parts.into_pyobject(py)?))
+    }
+
+    /// Make the contact that `__reduce__` took apart; for pickle.
+    #[staticmethod]
+    fn _from_parts(
+        surface: &Bound<'_, PySurface>,
+        normal: &Bound<'_, PyAny>,
+        point: &Bound<'_, PyAny>,
+        turntable: f64,
+        lift: &str,
+    ) -> PyResult<Self> {
+        let normal = single(read(normal, "normal")?, "normal")?;
+        let point = single(read(point, "point")?, "point")?;
+        make_contact(surface, normal, point, turntable, lift)
+    }
+}
+
+/// Make the contact of a surface that rolls on a plane without slipping.
+///
+/// Parameters
+/// ----------
+/// surface : Surface
+///     The surface of the body.
+/// normal : array_like, shape (3,), optional
+///     Normal of the plane, towards the body, in space; z by default.
+/// point : array_like, shape (3,), optional
+///     A point of the plane, in space; the origin by default.
+/// turntable : float, optional
+///     Rate at which the plane turns about `normal` through `point`, in radians per unit of time; zero by
+///     default.
+/// lift : {"stop", "hold"}, optional
+///     What follows when the normal force falls through zero, so that the plane would have to pull. "stop" ends
+///     the run there, with the status "lift-off". "hold" goes on, as theory does, and
+///     ``motion.contact.normal_force`` is negative for a while.
+///
+/// Returns
+/// -------
+/// Contact
+///     For ``contact=`` of :meth:`polhode.RigidBody.simulate`.
+///
+/// Raises
+/// ------
+/// PolhodeError
+///     If a number is not finite or the normal is zero.
+///
+/// Examples
+/// --------
+/// A ball rolls down an incline with 5/7 of the acceleration of a body that glides:
+///
+/// >>> import numpy as np
+/// >>> from polhode import loads, rolling, solids
+/// >>> ball = solids.sphere(0.5, mass=2.0)
+/// >>> incline = rolling.plane(rolling.sphere(0.5), normal=(0.6, 0, 0.8))
+/// >>> gravity = loads.uniform_gravity((0, 0, -9.81))
+/// >>> motion = ball.simulate([0, 1], omega=(0, 0, 0), load=gravity, contact=incline)
+/// >>> round(float(np.linalg.norm(motion.velocity[-1]) / (9.81 * 0.6)), 12) == round(5 / 7, 12)
+/// True
+/// >>> motion.contact.friction_needed.round(6)
+/// array([0.214286, 0.214286])
+#[pyfunction]
+#[pyo3(
+    name = "rolling_plane",
+    signature = (surface, *, normal=Argument::default(), point=Argument::default(), turntable=0.0, lift="stop"),
+    text_signature = "(surface, *, normal=(0.0, 0.0, 1.0), point=(0.0, 0.0, 0.0), turntable=0.0, lift=\"stop\")"
+)]
+pub(crate) fn plane(
+    surface: &Bound<'_, PyAny>,
+    normal: Argument<'_>,
+    point: Argument<'_>,
+    #[pyo3(from_py_with = read_scalar)] turntable: f64,
+    #[pyo3(from_py_with = read_scalar)] lift: &str,
+) -> PyResult<PyContact> {
+    let surface = surface.cast::<PySurface>().map_err(|_| {
+        PyValueError::new_err(format!(
+            "surface: expected a surface of polhode.rolling, as rolling.sphere(radius), got {}",
+            surface.get_type()
+        ))
+    })?;
+    let normal = vector(&normal, "normal", [0.0, 0.0, 1.0])?;
+    let point = vector(&point, "point", [0.0; 3])?;
+    make_contact(surface, normal, point, turntable, lift)
+}
+
+fn make_contact(
+    surface: &Bound<'_, PySurface>,
+    normal: Vector3<f64>,
+    point: Vector3<f64>,
+    turntable: f64,
+    lift: &str,
+) -> PyResult<PyContact> {
+    let lift = match lift {
+        "stop" => LiftOff::Stop,
+        "hold" => LiftOff::Hold,
+        _ => {
+            return Err(PyValueError::new_err(format!(
+                "lift: expected \"stop\" or \"hold\", got \"{lift}\""
+            )));
+        }
+    };
+    let contact = Contact::rolling(surface.get().surface, normal, point, turntable, lift)
+        .map_err(|error| to_py(surface.py(), &error))?;
+    Ok(PyContact {
+        contact,
+        surface: surface.clone().unbind(),
+    })
+}
+
+/// The steady motions of a body of revolution: the columns of `polhode.rolling.Steady` but for the eigenvalues, with λ².
+#[pyfunction]
+pub(crate) fn rolling_steady<'py>(
+    body: &Bound<'py, PyRigidBody>,
+    surface: &Bound<'py, PySurface>,
+    inclination: f64,
+    gravity: &Bound<'py, PyAny>,
+    turn: Option<f64>,
+    spin: Option<f64>,
+) -> PyResult<Vec<Bound<'py, PyTuple>>> {
+    let py = body.py();
+    let rate = match (turn, spin) {
+        (Some(turn), None) => Rate::Turn(turn),
+        (None, Some(spin)) => Rate::Spin(spin),
+        _ => {
+            return Err(PyTypeError::new_err(
+                "steady: give exactly one of turn= and spin=",
+            ));
+        }
+    };
+    let gravity = single(read(gravity, "gravity")?, "gravity")?;
+    let found = steady(
+        one(body)?,
+        &surface.get().surface,
+        inclination,
+        &gravity,
+        rate,
+    );
+    let found = found.map_err(|error| to_py(py, &error))?;
+    (found.iter())
+        .map(|steady| {
+            let columns = (
+                write(py, &Stack::one(steady.omega))?,
+                write(py, &Stack::one(components(&steady.attitude)))?,
+                steady.turn,
+                steady.spin,
+                steady.radius,
+                steady.friction_needed,
+                steady.squared_rate,
+            );
+            columns.into_pyobject(py)
+        })
+        .collect()
+}
+
+/// The rate from which an upright body of revolution is stable.
+#[pyfunction]
+pub(crate) fn rolling_critical_rate(
+    body: &Bound<'_, PyRigidBody>,
+    surface: &Bound<'_, PySurface>,
+    gravity: &Bound<'_, PyAny>,
+    motion: &str,
+) -> PyResult<f64> {
+    let motion = match motion {
+        "rolling" => Upright::Rolling,
+        "spinning" => Upright::Spinning,
+        _ => {
+            return Err(PyValueError::new_err(format!(
+                "motion: expected \"rolling\" or \"spinning\", got \"{motion}\""
+            )));
+        }
+    };
+    let gravity = single(read(gravity, "gravity")?, "gravity")?;
+    critical_rate(one(body)?, &surface.get().surface, &gravity, motion)
+        .map_err(|error| to_py(body.py(), &error))
+}
+
+/// The fields of `polhode.rolling.TippeTop` after the verdict.
+#[pyfunction]
+pub(crate) fn rolling_tippe_top(
+    body: &Bound<'_, PyRigidBody>,
+    surface: &Bound<'_, PySurface>,
+    spin: f64,
+    gravity: &Bound<'_, PyAny>,
+) -> PyResult<[f64; 4]> {
+    let gravity = single(read(gravity, "gravity")?, "gravity")?;
+    let found = tippe_top(one(body)?, &surface.get().surface, spin, &gravity)
+        .map_err(|error| to_py(body.py(), &error))?;
+    Ok([
+        found.cos_theta,
+        found.jellett,
+        found.upright_unstable_beyond,
+        found.inverted_stable_beyond,
+    ])
+}
+
+/// The growth rates and frequencies of an upright spin.
+#[pyfunction]
+pub(crate) fn rolling_modes(
+    body: &Bound<'_, PyRigidBody>,
+    surface: &Bound<'_, PySurface>,
+    gravity: &Bound<'_, PyAny>,
+    rate: f64,
+) -> PyResult<[[f64; 2]; 2]> {
+    let gravity = single(read(gravity, "gravity")?, "gravity")?;
+    let found = modes(one(body)?, &surface.get().surface, &gravity, rate)
+        .map_err(|error| to_py(body.py(), &error))?;
+    Ok([found.growth_rates, found.frequencies])
+}
+
+/// The one body where there must be no stack.
+fn one<'a>(body: &'a Bound<'_, PyRigidBody>) -> PyResult<&'a RigidBody> {
+    let bodies = &body.get().bodies;
+    if bodies.is_one() {
+        return Ok(&bodies[0]);
+    }
+    Err(PyValueError::new_err(format!(
+        "body: expected one body, got a stack of shape {}; ask body by body",
+        tuple(&bodies.shape)
+    )))
+}
+
+/// The gravity of a load that a contact can be simulated with.
+pub(crate) fn gravity_of(py: Python<'_>, load: &PyLoad, terms: &[Term]) -> PyResult<Vector3<f64>> {
+    let alone = if load.is_analytic() {
+        gravity_alone(terms)
+    } else {
+        None
+    };
+    alone.ok_or_else(|| {
+        let message = "load: a body on a plane is simulated under uniform gravity alone; give loads.uniform_gravity(g), \
+                       or leave contact out";
+        new(py, "ContactError", message.to_owned())
+    })
+}
+
+/// The argument `contact` of a run.
+pub(crate) fn read_contact<'a, 'py>(
+    contact: Option<&'a Bound<'py, PyAny>>,
+) -> PyResult<Option<&'a Bound<'py, PyContact>>> {
+    let Some(contact) = contact.filter(|given| !given.is_none()) else {
+        return Ok(None);
+    };
+    contact.cast::<PyContact>().map(Some).map_err(|_| {
+        PyValueError::new_err(format!(
+            "contact: expected a contact, as rolling.plane(rolling.sphere(radius)), got {}",
+            contact.get_type()
+        ))
+    })
+}
+
+/// A motion of bodies on a plane, row by row.
+struct Rows {
+    bodies: Stack<RigidBody>,
+    contact: Contact,
+    gravity: Stack<Vector3<f64>>,
+    phases: [Stack<Vector3<f64>>; 3],
+    attitudes: Stack<UnitQuaternion<f64>>,
+}
+
+impl Rows {
+    fn read(
+        body: &Bound<'_, PyRigidBody>,
+        contact: &Bound<'_, PyContact>,
+        load: Option<&Bound<'_, PyLoad>>,
+        [omega, quaternion, position, velocity]: [&Bound<'_, PyAny>; 4],
+    ) -> PyResult<Self> {
+        let py = body.py();
+        let gravity = match load {
+            None => Stack::one(Vector3::zeros()),
+            Some(load) => {
+                let terms = load.get().terms(py)?;
+                let rows = (terms.rows.iter()).map(|terms| gravity_of(py, load.get(), terms));
+                Stack {
+                    rows: rows.collect::<PyResult<_>>()?,
+                    shape: terms.shape,
+                }
+            }
+        };
+        let bodies = &body.get().bodies;
+        Ok(Self {
+            bodies: Stack {
+                shape: bodies.shape.clone(),
+                rows: bodies.rows.clone(),
+            },
+            contact: contact.get().contact,
+            gravity,
+            phases: [
+                read(omega, "omega")?,
+                read(position, "position")?,
+                read(velocity, "velocity")?,
+            ],
+            // States after the end of a run are not numbers.
+            attitudes: read_quaternion(quaternion, "quaternion")?.map(py, |&[x, y, z, w]| {
+                UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z))
+            })?,
+        })
+    }
+
+    fn map<T: Clone + Send>(
+        &self,
+        py: Python<'_>,
+        of: impl Fn(&RigidBody, &Contact, &Vector3<f64>, &Phase) -> T + Sync,
+    ) -> PyResult<Stack<T>> {
+        let [omega, position, velocity] = &self.phases;
+        let grid = Broadcast::of(
+            [
+                "body",
+                "load",
+                "omega",
+                "quaternion",
+                "position",
+                "velocity",
+            ],
+            [
+                &self.bodies.shape,
+                &self.gravity.shape,
+                &omega.shape,
+                &self.attitudes.shape,
+                &position.shape,
+                &velocity.shape,
+            ],
+        )?;
+        grid.try_map(py, |[b, g, w, q, r, v]| {
+            let phase = Phase {
+                attitude: self.attitudes[q],
+                omega: omega[w],
+                position: position[r],
+                velocity: velocity[v],
+                internal_state: Box::default(),
+            };
+            Ok(of(&self.bodies[b], &self.contact, &self.gravity[g], &phase))
+        })
+    }
+}
+
+/// The contact at every state of a motion: arrays by name.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "the states of a motion")]
+pub(crate) fn contact_history<'py>(
+    body: &Bound<'py, PyRigidBody>,
+    contact: &Bound<'py, PyContact>,
+    load: Option<&Bound<'py, PyLoad>>,
+    omega: &Bound<'py, PyAny>,
+    quaternion: &Bound<'py, PyAny>,
+    position: &Bound<'py, PyAny>,
+    velocity: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let py = body.py();
+    let rows = Rows::read(body, contact, load, [omega, quaternion, position, velocity])?;
+    let found = rows.map(py, force::instant)?;
+    let arrays = PyDict::new(py);
+    arrays.set_item("point", write_of(py, &found, |at| at.point)?)?;
+    arrays.set_item(
+        "point_in_body",
+        write_of(py, &found, |at| at.point_in_body)?,
+    )?;
+    arrays.set_item("force", write_of(py, &found, |at| at.force)?)?;
+    arrays.set_item("normal_force", write_of(py, &found, |at| at.normal_force)?)?;
+    arrays.set_item(
+        "friction_needed",
+        write_of(py, &found, |at| at.friction_needed)?,
+    )?;
+    arrays.set_item("slip", write_of(py, &found, |at| at.slip)?)?;
+    arrays.set_item("power", write_of(py, &found, |at| at.power)?)?;
+    arrays.set_item("residual", write_of(py, &found, |at| at.residual)?)?;
+    Ok(arrays)
+}
+
+/// What a motion keeps at every state, by name; None for what its case does not have.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "the states of a motion")]
+pub(crate) fn contact_invariants<'py>(
+    body: &Bound<'py, PyRigidBody>,
+    contact: &Bound<'py, PyContact>,
+    load: Option<&Bound<'py, PyLoad>>,
+    omega: &Bound<'py, PyAny>,
+    quaternion: &Bound<'py, PyAny>,
+    position: &Bound<'py, PyAny>,
+    velocity: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let py = body.py();
+    let rows = Rows::read(body, contact, load, [omega, quaternion, position, velocity])?;
+    let found: Stack<Kept> = rows.map(py, kept)?;
+    let arrays = PyDict::new(py);
+    let put = |name: &str, of: fn(&Kept) -> Option<f64>| -> PyResult<()> {
+        if found.rows.iter().all(|kept| of(kept).is_none()) {
+            return arrays.set_item(name, py.None());
+        }
+        let values = write_of(py, &found, |kept| of(kept).unwrap_or(f64::NAN))?;
+        arrays.set_item(name, values)
+    };
+    put("jellett", |kept| kept.jellett)?;
+    put("routh", |kept| kept.routh)?;
+    if found.rows.iter().all(|kept| kept.chaplygin.is_none()) {
+        arrays.set_item("chaplygin", py.None())?;
+    } else {
+        let nan = Vector3::repeat(f64::NAN);
+        let values = write_of(py, &found, |kept| kept.chaplygin.unwrap_or(nan))?;
+        arrays.set_item("chaplygin", values)?;
+    }
+    Ok(arrays)
+}
+
+fn surface<const N: usize>(
+    py: Python<'_>,
+    made: Result<Surface, Error>,
+    function: &'static str,
+    arguments: [(&'static str, Py<PyAny>); N],
+) -> PyResult<PySurface> {
+    Ok(PySurface {
+        surface: made.map_err(|error| to_py(py, &error))?,
+        function,
+        arguments: arguments.into(),
+    })
+}
+
+fn number(py: Python<'_>, number: f64) -> PyResult<Py<PyAny>> {
+    Ok(number.into_pyobject(py)?.into_any().unbind())
+}
+
+fn list(py: Python<'_>, vector: &Vector3<f64>) -> PyResult<Py<PyAny>> {
+    Ok(vector
+        .as_slice()
+        .to_vec()
+        .into_pyobject(py)?
+        .into_any()
+        .unbind())
+}
+
+fn vector(given: &Argument<'_>, name: &str, default: [f64; 3]) -> PyResult<Vector3<f64>> {
+    single(read_or(given, name, default.into())?, name)
+}
+
+/// A rotation that may be left out, as a matrix and as it is kept for pickle.
+fn rotation(
+    py: Python<'_>,
+    axes: Option<&Bound<'_, PyAny>>,
+) -> PyResult<(Option<Matrix3<f64>>, Py<PyAny>)> {
+    let Some(axes) = axes else {
+        return Ok((None, py.None()));
+    };
+    let matrix: Matrix3<f64> = single(read(axes, "axes")?, "axes")?;
+    let rows: Vec<Vec<f64>> = (matrix.row_iter())
+        .map(|row| row.iter().copied().collect())
+        .collect();
+    Ok((Some(matrix), rows.into_pyobject(py)?.into_any().unbind()))
+}
+
+/// The one item where there must be no stack.
+fn single<T: Item + Copy>(stack: Stack<T>, name: &str) -> PyResult<T> {
+    if stack.is_one() {
+        return Ok(stack[0]);
+    }
+    let tail: Vec<String> = T::TAIL.iter().map(usize::to_string).collect();
+    Err(PyValueError::new_err(format!(
+        "{name}: expected shape ({}), got {}",
+        tail.join(", ") + if tail.len() == 1 { "," } else { "" },
+        tuple(&[&stack.shape[..], T::TAIL].concat())
+    )))
+}

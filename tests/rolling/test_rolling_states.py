@@ -1,0 +1,124 @@
+"""States and forces of bodies that roll, against Newton's and Euler's equations in more digits."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import polhode
+import pytest
+from mpmath import mp, mpf
+from oracles.rolling import DIGITS, RollingBody, cases, motion
+from polhode import RigidBody, loads, rolling
+from polhode._core import rotate
+
+CASES = cases()
+
+
+def surface_of(case: dict[str, Any]) -> rolling.Surface:
+    given = dict(case["surface"])
+    made: rolling.Surface = getattr(rolling, given.pop("kind"))(**given)
+    return made
+
+
+def run(case: dict[str, Any], t: Any = None, **changed: Any) -> polhode.Trajectory:
+    """Simulate a case as tightly as doubles can, with small changes of the start."""
+    case = case | changed
+    body = RigidBody(case["mass"], inertia=case["inertia"], center_of_mass=case["center_of_mass"])
+    contact = rolling.plane(
+        surface_of(case),
+        normal=case["normal"],
+        point=case["point"],
+        turntable=case["turntable"],
+        lift="hold",
+    )
+    attitude = np.array(case["attitude"])
+    return body.simulate(
+        [0.0, case["t"]] if t is None else t,
+        case["omega"],
+        attitude / np.linalg.norm(attitude),
+        load=loads.uniform_gravity(case["gravity"]),
+        contact=contact,
+        rtol=2.3e-15,
+    )
+
+
+def flat(found: polhode.Trajectory, index: int = -1) -> Any:
+    """Return (q, ω in space, C) as the oracle has them."""
+    quaternion = found.quaternion[index]
+    omega = rotate(quaternion, found.omega[index])
+    return np.concatenate([quaternion, omega, found.position[index]])
+
+
+def condition(case: dict[str, Any], end: Any, size: Any) -> float:
+    """Estimate by how much the motion enlarges changes of its start, relative to sizes."""
+    step, found = 1e-7, 0.0
+    for name in ("omega", "attitude"):
+        for i in range(len(case[name])):
+            moved = list(case[name])
+            moved[i] += step
+            found = max(found, float(np.max(np.abs(flat(run(case, **{name: moved})) - end) / size)) / step)
+    return found
+
+
+@pytest.mark.parametrize("number", range(len(CASES)))
+def test_states_at_the_end_of_a_motion(number: int) -> None:
+    case = CASES[number]
+    exact = np.array([np.longdouble(x) for x in case["end"]])
+    found = run(case)
+    end = flat(found)
+    sign = np.sign(np.sum(exact[:4] * end[:4]))
+    exact = np.concatenate([sign * exact[:4], exact[4:]])
+    speed = np.linalg.norm(np.array(exact[4:7], dtype=float))
+    size = np.array([1.0] * 4 + [max(speed, 1.0)] * 3 + [1.0] * 3)
+    error = np.max(np.abs(end - exact) / size)
+    assert error <= 1e-13 * (1 + condition(case, end, size)), float(error)
+
+
+@pytest.mark.parametrize("number", range(len(CASES)))
+def test_forces_and_accelerations_of_states(number: int) -> None:
+    """Each force is that of the equations in 30 digits at the same state."""
+    case = CASES[number]
+    found = run(case, np.linspace(0, case["t"], 4))
+    assert found.contact is not None
+    acceleration = rotate(found.quaternion, found.angular_acceleration())
+    for index in (0, 3):
+        with mp.workdps(DIGITS):
+            state = [mpf(float(x)) for x in flat(found, index)]
+            rates, force, velocity = RollingBody(case).solve(state)
+        exact = np.array([float(x) for x in force])
+        size = max(float(np.linalg.norm(exact)), case["mass"] * 9.81)
+        assert np.max(np.abs(found.contact.force[index] - exact)) <= 1e-12 * size
+        turn = np.array([float(x) for x in rates[4:7]])
+        assert np.max(np.abs(acceleration[index] - turn)) <= 1e-11 * max(1.0, float(np.linalg.norm(turn)))
+        exact_velocity = np.array([float(x) for x in velocity])
+        assert np.max(np.abs(found.velocity[index] - exact_velocity)) <= 1e-13 * (
+            1 + np.linalg.norm(found.omega[index])
+        )
+
+
+@pytest.mark.parametrize("number", range(len(CASES)))
+def test_height_slip_and_energy(number: int) -> None:
+    case = CASES[number]
+    found = run(case, np.linspace(0, case["t"], 101))
+    assert found.contact is not None
+    # Rounding of the attitude moves the contact by the radius of curvature, which is large near lying flat.
+    surface, normal = surface_of(case), np.array(case["normal"])
+    in_body = rotate(found.quaternion, normal / np.linalg.norm(normal), inverse=True)
+    radius = np.max(1 / surface.curvatures(in_body)[:, 0])
+    assert np.max(np.abs(found.contact.residual)) <= 1e-14 * max(1.0, radius)
+    kept = found.invariants()
+    if case["turntable"]:
+        assert kept.energy is None
+        return
+    assert kept.energy_drift <= 1e-14
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("number", [0, 6, 12, 18, 24])
+def test_the_table_is_what_the_equations_give(number: int) -> None:
+    case = CASES[number] | {"t": 0.5}
+    exact = motion(case)
+    end = flat(run(case))
+    sign = np.sign(np.sum(exact[:4] * end[:4]))
+    assert np.max(np.abs(end - np.concatenate([sign * exact[:4], exact[4:]]))) <= 1e-12
