@@ -22,7 +22,17 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["angular_acceleration", "angular_velocity", "quaternion", "read_quaternions", "read_times"]
+__all__ = [
+    "angular_acceleration",
+    "angular_velocity",
+    "cross",
+    "exponential",
+    "quaternion",
+    "read_quaternions",
+    "read_times",
+    "read_vectors",
+    "rotation_vectors",
+]
 
 _ORDERS: Final = (2, 4, 6, 8)
 _BLOCK: Final = 4096
@@ -135,7 +145,7 @@ def _continuous(quaternions: Floats, there: NDArray[np.bool_]) -> Floats:
     return quaternions
 
 
-def _read_vectors(values: ArrayLike, rows: int, name: str) -> Floats:
+def read_vectors(values: ArrayLike, rows: int, name: str) -> Floats:
     """Return vectors of one body at each time; rows with a NaN are NaN."""
     known = _core.real_numbers(values, name)
     if known.shape != (rows, 3):
@@ -659,7 +669,7 @@ def angular_acceleration(
     True
     """
     times = read_times(t)
-    known = _read_vectors(omega, len(times), "omega")
+    known = read_vectors(omega, len(times), "omega")
     there = _rows_there(known, "omega")
     rates, error = _rates(times[there], known[there], _read_order(order), _read_sigma(sigma), turning=False)
     return _with_gaps(there, rates), _with_gaps(there, error)
@@ -726,7 +736,7 @@ def quaternion(
     if frame not in ("body", "space"):
         raise ValueError(f"frame: {frame!r} is not 'body' or 'space'")
     times = read_times(t)
-    known = _read_vectors(omega, len(times), "omega")
+    known = read_vectors(omega, len(times), "omega")
     _read_order(order)
     start = _core.real_numbers(_plain(attitude), "attitude")
     if start.shape != (4,):

@@ -174,6 +174,11 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "Load.carried": {"t": 0.5},
     "Gyrostat.equilibria": {"momentum": 2.0},
     "GyrostatMotion.equilibria": {"self": [TUMBLER.gyrostat((0.0, 0.5, 2.0)).free_motion(OMEGA)]},
+    "Trajectory.from_samples": {
+        "attitude": [QUATERNION, [0.5, 0.5, -0.5, 0.5], [0.0, 0.0, 0.0, 1.0]],
+        **{name: [OMEGA, [0.5, 1.0, 0.25], [0.0, 1.0, 0.0]] for name in ("omega", "position", "velocity")},
+        "sequence": None,
+    },
     "Trajectory.sensitivity": {"method": "series"},
     "schedule": {"load": loads.constant_torque((0.5, 0.0, 0.25))},
     "callback": {"function": push},
