@@ -68,6 +68,7 @@ if TYPE_CHECKING:
         principal_moments,
     )
     from polhode.ensembles.call import Ensemble, ensemble
+    from polhode.motion.auditing import Audit, Finding, audit
     from polhode.motion.events import Event, Events
     from polhode.motion.free import Cones, ErrorBar, LightCurve, Periods, Poinsot, Sensitivity
     from polhode.motion.gyrostat import Bifurcations, Equilibria, Wheel, wheel
@@ -123,14 +124,17 @@ _HOMES = (
 )
 """Modules whose names are public here; the other names are modules."""
 
-_APART = dict.fromkeys(("Ensemble", "ensemble"), ("polhode.ensembles.call",))
-"""Names whose module is imported for them alone: it has many files."""
+_APART = dict.fromkeys(("Ensemble", "ensemble"), ("polhode.ensembles.call",)) | dict.fromkeys(
+    ("Audit", "Finding", "audit"), ("polhode.motion.auditing",)
+)
+"""Names whose module is imported for them alone."""
 
 _LATER = ("animation", "io", "molecules", "plot", "robots", "samples", "symbolic", "units", "view")
 """Modules that a star import leaves out: some need libraries, and their names are those of many scripts."""
 
 __all__ = [
     "AngularMomentum",
+    "Audit",
     "Bifurcations",
     "Cones",
     "ContinuousAxes",
@@ -140,6 +144,7 @@ __all__ = [
     "ErrorBound",
     "Event",
     "Events",
+    "Finding",
     "FreeMotion",
     "FreePrecession",
     "Gyrostat",
@@ -168,6 +173,7 @@ __all__ = [
     "Wheel",
     "__version__",
     "assembly",
+    "audit",
     "distributions",
     "ensemble",
     "equimomental",

@@ -27,6 +27,8 @@ __all__ = [
     "angular_velocity",
     "cross",
     "exponential",
+    "integral",
+    "noise_of",
     "quaternion",
     "read_quaternions",
     "read_times",
@@ -460,7 +462,7 @@ def _smoothed(curve: _Curve, order: int | None, sigma: float) -> tuple[Floats, F
                 best = _Choice(half, degree, bias, noise)
             if bias > 4.0 * noise:
                 break
-            half = max(half + 1, int(half * 1.4))
+            half = max(half + 1, int(half * 1.5))
     if best is None:
         return _interpolated(curve, order)
     rates, error = np.empty((3, len(curve))), np.empty(len(curve))
@@ -775,6 +777,19 @@ def quaternion(
 
 def _turns(t: Floats, omega: Floats, begin: int, stop: int, half: int, parts: int) -> Floats:
     """Compute the rotation vectors from row to row, from polynomials through 2 `half` rows."""
+    width = t[begin + 1 : stop + 1] - t[begin:stop]
+    found: Floats | None = None
+    for a in _at_nodes(t, omega, begin, stop, half, parts):
+        step = _magnus(a, width / parts)
+        found = step if found is None else rotation_vectors(exponential(-found), exponential(step))
+    assert found is not None
+    return found
+
+
+def _at_nodes(
+    t: Floats, values: Floats, begin: int, stop: int, half: int, parts: int
+) -> Iterator[list[Floats]]:
+    """Interpolate vectors at the three nodes of each part of the steps from row to row."""
     size = min(2 * half, len(t))
     here = np.arange(begin, stop)
     firsts = np.clip(here - half + 1, 0, len(t) - size)
@@ -784,17 +799,30 @@ def _turns(t: Floats, omega: Floats, begin: int, stop: int, half: int, parts: in
     apart = x[:, None] - x
     apart[range(size), range(size)] = 1.0
     factors = 1.0 / apart.prod(1)
-    near = np.ascontiguousarray(omega[:, rows].transpose(1, 0, 2))
-    found: Floats | None = None
+    near = np.ascontiguousarray(values[:, rows].transpose(1, 0, 2))
     for part in range(parts):
-        a = []
-        for node in _NODES:
-            off = (part + node) / parts * width - x
-            a.append(np.einsum("kn,kcn->cn", factors / off * off.prod(0), near))
-        step = _magnus(a, width / parts)
-        found = step if found is None else rotation_vectors(exponential(-found), exponential(step))
-    assert found is not None
-    return found
+        offs = [(part + node) / parts * width - x for node in _NODES]
+        yield [np.einsum("kn,kcn->cn", factors / off * off.prod(0), near) for off in offs]
+
+
+def integral(t: Floats, values: Floats) -> Floats:
+    """Integrate vectors, components first, from the first row to each row."""
+    half = min(6, len(t) - len(t) % 2) // 2
+    parts = [np.zeros((len(values), 1))]
+    for begin in range(0, len(t) - 1, _BLOCK):
+        stop = min(begin + _BLOCK, len(t) - 1)
+        (a,) = _at_nodes(t, values, begin, stop, half, 1)
+        parts.append((5.0 * a[0] + 8.0 * a[1] + 5.0 * a[2]) / 18.0 * np.diff(t)[begin:stop])
+    return np.cumsum(np.concatenate(parts, axis=1), axis=1)
+
+
+def noise_of(t: Floats, values: Floats, *, turning: bool) -> float:
+    """Estimate the standard deviation of white noise of each component of rows, components first."""
+    curve = _Curve(t, values, turning=turning)
+    widest = min((len(t) - 1) // 2, 5)
+    while widest > 1 and curve.farthest(widest) > _FAR:
+        widest -= 1
+    return _tried(curve, widest)[0]
 
 
 def _magnus(a: list[Floats], width: Floats) -> Floats:
