@@ -228,6 +228,37 @@ def test_a_record_of_another_body() -> None:
     assert not found.agrees
 
 
+@pytest.mark.parametrize("time", [1e-120, 1e-6, 1e9, 1e120])
+@pytest.mark.parametrize("inertia", [1e-47, 1e37])
+def test_units_of_any_size(time: float, inertia: float) -> None:
+    """Findings and their numbers are the same in the units of molecules and of planets."""
+    run = BODY.simulate(T, (1.0, 0.5, 0.2), load=loads.constant_torque((0.02, 0.0, 0.0)))
+    scaled = RigidBody.from_principal(inertia, inertia * BODY.principal_moments)
+    found = audited(scaled, Record(time * T, run.quaternion, run.omega / time))
+    (finding,) = found.findings
+    assert finding.kind == "undeclared torque"
+    unit = inertia / time**2
+    np.testing.assert_allclose(np.array(finding.evidence["torque"]) / unit, [0.02, 0, 0], atol=1e-7)
+    np.testing.assert_allclose(found.residual_torque[:, 0] / unit, 0.02, atol=1e-6)
+
+
+def test_records_that_tell_nothing() -> None:
+    """Attitudes at random, none that turn, no angular velocity: none agrees, and nothing is found."""
+    rng = np.random.default_rng(6)
+    exact = BODY.free_motion((0.3, 1.0, 0.2)).at(T)
+    anywhere = Rotation.random(800, rng=rng).as_quat()
+    still = np.tile([0.0, 0.0, 0.0, 1.0], (800, 1))
+    for quaternion, omega in (
+        (anywhere, exact.omega),
+        (still, exact.omega),
+        (exact.quaternion, 0.0 * exact.omega),
+    ):
+        found = audited(BODY, Record(T, quaternion, omega))
+        assert kinds(found) == []
+        assert not found.agrees
+    assert audited(BODY, Record(T, still, 0.0 * exact.omega)).agrees
+
+
 def test_pictures_and_repr() -> None:
     pyplot = pytest.importorskip("matplotlib.pyplot")
     exact = BODY.free_motion((0.3, 1.0, 0.2)).at(T)
@@ -247,5 +278,11 @@ def test_what_is_refused() -> None:
         ValueError, match=r"trajectory: expected that of one body, got a stack of shape \(2,\)"
     ):
         polhode.audit(stack)
+    with pytest.raises(PolhodeError, match="trajectory: an angular velocity of"):
+        audited(BODY, Record(T, exact.quaternion, 1e9 * exact.omega))
+    with pytest.raises(PolhodeError, match=r"trajectory: steps of .* are beyond what is computed"):
+        audited(BODY, Record(1e150 * T, exact.quaternion, 1e-150 * exact.omega))
+    with pytest.raises(TypeError, match=r"trajectory: expected a Trajectory, .* got NoneType"):
+        polhode.audit(None)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="rtol: expected a number between 0 and 1"):
         polhode.audit(exact, rtol=2.0)

@@ -189,3 +189,26 @@ def test_words_that_are_refused() -> None:
         kinematics.quaternion(T, MOTION.omega[:3])
     with pytest.raises(ValueError, match=r"attitude: expected shape \(4,\)"):
         kinematics.quaternion(T, MOTION.omega, MOTION.quaternion)
+
+
+@pytest.mark.parametrize("size", [1e-150, 1e-8, 1e8, 1e150])
+def test_units_of_any_size(size: float) -> None:
+    """The same digits in any unit of time; beyond floats, and of steps that differ too much, an error."""
+    near = 2.0 ** np.round(np.log2(size))
+    plain, told = kinematics.angular_velocity(T, MOTION.quaternion)
+    found, error = kinematics.angular_velocity(near * T, MOTION.quaternion)
+    assert np.array_equal(found * near, plain)
+    assert np.array_equal(error * near, told)
+    attitude, _ = kinematics.quaternion(near * T, MOTION.omega / near)
+    assert np.array_equal(attitude, kinematics.quaternion(T, MOTION.omega)[0])
+
+
+def test_what_is_beyond() -> None:
+    with pytest.raises(PolhodeError, match="t: its steps go from 1e-17 to 1"):
+        kinematics.angular_velocity([0.0, 1e-17, 1.0], MOTION.quaternion[:3])
+    with pytest.raises(PolhodeError, match="t: the rates are beyond floating-point numbers"):
+        kinematics.angular_velocity(1e-308 * np.arange(81), Rotation.from_rotvec(np.outer(T * 40, [0, 0, 1])))
+    with pytest.raises(PolhodeError, match=r"omega: the body would turn by 5\.2e\+08 rad"):
+        kinematics.quaternion(T, 1e10 * MOTION.omega)
+    with pytest.raises(PolhodeError, match="sigma: 100 is more than 10"):
+        kinematics.angular_velocity(T, MOTION.quaternion, sigma=100.0)

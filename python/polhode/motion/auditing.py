@@ -35,6 +35,12 @@ _LEAST: Final = 16
 """Rows without which nothing is judged."""
 _GAIN: Final = 15.0
 """Least gain of log-likelihood for a finding: the alternative is e^15 times as likely."""
+_FASTEST: Final = 1e5
+"""The largest angle, in radians, by which a body may turn from row to row: it may be in degrees."""
+_NOISIEST: Final = 0.3
+"""Noise of attitudes, in radians, beyond which a record tells nothing."""
+_OTHERWISE: Final = 0.25
+"""Share of ω by which attitudes may turn otherwise where a mistake of the program is looked for."""
 _NOISELESS: Final = 1e-9
 """Noise of attitudes, in radians, that is none."""
 _EXPLAINED: Final = 0.05
@@ -145,7 +151,8 @@ class Audit:
         Standard deviations of white noise: ``attitude`` in radians, and ``angular_momentum`` relative to it.
     agrees : bool
         Whether the record is the motion of this body: there are no findings, and neither the angular
-        momentum nor the turns from row to row are off by more than the noise and `rtol`.
+        momentum nor the turns from row to row are off by more than the noise and `rtol`. False where the
+        noise of the attitudes is more than 0.3 rad: they tell nothing then.
     """
 
     t: Floats
@@ -255,6 +262,10 @@ def audit(
     >>> [finding.kind for finding in found.findings], found.agrees
     (['diagonal tensor'], False)
     """
+    if not hasattr(trajectory, "quaternion"):
+        raise TypeError(
+            f"trajectory: expected a Trajectory, as from_samples makes, got {type(trajectory).__name__}"
+        )
     body = trajectory.body
     if body.shape:
         raise ValueError(
@@ -269,10 +280,18 @@ def audit(
         raise PolhodeError(f"trajectory: needs at least {_LEAST} rows without NaN, got {int(there.sum())}")
     record = _record_of(trajectory, there)
     tensor = body.inertia_about(trajectory.about)
+    units = _units(record, tensor)
     order = None if finer is None else _order(trajectory, finer, ratio)
-    reading = _Reading(record, tensor, limit)
+    scaled = _Record(
+        (record.t - record.t[0]) / units.time,
+        record.quaternion,
+        record.omega * units.time,
+        record.torque * units.time**2 / units.inertia,
+    )
+    tensor = tensor / units.inertia
+    reading = _Reading(scaled, tensor, limit)
     findings, agrees = reading.judge()
-    momentum = _momentum(record, tensor)
+    momentum = _momentum(scaled, tensor)
     first = np.linalg.norm(momentum[:, 0])
     drift = np.linalg.norm(momentum - momentum[:, :1], axis=0)
     noise = {"attitude": reading.noise, "angular_momentum": reading.noise_of_momentum}
@@ -280,13 +299,50 @@ def audit(
         t=trajectory.t,
         energy_drift=_energy_drift(trajectory, there),
         angular_momentum_drift=_whole(there, drift / first if first > 0.0 else drift),
-        residual_torque=_whole(there, _residual(record, tensor).T),
+        residual_torque=_whole(there, _residual(scaled, tensor).T * units.inertia / units.time**2),
         angle_from_exact=_whole(there, _angles(trajectory, there)),
         order=order,
-        findings=tuple(findings),
+        findings=tuple(Finding(one.kind, _in_units(one.evidence, units)) for one in findings),
         noise=noise,
         agrees=agrees,
     )
+
+
+class _Units(NamedTuple):
+    """Units in which the numbers of a record are neither large nor small: powers of two."""
+
+    time: float
+    inertia: float
+
+
+def _units(record: _Record, tensor: Floats) -> _Units:
+    steps = np.diff(record.t)
+    speed = float(np.abs(record.omega).max())
+    if not speed * float(steps.max()) < _FASTEST:
+        raise PolhodeError(
+            f"trajectory: an angular velocity of {speed:.3g} turns the body by {speed * steps.max():.3g} rad "
+            "from one row to the next; check its unit, or give more rows"
+        )
+    with np.errstate(divide="ignore"):
+        time, inertia = (np.exp2(np.round(np.log2(x))) for x in (np.median(steps), np.abs(tensor).max()))
+    if not 1e-140 < time < 1e140 or not 1e-140 < (inertia or 1.0) < 1e140:
+        raise PolhodeError(
+            f"trajectory: steps of {time:.3g} and moments of {inertia:.3g} are beyond what is computed; take "
+            "units in which they are between 1e-140 and 1e140"
+        )
+    return _Units(float(time), float(inertia) or 1.0)
+
+
+def _in_units(evidence: dict[str, Any], units: _Units) -> dict[str, Any]:
+    """Return the numbers of a finding in the units of the record."""
+    time, inertia = units
+    sizes = {"torque": inertia / time**2, "coefficient": inertia / time, "rate": 1.0 / time}
+    sizes |= {"step": time, "jumps": time}
+    return {
+        name: [size * one for one in value] if isinstance(value, list) else size * value
+        for name, value in evidence.items()
+        if (size := sizes.get(name)) is not None
+    } | {name: value for name, value in evidence.items() if name not in sizes}
 
 
 def _known(trajectory: Trajectory) -> NDArray[np.bool_]:
@@ -367,8 +423,8 @@ def _order(trajectory: Trajectory, finer: Trajectory, ratio: float | None) -> fl
     shrink = steps[0] / steps[1] if ratio is None else float(ratio)
     if not shrink > 1.0 + 1e-6:
         raise ValueError(
-            f"finer: its rows are {1.0 / shrink:.6g} times as far apart in time as those of the first record; "
-            "give ratio=, the steps of the program in the first record divided by those in the finer one"
+            f"finer: its rows are {1.0 / shrink:.6g} times as far apart in time as those of the first "
+            "record; give ratio=, the steps of the program in the first record divided by those in the finer"
         )
     ends = []
     for run in (trajectory, finer):
@@ -405,11 +461,15 @@ class _Reading:
         """Return the findings, and whether the record is the motion of the body."""
         if not (self.record.omega.any() or self.rates.any()):
             return [], True
+        if self.noise > _NOISIEST:
+            return [], False
         findings = [*self._clock()]
         findings += self._readings()
         turns = self._misfit(self.record, self.rates)
         noise = self.error / max(_size(self.rates), 1e-300)
         agrees = turns < max(10.0 * self.rtol, 3.0 * noise) + 3.0 * self._noise_of_omega()
+        if turns > _OTHERWISE + 3.0 * (noise + self._noise_of_omega()):
+            return findings, False
         found, settled = self._mistakes()
         findings += found
         return findings, agrees and settled and not findings
@@ -437,8 +497,7 @@ class _Reading:
             expected = _running_median(turns / widths)
         with np.errstate(divide="ignore", invalid="ignore"):
             ratio = np.where(expected > 0.0, turns / (expected * widths), np.nan)
-        usual = np.nanmedian(ratio)
-        if not usual > 0.0:
+        if not (expected > 0.0).any() or not (usual := np.nanmedian(ratio)) > 0.0:
             return
         off = np.abs(ratio / usual - 1.0)
         spread = 1.4826 * np.nanmedian(off)

@@ -45,6 +45,12 @@ _FAR: Final = 5.0
 """The largest sum of turns, in radians, that a rotation vector across a window may have."""
 _DEGREES: Final = (2, 4, 6)
 """Degrees that smoothing tries."""
+_NOISIEST: Final = 10.0
+"""Noise of rows, relative to their size, beyond which they say nothing."""
+_RANGE: Final = 1e15
+"""The largest ratio of steps in time."""
+_FASTEST: Final = 1e3
+"""The largest angle, in radians, by which a known angular velocity may turn a body from row to row."""
 _MEDIAN: Final = 2.366
 """Median of the square of three numbers of unit variance."""
 
@@ -543,9 +549,41 @@ def _legendre(x: Floats, degree: int) -> tuple[Floats, Floats]:
 def _rates(
     t: Floats, known: Floats, order: int | None, sigma: float | None, *, turning: bool
 ) -> tuple[Floats, Floats]:
-    curve = _Curve(t, np.ascontiguousarray(known.T), turning=turning)
-    rates, error = _interpolated(curve, order) if sigma is None else _smoothed(curve, order, sigma)
-    return rates.T, error
+    """Compute rates and their errors, in units of a step and of the values."""
+    unit = _unit_of_steps(t)
+    size = 1.0 if turning else _power_of_two(np.abs(known).max())
+    if sigma is not None and not sigma < _NOISIEST * size:
+        raise PolhodeError(
+            f"sigma: {sigma:g} is more than {_NOISIEST * size:g}, at which nothing is known of the rates; "
+            "give the standard deviation of one component of a row"
+        )
+    curve = _Curve((t - t[0]) / unit, np.ascontiguousarray(known.T) / size, turning=turning)
+    if sigma is None:
+        rates, error = _interpolated(curve, order)
+    else:
+        rates, error = _smoothed(curve, order, sigma / size)
+    with np.errstate(over="ignore"):
+        rates, error = rates.T * size / unit, error * size / unit
+    if not (np.isfinite(rates).all() and np.isfinite(error).all()):
+        raise PolhodeError("t: the rates are beyond floating-point numbers; take larger units of time")
+    return rates, error
+
+
+def _power_of_two(size: float) -> float:
+    """Return the power of two nearest to a size, by which numbers are divided without rounding."""
+    return float(np.ldexp(1.0, int(np.clip(np.frexp(size)[1], -1000, 1000)))) if size > 0.0 else 1.0
+
+
+def _unit_of_steps(t: Floats) -> float:
+    """Return a power of two near a usual step, or refuse steps that differ too much."""
+    steps = np.diff(t)
+    least, most = float(steps.min()), float(steps.max())
+    if not most < np.inf or least < most / _RANGE:
+        raise PolhodeError(
+            f"t: its steps go from {least:g} to {most:g}, and may differ by a factor of {_RANGE:g}; leave "
+            "out rows that are too near to others"
+        )
+    return _power_of_two(float(np.median(steps)))
 
 
 def _with_gaps(there: NDArray[np.bool_], found: Floats) -> Floats:
@@ -739,7 +777,8 @@ def quaternion(
         raise ValueError(f"frame: {frame!r} is not 'body' or 'space'")
     times = read_times(t)
     known = read_vectors(omega, len(times), "omega")
-    _read_order(order)
+    if _read_order(order) is None:
+        raise ValueError(f"order: {order!r} is none of {', '.join(map(str, _ORDERS))}")
     start = _core.real_numbers(_plain(attitude), "attitude")
     if start.shape != (4,):
         raise ValueError(f"attitude: expected shape (4,), at the first row, got {start.shape}")
@@ -747,7 +786,17 @@ def quaternion(
     if np.isnan(first).any():
         raise PolhodeError("attitude: it must be finite, got NaN; give R_NB at the first row")
     there = _rows_there(known, "omega", 2)
-    t_there, rows = times[there], np.ascontiguousarray(known[there].T)
+    t_there, rows = times[there], known[there].T
+    unit = _unit_of_steps(t_there)
+    t_there = (t_there - t_there[0]) / unit
+    with np.errstate(over="ignore"):
+        rows = np.ascontiguousarray(rows) * unit
+    turn = float(np.abs(rows).max() * np.diff(t_there).max())
+    if not turn < _FASTEST:
+        raise PolhodeError(
+            f"omega: the body would turn by {turn:.3g} rad from one row to the next, and its attitude would "
+            "not be known; give more rows, or check the units"
+        )
     if frame == "space":  # R_BN turns with -omega in its own axes, which are those of space
         rows = -rows
     count = len(t_there)
