@@ -51,6 +51,8 @@ _RANGE: Final = 1e15
 """The largest ratio of steps in time."""
 _FASTEST: Final = 1e3
 """The largest angle, in radians, by which a known angular velocity may turn a body from row to row."""
+_SMALL: Final = 0.1
+"""Turns from row to row, in radians, whose Magnus series needs no check by half the step."""
 _MEDIAN: Final = 2.366
 """Median of the square of three numbers of unit variance."""
 
@@ -807,7 +809,8 @@ def quaternion(
     for begin in range(0, count - 1, _BLOCK):
         stop = min(begin + _BLOCK, count - 1)
         coarse = _turns(t_there, rows, begin, stop, half, 1)
-        fine = _turns(t_there, rows, begin, stop, wider, 2)
+        # The Magnus series of small turns is exact to many more digits than the polynomials.
+        fine = _turns(t_there, rows, begin, stop, wider, 2 if turn > _SMALL else 1)
         turns[:, begin:stop], lack[:, begin:stop] = coarse, fine - coarse
     found = _chain(exponential(turns), np.asarray(first) if frame == "body" else first * [-1, -1, -1, 1])
     widths = np.diff(t_there)

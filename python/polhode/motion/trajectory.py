@@ -59,12 +59,15 @@ class Origin:
         The first time of the motion that it continues; None if it is the first part.
     loaded : bool
         Whether a load acted that is not known any more, since a file does not hold it.
+    derived : bool
+        Whether the angular velocity was computed from the attitudes of a record.
     """
 
     motion: _core.GyrostatMotion | None = None
     states: tuple[str, ...] = ()
     start: float | None = None
     loaded: bool = False
+    derived: bool = False
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -406,7 +409,10 @@ class Trajectory(metaclass=Hinting):
         """
         from polhode.motion.samples import read_samples
 
-        return Trajectory(**read_samples(body, t, attitude, omega, position, velocity, load, about, sequence))
+        known = read_samples(body, t, attitude, omega, position, velocity, load, about, sequence)
+        record = Trajectory(**known)
+        record.__dict__["_origin"] = Origin(derived=omega is None)
+        return record
 
     def euler_angles(
         self,
