@@ -41,6 +41,7 @@ _NOISIEST: Final = 0.3
 """Noise of attitudes, in radians, beyond which a record tells nothing."""
 _OTHERWISE: Final = 0.25
 """Share of ω by which attitudes may turn otherwise where a mistake of the program is looked for."""
+_OTHER_TENSORS: Final = ("diagonal tensor", "products of the other sign")
 _NOISELESS: Final = 1e-9
 """Noise of attitudes, in radians, that is none."""
 _EXPLAINED: Final = 0.05
@@ -601,8 +602,12 @@ class _Reading:
             found.append((off, names, record))
         stated = found[0][0]
         best = min(found, key=lambda one: one[0] * 1.2 ** len(one[1]))
+        self.record = self.record._replace(omega=self.rates)
         if not best[1] or stated < 10.0 * self.rtol or best[0] ** 2 > 0.1 * _EXPLAINED * stated**2:
-            self.record = self.record._replace(omega=self.rates)
+            return []
+        momentum = _momentum(self.record, self.tensor)
+        left = min(one.squares for one in self._alternatives(momentum) if one.possible)
+        if left < best[0] ** 2 * _size(momentum) ** 2 * len(self.record.t):  # a mistake of the program
             return []
         self.record, self.rates = best[2], best[2].omega
         gain = 1.5 * len(self.record.t) * np.log(stated / max(best[0], 1e-15))
@@ -627,26 +632,30 @@ class _Reading:
         if structure < max(self.rtol, 0.1 * self.noise_of_momentum, doubt):
             return self._step_in_turns()
         tried = [*self._alternatives(momentum)]
-        floor = max(sigma**2, min(one.squares for one in tried) / count, (1e-3 * self.rtol * length) ** 2)
+        least = min(one.squares for one in tried)
+        floor = max(sigma**2, least / count, (1e-3 * self.rtol * length) ** 2)
         best: _Alternative | None = None
         for one in tried:
             allowed = max(1.3 * sigma**2 * count, _EXPLAINED * stated)
-            if one.squares > allowed or not one.possible:
+            gain = 0.5 * (stated - one.squares) / floor - 0.5 * one.parameters * np.log(count)
+            if one.squares > allowed or not one.possible or gain < _GAIN:
                 continue
-            # What is left within the noise is as good as any: fewer numbers decide then.
-            squares = max(one.squares, 1.3 * floor * count)
-            one = one._replace(score=0.5 * squares / floor + 0.5 * one.parameters * np.log(count))
-            if best is None or one.score < best.score:
-                best = one
-        gain = 0.5 * stated / floor - (best.score if best is not None else np.inf)
-        if best is None or gain < _GAIN:
+            if one.kind in _OTHER_TENSORS and stated < 1.5 * sigma**2 * count:
+                continue  # the noise of another tensor is another one, and known to some percent only
+            # The impulse of ω × I ω has noise of its own: within the noise, no fitted number is better.
+            is_as_good = not one.parameters and one.squares < 1.3 * floor * count
+            squares = min(one.squares, least) if is_as_good else one.squares
+            score = 0.5 * squares / floor + 0.5 * one.parameters * np.log(count)
+            if best is None or score < best.score:
+                best = one._replace(score=score, gain=gain)
+        if best is None:
             if structure < max(10.0 * self.rtol, 3.0 * self.noise_of_momentum, 3.0 * doubt):
                 return self._step_in_turns()
             return [], False
         evidence = best.evidence | {
             "before": float(np.sqrt(3.0 * stated / count) / length),
             "after": float(np.sqrt(3.0 * best.squares / count) / length),
-            "log_likelihood": float(gain),
+            "log_likelihood": float(best.gain),
         }
         return [Finding(best.kind, evidence)], False
 
@@ -670,7 +679,7 @@ class _Reading:
         )
         explained = after**2 < 0.2 * before**2 or after < 2.0 * self.error
         step = 2.0 * abs(late)
-        if shift < small or abs(late) < 8.0 * spread or not explained or step > 2.0 * self._width():
+        if shift < small or abs(late) < 6.0 * spread or not explained or step > 2.0 * self._width():
             return [], True
         gain = 1.5 * len(size) * np.log(before / max(after, 1e-300))
         speed = _size(self.record.omega)
@@ -705,11 +714,14 @@ class _Reading:
         yield _Alternative("doubled gyroscopic term", _squares(momentum + gyroscopic))
         diagonal = np.diag(tensor.diagonal())
         if np.abs(tensor - diagonal).max() > 1e-9 * np.abs(tensor).max():
+            sigma = noise_of(record.t, momentum, turning=False)
             for kind, other in (
                 ("diagonal tensor", diagonal),
                 ("products of the other sign", 2 * diagonal - tensor),
             ):
-                yield _Alternative(kind, _squares(_momentum(record, other)))
+                kept = _momentum(record, other)  # noise of ω has another size in it
+                own = noise_of(record.t, kept, turning=False)
+                yield _Alternative(kind, _squares(kept) * ((sigma / own) ** 2 if own > 0.0 else 1.0))
         eye = np.eye(3)
         for frame in ("body", "space"):
             ones = [np.repeat(eye[:, [k]], len(record.t), axis=1) for k in range(3)]
@@ -746,6 +758,7 @@ class _Alternative(NamedTuple):
     evidence: dict[str, Any] = {}  # noqa: RUF012  # never changed
     possible: bool = True
     score: float = np.inf
+    gain: float = 0.0
 
 
 def _size(vectors: Floats) -> float:
