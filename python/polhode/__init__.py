@@ -69,6 +69,7 @@ if TYPE_CHECKING:
     )
     from polhode.accumulator import LabelledMassAccumulator
     from polhode.ensembles.call import Ensemble, ensemble
+    from polhode.motion.auditing import Audit, Finding, audit
     from polhode.motion.events import Event, Events
     from polhode.motion.free import Cones, ErrorBar, LightCurve, Periods, Poinsot, Sensitivity
     from polhode.motion.gyrostat import Bifurcations, Equilibria, Wheel, wheel
@@ -126,6 +127,7 @@ _HOMES = (
 
 _APART = {
     **dict.fromkeys(("Ensemble", "ensemble"), ("polhode.ensembles.call",)),
+    **dict.fromkeys(("Audit", "Finding", "audit"), ("polhode.motion.auditing",)),
     "LabelledMassAccumulator": ("polhode.accumulator",),
 }
 """Names whose module is imported for them alone."""
@@ -135,6 +137,7 @@ _LATER = ("animation", "io", "molecules", "plot", "robots", "samples", "symbolic
 
 __all__ = [
     "AngularMomentum",
+    "Audit",
     "Bifurcations",
     "Cones",
     "ContinuousAxes",
@@ -144,6 +147,7 @@ __all__ = [
     "ErrorBound",
     "Event",
     "Events",
+    "Finding",
     "FreeMotion",
     "FreePrecession",
     "Gyrostat",
@@ -173,6 +177,7 @@ __all__ = [
     "Wheel",
     "__version__",
     "assembly",
+    "audit",
     "distributions",
     "ensemble",
     "equimomental",

@@ -1,4 +1,4 @@
-"""Rates of change of vectors in rotating frames.
+"""Rates of change of vectors in rotating frames, and of attitudes that are known at some times.
 
 For velocity and acceleration of a point of a body see `polhode.RigidBody.point_velocity` and
 `polhode.RigidBody.point_acceleration`.
@@ -7,8 +7,9 @@ For velocity and acceleration of a point of a body see `polhode.RigidBody.point_
 from typing import TYPE_CHECKING
 
 from polhode._core import transport
+from polhode.motion.rates import angular_acceleration, angular_velocity, quaternion
 
-__all__ = ["transport"]
+__all__ = ["angular_acceleration", "angular_velocity", "quaternion", "transport"]
 
 if not TYPE_CHECKING:
 

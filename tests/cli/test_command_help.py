@@ -29,6 +29,8 @@ VOCABULARY = {
         "expect": "a report to compare with",
         "tree": "a table of edges",
         "packages": "folders to look into",
+        "body": "which body it is",
+        "finer": "a second record to compare with",
     },
     int: {
         "n": "how many members, clones",

@@ -11,6 +11,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 from places import ROOT
+from polhode import RigidBody
 
 __all__ = ["FILES", "FOLDER", "stl", "t_handle"]
 
@@ -146,12 +147,22 @@ def ply(mesh: Mesh, title: str) -> bytes:
     return (head + "\n".join([*rows, ""])).encode()
 
 
+def tumble() -> bytes:
+    """Write a record of an exact motion, with eight decimals."""
+    t = np.arange(401) / 20.0
+    motion = RigidBody.from_principal(1.0, (2.0, 3.0, 4.0)).free_motion((0.1, 1.5, 0.05)).at(t)
+    rows = np.column_stack((t, motion.quaternion, motion.omega))
+    lines = [",".join(f"{x:.8f}" for x in row) for row in rows.round(8) + 0.0]
+    return "\n".join(["t,qx,qy,qz,qw,wx,wy,wz", *lines, ""]).encode()
+
+
 FILES: dict[str, Callable[[], bytes]] = {
     "asteroid.obj": lambda: obj(asteroid(), "asteroid, metres", 2),
     "benzene.xyz": benzene,
     "bracket.ply": lambda: ply(bracket(), "bracket, inches"),
     "t-handle.stl": lambda: stl(t_handle()),
     "torus.obj": lambda: obj(torus(), "torus, millimetres", 4),
+    "tumble.csv": tumble,
 }
 
 

@@ -28,6 +28,7 @@ MODULES = [
     "polhode.errors",
     "polhode.flybys",
     "polhode.animation",
+    "polhode.motion.auditing",
     "polhode.motion.events",
     "polhode.io",
     "polhode.motion.free",

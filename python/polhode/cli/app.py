@@ -15,6 +15,7 @@ from cyclopts import App, Parameter
 from polhode.cli.options import (
     RESULTS,
     AssembleOptions,
+    AuditOptions,
     BodyOptions,
     CheckOptions,
     EnsembleOptions,
@@ -357,6 +358,42 @@ def ledger(
 
 
 @app.command
+def audit(
+    file: File,
+    /,
+    *,
+    audit: Annotated[AuditOptions, ALL] = AuditOptions(),  # noqa: B008
+    body: Body = AS_STORED,
+    output: Output = SHOWN,
+) -> int:
+    """Compare a recorded motion with the exact one, and find mistakes.
+
+    Parameters
+    ----------
+    file
+        A record (CSV), a row for each time, or - for standard input.
+
+    Examples
+    --------
+    polhode audit tumble.csv --moments "2 3 4"
+    polhode audit tumble.csv --moments "2 3 4" --attitude "qx,qy,qz,qw" --format json
+    polhode audit tumble.csv --moments "2 3 4" --rtol 1e-4 --save drifts.png
+    """
+    from polhode.cli.audit import audit_report, draw_audit
+    from polhode.cli.files import check_outputs
+    from polhode.cli.layout import show
+
+    places = [*(("--save", path) for path in audit.save), ("--output", output.output)]
+    check_outputs(places, [file, audit.finer, audit.body])
+    told, found = audit_report(file, audit, body)
+    for path in audit.save:
+        draw_audit(found, path)
+        told.notes.append(f"saved {path}")
+    show(told, output)
+    return GOOD if found.agrees else BAD_VERDICT
+
+
+@app.command
 def samples(folder: Path | None = None, /) -> int:
     """List the sample files, or write them into a folder.
 
@@ -426,5 +463,7 @@ def _examples(document: str) -> str:
     return "Examples:\n\n" + indent(cleandoc(document).partition("Examples\n--------\n")[2], "    ")
 
 
-for _command in (report, check, molecule, spin, flyby, ensemble, assemble, ledger, samples, demo, validate):
+for _command in (
+    report, check, molecule, spin, flyby, ensemble, assemble, ledger, audit, samples, demo, validate,
+):  # fmt: skip
     app[_command.__name__].help_epilogue = _examples(_command.__doc__ or "")

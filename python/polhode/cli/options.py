@@ -16,6 +16,7 @@ __all__ = [
     "MODES",
     "RESULTS",
     "AssembleOptions",
+    "AuditOptions",
     "BodyOptions",
     "CheckOptions",
     "Count",
@@ -48,7 +49,7 @@ ROTATION: Final = _group("Rotation before the flyby")
 ORBIT: Final = _group("Orbit past the planet")
 MOTION: Final = _group("Motion")
 ATOMS: Final = _group("Atoms")
-TABLE: Final = _group("Table of parts")
+TABLE: Final = _group("Table")
 VERDICT: Final = _group("Verdict")
 COPY: Final = _group("Corrected copy")
 RANDOM: Final = _group("Random numbers")
@@ -269,6 +270,51 @@ class MoleculeOptions:
     bond_sigma: Annotated[str | None, ATOMS] = None
     mass_sigmas: Annotated[bool, FLAG, ATOMS] = False
     rtol: Annotated[float | None, REPORT] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class AuditOptions:
+    """A record of a motion, and the body that it is of.
+
+    Attributes
+    ----------
+    body
+        File with the body: a mesh, CAD, a saved body, an assembly or a printout.
+    moments
+        Three moments along the axes of the record instead of a file, such as "2 3 4"; only their ratios
+        matter.
+    time
+        Column with the times, in s. Without it, one with a usual name.
+    attitude
+        Columns with the attitudes, such as "qx,qy,qz,qw": a quaternion with the scalar last, nine elements of
+        a matrix row by row, or three Euler angles with --sequence. Without it, those with usual names.
+    sequence
+        Sequence of the Euler angles, such as ZYX (capital letters: about the turned axes), in rad.
+    omega
+        Columns with the angular velocity along the axes of the body, in rad/s, such as "wx,wy,wz". Without
+        it, those with usual names, or none: it is then computed from the attitudes.
+    finer
+        A second record, from the same start with smaller steps: the report gives the order of the method.
+    ratio
+        Step of the program in the first record divided by that in the finer one. Without it, the ratio of
+        the times between rows.
+    rtol
+        What is off by less, relative to the angular momentum and the angular velocity, counts as the error
+        of the program's steps. Default: 1e-5.
+    save
+        File for a picture of the drifts (.png, .pdf, .svg). May be repeated.
+    """
+
+    body: Annotated[Path | None, BODY] = None
+    moments: Annotated[Words, WORDS, BODY] = ()
+    time: Annotated[str | None, TABLE] = None
+    attitude: Annotated[Words, WORDS, TABLE] = ()
+    sequence: Annotated[str | None, TABLE] = None
+    omega: Annotated[Words, WORDS, TABLE] = ()
+    finer: Annotated[Path | None, REPORT] = None
+    ratio: Annotated[float | None, REPORT] = None
+    rtol: Annotated[float | None, REPORT] = None
+    save: Annotated[Paths, REPEATED, RESULTS] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

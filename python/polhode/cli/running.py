@@ -28,6 +28,7 @@ CHAPTERS: Final = {
     "One body": ("report", "spin", "molecule"),
     "Bodies of parts": ("assemble", "ledger", "check"),
     "Many motions": ("ensemble", "flyby"),
+    "Motions of other programs": ("audit",),
     "This installation": ("validate",),
 }
 """The commands, in the order in which somebody new needs them."""

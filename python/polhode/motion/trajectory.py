@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
     from xarray import Dataset
 
+    from polhode._typing import SupportsQuaternion
     from polhode.draw.html import HtmlPage
     from polhode.errors import IntegrationError, PolhodeError
     from polhode.results import MotionSensitivity
@@ -59,12 +60,15 @@ class Origin:
         The first time of the motion that it continues; None if it is the first part.
     loaded : bool
         Whether a load acted that is not known any more, since a file does not hold it.
+    derived : bool
+        Whether the angular velocity was computed from the attitudes of a record.
     """
 
     motion: _core.GyrostatMotion | None = None
     states: tuple[str, ...] = ()
     start: float | None = None
     loaded: bool = False
+    derived: bool = False
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -373,6 +377,74 @@ class Trajectory(metaclass=ClassWithHints):
         motion = Trajectory(**known)
         motion.__dict__["_origin"] = Origin(**origin)
         return motion
+
+    @staticmethod
+    def from_samples(
+        body: _core.RigidBody,
+        t: ArrayLike,
+        attitude: ArrayLike | SupportsQuaternion,
+        omega: ArrayLike | None = None,
+        position: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
+        load: _core.Load | None = None,
+        about: Literal["center_of_mass", "origin"] = "center_of_mass",
+        *,
+        sequence: str | None = None,
+    ) -> Trajectory:
+        """Make a trajectory of a recorded motion: of another program, or of a measurement.
+
+        Parameters
+        ----------
+        body : RigidBody
+            One body.
+        t : array_like, shape (T,)
+            Times, ascending, in any steps.
+        attitude : array_like or rotation, shape (T, 4), (T, 3, 3) or (T, 3)
+            R_NB at each time: quaternions (x, y, z, w), rotation matrices, SciPy rotations, or Euler angles
+            in radians with `sequence`. A row that is unknown is NaN.
+        omega : array_like, shape (T, 3), optional
+            Angular velocity of the body relative to space, components in the body frame. By default
+            :func:`polhode.kinematics.angular_velocity` computes it from the attitudes.
+        position, velocity : array_like, shape (T, 3), optional
+            Position and velocity of the point `about`, in space. Without a velocity it is the derivative of
+            the position; without both the point is at rest at the origin.
+        load : Load, optional
+            What acted on the body. States of a load, such as the momentum of wheels, are in no record: a load
+            with states is refused.
+        about : {"center_of_mass", "origin"}
+            The point that `position` and `velocity` are of. If this is the origin of the body frame, and no
+            position is given, it is a pivot: a point fixed in space.
+        sequence : str, optional
+            Sequence of Euler angles, as in :mod:`polhode.euler_angles`.
+
+        Returns
+        -------
+        Trajectory
+
+        Raises
+        ------
+        PolhodeError
+            For rows that are no rotations, and times that do not ascend.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from polhode import Trajectory, solids
+        >>> brick = solids.box((3.0, 2.0, 1.0), mass=12.0)
+        >>> t = np.linspace(0.0, 4.0, 81)
+        >>> turns = np.stack([0.0 * t, 0.0 * t, np.sin(t), np.cos(t)], axis=1)  # 2 rad/s about z
+        >>> record = Trajectory.from_samples(brick, t, turns)
+        >>> record.omega[-1].round(6) + 0.0
+        array([0., 0., 2.])
+        >>> record.invariants().energy_drift < 1e-9
+        True
+        """
+        from polhode.motion.samples import read_samples
+
+        known = read_samples(body, t, attitude, omega, position, velocity, load, about, sequence)
+        record = Trajectory(**known)
+        record.__dict__["_origin"] = Origin(derived=omega is None)
+        return record
 
     def euler_angles(
         self,

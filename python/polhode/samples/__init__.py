@@ -31,6 +31,7 @@ _ABOUT: Final = {
     "rover.toml": "an assembly: a rover on six wheels of wheel.toml",
     "t-handle.stl": "the steel T-handle that flips: a bar of 100 x 16 x 16 on a stem of 50; millimetres",
     "torus.obj": "a ring of radii 40 and 10; millimetres",
+    "tumble.csv": "a record of a tumbling body: times, attitudes, angular velocities; moments 2, 3, 4",
     "water.xyz": "water, an asymmetric top",
     "wheel.toml": "an assembly: a wheel with its motor",
 }

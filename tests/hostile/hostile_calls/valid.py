@@ -22,6 +22,7 @@ from polhode import (
     _core,
     equimomental,
     interop,
+    kinematics,
     loads,
     molecules,
     orbits,
@@ -59,6 +60,8 @@ TOP = RigidBody.from_principal(2.0, (1.0, 1.0, 0.5), center_of_mass=(0.0, 0.0, 0
 STACK = RigidBody.from_principal((1.0, 2.0), [(1.0, 2.0, 2.5), (2.0, 2.0, 1.0)])
 OMEGA = [0.25, 1.5, 0.5]
 QUATERNION = [0.5, 0.5, 0.5, 0.5]
+TURNS = [QUATERNION, [0.5, 0.5, -0.5, 0.5], [0.0, 0.0, 0.0, 1.0]]
+RATES = [OMEGA, [0.5, 1.0, 0.25], [0.0, 1.0, 0.0]]
 TETRAHEDRON = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 FACES = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
 TENSOR = [[2.0, 0.25, 0.0], [0.25, 3.0, -0.5], [0.0, -0.5, 4.0]]
@@ -176,6 +179,15 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "Load.carried": {"t": 0.5},
     "Gyrostat.equilibria": {"momentum": 2.0},
     "GyrostatMotion.equilibria": {"self": [TUMBLER.gyrostat((0.0, 0.5, 2.0)).free_motion(OMEGA)]},
+    "kinematics.angular_velocity": {"attitude": TURNS, "order": None, "sequence": None, "sigma": 0.125},
+    "kinematics.angular_acceleration": {"omega": RATES, "order": None, "sigma": 0.125},
+    "kinematics.quaternion": {"omega": RATES, "order": 4},
+    "audit": {"trajectory": TUMBLER.free_motion(OMEGA).at(np.arange(20.0)), "finer": None, "ratio": None},
+    "Trajectory.from_samples": {
+        "attitude": TURNS,
+        **dict.fromkeys(("omega", "position", "velocity"), RATES),
+        "sequence": None,
+    },
     "Trajectory.sensitivity": {"method": "series"},
     "surface_ellipsoid": {"axes": np.eye(3).tolist()},
     "surface_paraboloid": {"radii": [1.0, 0.5], "axes": np.eye(3).tolist()},
@@ -380,6 +392,11 @@ def _from_python() -> list[Call]:
         for name in molecules.__all__
         if inspect.isfunction(getattr(molecules, name))
     ]
+    functions += [
+        (f"kinematics.{name}", getattr(kinematics, name), None)
+        for name in ("angular_velocity", "angular_acceleration", "quaternion")
+    ]
+    functions.append(("audit", polhode.audit, None))
     for holder in (polhode.PrincipalAxes, polhode.Trajectory):
         for name, method in inspect.getmembers(holder, inspect.isfunction):
             if not name.startswith("_") and f"{holder.__name__}.{name}" not in NO_TEST:
