@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from typing_extensions import disjoint_base
 
 from polhode._typing import SupportsQuaternion, SupportsSigma
+from polhode.labelled import Labelled
 from polhode.motion.free import Cones, ErrorBar, Periods, Poinsot, Sensitivity
 from polhode.motion.gyrostat import Equilibria
 from polhode.motion.trajectory import Trajectory
@@ -345,9 +346,26 @@ class RigidBody:
     @staticmethod
     def from_labelled_particles(masses: ArrayLike, positions: ArrayLike, labels: ArrayLike) -> RigidBody: ...
     @staticmethod
-    def from_voxels(
-        density: ArrayLike, spacing: ArrayLike, origin: ArrayLike = (0.0, 0.0, 0.0)
+    def from_balls(
+        centers: ArrayLike, radii: ArrayLike, *, density: _Number | None = None, mass: _Number | None = None
     ) -> RigidBody: ...
+    @staticmethod
+    def from_voxels(
+        density: ArrayLike,
+        spacing: ArrayLike | None = None,
+        origin: ArrayLike = (0.0, 0.0, 0.0),
+        *,
+        affine: ArrayLike | None = None,
+    ) -> RigidBody: ...
+    @staticmethod
+    def from_labelled_voxels(
+        labels: ArrayLike,
+        density: ArrayLike | Mapping[int | str, float],
+        *,
+        spacing: ArrayLike | None = None,
+        origin: ArrayLike = (0.0, 0.0, 0.0),
+        affine: ArrayLike | None = None,
+    ) -> Labelled: ...
     @staticmethod
     def from_mesh(
         vertices: _Numbers,
@@ -377,9 +395,13 @@ class RigidBody:
     def from_file(
         path: str | PathLike[str],
         *,
-        density: _Number | Mapping[str, _Number] | None = None,
+        density: _Number
+        | Mapping[Any, _Number]
+        | Callable[[NDArray[Any]], ArrayLike]
+        | None = None,
         mass: _Number | None = None,
         length_unit: str | None = None,
+        thickness: float | None = None,
         weld: float = 0.0,
         closure: Literal["caps", "hull"] | None = None,
         orient: bool = False,
@@ -458,6 +480,8 @@ class RigidBody:
     def principal_about(self, about: _About) -> PrincipalAxes: ...
     def translated(self, displacement: _Numbers) -> RigidBody: ...
     def rotated(self, rotation: _Attitude | Uncertain) -> RigidBody: ...
+    def mirrored(self, normal: ArrayLike, point: ArrayLike = (0.0, 0.0, 0.0)) -> RigidBody: ...
+    def cut(self, normal: ArrayLike, point: ArrayLike = (0.0, 0.0, 0.0)) -> RigidBody: ...
     def scaled(self, length: _Numbers = 1.0, mass: _Numbers = 1.0) -> RigidBody: ...
     def isclose(self, other: RigidBody, rtol: float = 1e-9, atol: float = 0.0) -> Any: ...
     def kinetic_energy(
@@ -1003,6 +1027,13 @@ def classify_tops(moments: ArrayLike, rtol: ArrayLike) -> Any: ...
 def real_numbers(values: ArrayLike, name: str) -> _Floats: ...
 def read_stl(path: str) -> tuple[_Floats, NDArray[np.int64]]: ...
 def read_plates(path: str, index_base: int = 1) -> tuple[_Floats, NDArray[np.int64]]: ...
+def labelled_voxels(
+    labels: NDArray[Any],
+    spacing: ArrayLike | None,
+    origin: ArrayLike | None,
+    affine: ArrayLike | None,
+    choose: Callable[[NDArray[np.int64], NDArray[np.uint64], NDArray[np.uint64]], ArrayLike | None],
+) -> tuple[NDArray[np.int64], RigidBody] | None: ...
 def surface_area(vertices: ArrayLike, faces: ArrayLike) -> float: ...
 def stream_solid(
     path: str | PathLike[str],

@@ -7,7 +7,7 @@ contains the labels.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
@@ -16,6 +16,8 @@ from polhode._format import short
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
+    from os import PathLike
+
     from numpy.typing import ArrayLike, NDArray
 
     Integers = NDArray[np.int64]
@@ -42,6 +44,28 @@ class Labelled(NamedTuple):
 
     def __repr__(self) -> str:
         return short(self)
+
+    @staticmethod
+    def from_file(path: str | PathLike[str], *, density: Any, length_unit: str | None = None) -> Labelled:
+        """Read a segmented image: a body for each label, all in one pass.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            NIfTI, NRRD (extra ``image``) or NumPy's ``.npy``; see :func:`polhode.images.read_image`.
+        density : float or mapping
+            As of :meth:`polhode.RigidBody.from_labelled_voxels`: one number for all labels but 0, or
+            ``{label: number}``, where ``"*"`` stands for all others.
+        length_unit : str, optional
+            Unit of lengths where the file states none. They are converted to metres.
+
+        Returns
+        -------
+        Labelled
+        """
+        from polhode.images import bodies_of_file
+
+        return bodies_of_file(path, density, length_unit)
 
 
 def bodies(masses: ArrayLike, positions: ArrayLike, labels: ArrayLike) -> Labelled:

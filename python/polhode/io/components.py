@@ -15,7 +15,7 @@ from polhode.io.mesh import weld
 from polhode.io.union import has_union, is_closed, shared_volume
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -72,6 +72,8 @@ class Part(NamedTuple):
     cavities : int
     was_inward : bool
         Whether its surface faced inward in the mesh.
+    group, material : str
+        Names that the file gives to all of its faces, which other components may have too; "" for none.
     """
 
     name: str
@@ -80,6 +82,8 @@ class Part(NamedTuple):
     volume: float
     cavities: int
     was_inward: bool = False
+    group: str = ""
+    material: str = ""
 
 
 class Overlap(NamedTuple):
@@ -123,7 +127,11 @@ def labels(faces: Integers, count: int) -> NDArray[np.intp]:
 
 
 def parts_of(
-    vertices: Floats, faces: Integers, groups: Sequence[str] | None = None, most: int = MOST_PARTS
+    vertices: Floats,
+    faces: Integers,
+    groups: Sequence[str] | None = None,
+    most: int = MOST_PARTS,
+    materials: Sequence[str] | None = None,
 ) -> list[Part]:
     """Take a closed mesh apart.
 
@@ -135,6 +143,8 @@ def parts_of(
         The name of the group of each face.
     most : int
         How many components are told apart.
+    materials : sequence of str, optional
+        The name of the material of each face.
 
     Returns
     -------
@@ -154,7 +164,8 @@ def parts_of(
     if is_turned:
         faces, volumes = faces[:, ::-1], -volumes
     if not 1 < count <= most:
-        return [Part("1", vertices, faces, float(volumes.sum()), 0, is_turned)]
+        own = (_name_of_all(names, range(len(names or ()))) for names in (groups, materials))
+        return [Part("1", vertices, faces, float(volumes.sum()), 0, is_turned, *own)]
     order, starts = np.argsort(label, kind="stable"), np.cumsum(np.bincount(label))[:-1]
     of = np.split(order, starts)
     outer = [k for k in range(count) if volumes[k] > 0.0]
@@ -190,9 +201,17 @@ def parts_of(
             float(volumes[k] + sum(volumes[hole] for hole in holes[k])),
             len(holes[k]),
             is_turned != (k in turned),
+            _name_of_all(groups, of[k]),
+            _name_of_all(materials, of[k]),
         )
         for k, name in zip(outer, names, strict=True)
     ]
+
+
+def _name_of_all(names: Sequence[str] | None, faces: Iterable[int]) -> str:
+    """Return the name that all these faces have; "" where they differ."""
+    found = {names[face] for face in faces} if names else set()
+    return found.pop() if len(found) == 1 else ""
 
 
 def meeting(parts: Sequence[Part]) -> list[tuple[int, int]]:
@@ -341,10 +360,11 @@ def overlapping(vertices: Floats, faces: Integers, unit: str = " m^3") -> list[s
     return describe_overlaps(found, total, unit)
 
 
-def groups_of(path: Path) -> list[str]:
-    """Return the name of the group (``o``, else ``g``) of each triangle of an OBJ file that is not packed."""
+def groups_of(path: Path) -> tuple[list[str], list[str]]:
+    """Return names of each triangle of an OBJ file that is not packed: of its group (``o``, else ``g``) and its material."""
     found: list[str] = []
-    names = {"o": "", "g": ""}
+    materials: list[str] = []
+    names = {"o": "", "g": "", "usemtl": ""}
     with path.open(encoding="utf-8", errors="replace") as lines:
         for line in lines:
             pieces = [line]
@@ -358,7 +378,8 @@ def groups_of(path: Path) -> list[str]:
             elif words and words[0] == "f":
                 corners = next((i for i, word in enumerate(words) if word.startswith("#")), len(words)) - 1
                 found += [names["o"] or names["g"]] * (corners - 2)
-    return found
+                materials += [names["usemtl"]] * (corners - 2)
+    return found, materials
 
 
 def _names(found: list[str]) -> list[str]:
