@@ -145,13 +145,10 @@ def read_image(path: str | os.PathLike[str]) -> Image:
 def _read_nifti(file: Path) -> Image:
     nibabel = require("nibabel", extra="image", purpose=f"{file}: reading NIfTI")
     try:
-        with naming(file):
-            image = nibabel.load(file)
-            values = np.asanyarray(image.dataobj)
-    except OSError as error:
-        if error.filename is not None:
-            raise
-        raise FileFormatError(f"{file}: not a whole NIfTI file: {error}; export it again") from None
+        image = nibabel.load(file)
+        values = np.asanyarray(image.dataobj)
+    except FileNotFoundError:
+        raise
     except Exception as error:  # nibabel has many, and zlib its own
         raise FileFormatError(f"{file}: not a whole NIfTI file: {error}; export it again") from None
     return Image(values, np.array(image.affine, dtype=np.float64), _UNITS.get(image.header.get_xyzt_units()[0]))
@@ -160,12 +157,9 @@ def _read_nifti(file: Path) -> Image:
 def _read_nrrd(file: Path) -> Image:
     nrrd = require("nrrd", extra="image", purpose=f"{file}: reading NRRD")
     try:
-        with naming(file):
-            values, header = nrrd.read(os.fspath(file))
-    except OSError as error:
-        if error.filename is not None:
-            raise
-        raise FileFormatError(f"{file}: not a whole NRRD file: {error}; export it again") from None
+        values, header = nrrd.read(os.fspath(file))
+    except FileNotFoundError:
+        raise
     except Exception as error:  # pynrrd has many, and zlib its own
         raise FileFormatError(f"{file}: not a whole NRRD file: {error}; export it again") from None
     affine = np.eye(4)

@@ -109,7 +109,8 @@ def cut_body(body: RigidBody, normal: ArrayLike, point: ArrayLike = (0.0, 0.0, 0
     held = body._figures()
     parts = [] if held is None else held[0]
     if len(parts) != 1 or parts[0][0] != "mesh" or parts[0][4]:
-        kind = "no shape" if not parts else f"{len(parts)} shapes" if len(parts) > 1 else f"the shape {parts[0][0]!r}"
+        own = parts[0][0].rpartition("::")[2] if parts else ""
+        kind = "no shape" if not parts else f"{len(parts)} shapes" if len(parts) > 1 else f"the shape {own!r}"
         raise PolhodeError(
             f"cut: a body is cut that holds one closed mesh, of at most 20,000 faces, and this one holds {kind}; {_WAY_OUT}"
         )

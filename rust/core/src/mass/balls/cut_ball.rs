@@ -86,6 +86,8 @@ pub(super) struct Cutter {
     cap: Vec<(usize, usize)>,
     is_inside: Vec<bool>,
     arcs: Vec<Arc>,
+    /// Of the arcs, cut into pieces.
+    points: Vec<Vector3<f64>>,
 }
 
 /// A convex polyhedron, its faces counter-clockwise seen from outside.
@@ -255,7 +257,7 @@ impl Cutter {
                 sum.add_arc(arc);
             }
         }
-        let removed = removed_area(&self.arcs);
+        let removed = removed_area(&self.arcs, &mut self.points);
         let whole = 2.0 * TAU;
         let mut area = (-removed).rem_euclid(whole);
         // The patch is smaller than the sphere without its largest cap, and larger than the sphere without all of them.
@@ -354,35 +356,35 @@ impl<'a> Disk<'a> {
 
     /// The polygon with these corners: triangles where its edges are in the disk, arcs where they are outside.
     fn go_round(&mut self, points: &[Vector3<f64>], is_inside: &[bool], corners: &[usize]) {
-        // The way outside: from where it left the disk, and the angle since; at first, the angle before it came in.
+        // The way outside: from where it left the disk, and how far it has turned since; at first, before it came in.
         let mut left = None;
-        let mut angle = 0.0;
+        let mut turn = 0.0;
         let mut came_first = None;
         for (k, &a) in corners.iter().enumerate() {
             let b = corners[(k + 1) % corners.len()];
             let (p, q) = (points[a], points[b]);
             let Some((enter, leave)) = crossings(points, is_inside, a, b) else {
-                angle += self.angle(&p, &q);
+                turn += self.quarters(&p, &q);
                 continue;
             };
             if let Some(enter) = enter {
-                angle += self.angle(&p, &enter);
+                turn += self.quarters(&p, &enter);
                 match left.take() {
-                    Some(from) => self.push_arc(from, enter, angle),
-                    None => came_first = Some((enter, angle)),
+                    Some(from) => self.push_arc(from, enter, turn),
+                    None => came_first = Some((enter, turn)),
                 }
-                angle = 0.0;
+                turn = 0.0;
             }
             self.add_triangle(&enter.unwrap_or(p), &leave.unwrap_or(q));
             if let Some(leave) = leave {
                 left = Some(leave);
-                angle = self.angle(&leave, &q);
+                turn = self.quarters(&leave, &q);
             }
         }
         match (left, came_first) {
-            (Some(from), Some((to, before))) => self.push_arc(from, to, angle + before),
-            // All of the polygon is outside, and the disk within it or not.
-            (None, None) if angle > PI => {
+            (Some(from), Some((to, before))) => self.push_arc(from, to, turn + before),
+            // All edges are outside the disk, and it is within the polygon or not.
+            (None, None) if turn > 2.0 => {
                 self.arcs.push(Arc {
                     plane: self.plane,
                     from: self.plane.normal,
@@ -395,13 +397,17 @@ impl<'a> Disk<'a> {
         }
     }
 
-    fn push_arc(&mut self, from: Vector3<f64>, to: Vector3<f64>, angle: f64) {
+    /// Adds the arc between two points, on the way between which the polygon turned by about so many quarters.
+    fn push_arc(&mut self, from: Vector3<f64>, to: Vector3<f64>, turn: f64) {
         let plane = self.plane;
+        let (p, q) = (self.place(&from), self.place(&to));
+        let angle = plane.normal.dot(&p.cross(&q)).atan2(p.dot(&q));
+        let rounds = ((turn * FRAC_PI_2 - angle) / TAU).round();
         self.arcs.push(Arc {
             plane,
             from,
             to,
-            angle,
+            angle: angle + rounds * TAU,
             is_circle: false,
         });
     }
@@ -411,10 +417,16 @@ impl<'a> Disk<'a> {
         point - self.plane.normal * self.plane.height
     }
 
-    /// The angle from one point to another, seen from the middle of the disk.
-    fn angle(&self, from: &Vector3<f64>, to: &Vector3<f64>) -> f64 {
+    /// The angle from one point to another, seen from the middle of the disk, in quarters of a turn and off by at most a
+    /// tenth of a quarter: enough to count rounds.
+    fn quarters(&self, from: &Vector3<f64>, to: &Vector3<f64>) -> f64 {
         let (p, q) = (self.place(from), self.place(to));
-        self.plane.normal.dot(&p.cross(&q)).atan2(p.dot(&q))
+        let (y, x) = (self.plane.normal.dot(&p.cross(&q)), p.dot(&q));
+        let sum = x.abs() + y.abs();
+        if sum == 0.0 {
+            return 0.0;
+        }
+        (1.0 - x / sum).copysign(y)
     }
 
     fn add_triangle(&mut self, from: &Vector3<f64>, to: &Vector3<f64>) {
@@ -496,10 +508,15 @@ fn crossings(
     })
 }
 
-/// The area that the arcs enclose on their left, up to whole spheres.
-fn removed_area(arcs: &[Arc]) -> f64 {
-    let pole = pole(arcs);
+/// The area that the arcs enclose on their left, up to whole spheres; `points` is memory for their pieces.
+fn removed_area(arcs: &[Arc], points: &mut Vec<Vector3<f64>>) -> f64 {
+    points.clear();
+    for arc in arcs.iter().filter(|arc| !arc.is_circle) {
+        arc.push_points(points);
+    }
+    let pole = pole(points);
     let mut sum = 0.0;
+    let mut first = 0;
     for arc in arcs {
         // About the normal that points to the nearer cap.
         let near = arc.plane.height.abs();
@@ -509,53 +526,62 @@ fn removed_area(arcs: &[Arc]) -> f64 {
             sum += angle * less;
             continue;
         }
-        let pieces = (angle.abs() / FRAC_PI_2).ceil().max(1.0);
-        let step = angle / pieces;
+        let pieces = arc.pieces();
+        let step = angle / pieces as f64;
         let (sine, cosine) = step.sin_cos();
         let segment = step * less - 2.0 * (less * sine).atan2(more + less * cosine);
-        sum += segment * pieces;
-        let mut from = arc.from;
-        for piece in arc.points(pieces).chain([arc.to]) {
-            let volume = pole.dot(&from.cross(&piece));
-            let around = 1.0 + pole.dot(&from) + from.dot(&piece) + piece.dot(&pole);
+        sum += segment * pieces as f64;
+        for k in first..first + pieces {
+            let (from, to) = (points[k], points[k + 1]);
+            let volume = pole.dot(&from.cross(&to));
+            let around = 1.0 + pole.dot(&from) + from.dot(&to) + to.dot(&pole);
             sum += 2.0 * volume.atan2(around);
-            from = piece;
         }
+        first += pieces + 1;
     }
     sum
 }
 
 impl Arc {
-    /// The points that cut it into so many pieces, without its ends.
-    fn points(&self, pieces: f64) -> impl Iterator<Item = Vector3<f64>> {
+    /// In how many pieces its area is taken, each of a quarter of a circle at most.
+    fn pieces(&self) -> usize {
+        let quarters = self.angle.abs() / FRAC_PI_2;
+        1 + usize::from(quarters > 1.0) + usize::from(quarters > 2.0) + usize::from(quarters > 3.0)
+    }
+
+    /// Adds its ends and the points that cut it into pieces.
+    fn push_points(&self, points: &mut Vec<Vector3<f64>>) {
         let middle = self.plane.normal * self.plane.height;
         let (s, t) = (self.from - middle, self.plane.normal.cross(&self.from));
-        let step = self.angle / pieces;
-        let mut number = 0.0;
-        std::iter::from_fn(move || {
-            number += 1.0;
-            let (sine, cosine) = (number * step).sin_cos();
-            (number < pieces).then(|| middle + s * cosine + t * sine)
-        })
+        let pieces = self.pieces();
+        points.push(self.from);
+        for k in 1..pieces {
+            let (sine, cosine) = (self.angle * (k as f64 / pieces as f64)).sin_cos();
+            points.push(middle + s * cosine + t * sine);
+        }
+        points.push(self.to);
     }
 }
 
-/// A point of the sphere whose opposite is far from the ends of all arcs: triangles that reach to the opposite of a corner are known
+/// A point of the sphere whose opposite is far from these points: a triangle that reaches to the opposite of a corner is known
 /// badly.
-fn pole(arcs: &[Arc]) -> Vector3<f64> {
+fn pole(points: &[Vector3<f64>]) -> Vector3<f64> {
     /// Farther than this, no digit that counts is lost.
     const FAR: f64 = 0.2;
     let directions = (0..27).filter(|&k| k != 13).map(|k| {
         let digit = |of: i32| f64::from(of % 3 - 1);
-        Vector3::new(digit(k), digit(k / 3), digit(k / 9)).normalize()
+        // Askew, since points lie along axes and diagonals more often than elsewhere.
+        Vector3::new(digit(k) + 0.21, digit(k / 3) - 0.13, digit(k / 9) + 0.07).normalize()
     });
     let mut best = (f64::NEG_INFINITY, Vector3::z());
     for pole in directions {
-        let nearest = (arcs.iter())
-            .filter(|arc| !arc.is_circle)
-            .flat_map(|arc| [&arc.from, &arc.to])
-            .map(|point| 1.0 + pole.dot(point))
-            .fold(f64::INFINITY, f64::min);
+        let mut nearest = f64::INFINITY;
+        for point in points {
+            nearest = nearest.min(1.0 + pole.dot(point));
+            if nearest <= best.0 {
+                break;
+            }
+        }
         if nearest > best.0 {
             best = (nearest, pole);
         }
