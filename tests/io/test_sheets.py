@@ -16,7 +16,7 @@ from polhode.errors import MeshError, PolhodeError
 @pytest.fixture
 def sheet(tmp_path: Path) -> Path:
     corners = np.array([(0, 0, 0), (200, 0, 0), (200, 100, 0), (0, 100, 0)], dtype=float)
-    return write_obj(tmp_path / "sheet.obj", corners, [(0, 1, 2), (0, 2, 3)])
+    return write_obj(tmp_path / "sheet.obj", corners, np.array([(0, 1, 2), (0, 2, 3)]))
 
 
 PLATE = solids.box((0.2, 0.1, 0.002), density=2700.0).translated((0.1, 0.05, 0.0))
