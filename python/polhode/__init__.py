@@ -47,6 +47,7 @@ if TYPE_CHECKING:
         uncertainty,
         validity,
     )
+    from polhode import images as images
     from polhode import io as io
     from polhode import molecules as molecules
     from polhode import plot as plot

@@ -14,6 +14,7 @@ import numpy as np
 from polhode._core import MassAccumulator, RigidBody, real_numbers
 from polhode._format import short
 from polhode.errors import PolhodeError
+from polhode.units import metres_per
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -63,9 +64,15 @@ class Labelled(NamedTuple):
         -------
         Labelled
         """
-        from polhode.images import bodies_of_file
+        from polhode.io.images import bodies_of_labels, read_image, unit_of
+        from polhode.io.mesh_solid import naming_file
 
-        return bodies_of_file(path, density, length_unit)
+        image = read_image(path)
+        unit = unit_of(image, path, length_unit)
+        affine = image.affine.copy()
+        affine[:3] *= 1.0 if unit is None else metres_per(unit)
+        with naming_file(path):
+            return Labelled(*bodies_of_labels(image.values, density, None, None, affine))
 
 
 def bodies(masses: ArrayLike, positions: ArrayLike, labels: ArrayLike) -> Labelled:

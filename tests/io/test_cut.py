@@ -100,19 +100,27 @@ def test_planes_through_corners_edges_and_faces() -> None:
 
 def test_a_cap_of_a_fine_sphere_is_a_cap() -> None:
     n = 60
-    theta, phi = np.meshgrid(np.linspace(0, np.pi, n + 1), 2 * np.pi * np.arange(2 * n) / (2 * n), indexing="ij")
-    vertices = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=-1).round(15)
+    theta, phi = np.meshgrid(
+        np.linspace(0, np.pi, n + 1), 2 * np.pi * np.arange(2 * n) / (2 * n), indexing="ij"
+    )
+    vertices = np.stack(
+        [np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=-1
+    ).round(15)
     at = np.arange((n + 1) * 2 * n).reshape(n + 1, 2 * n)
     a, b, c, d = at[:-1], np.roll(at, -1, 1)[:-1], at[1:], np.roll(at, -1, 1)[1:]
     faces = np.concatenate([np.stack([a, c, d], -1).reshape(-1, 3), np.stack([a, d, b], -1).reshape(-1, 3)])
     ball = RigidBody.from_mesh(vertices.reshape(-1, 3), faces, density=1.0)
     height = 0.4
-    assert ball.cut((0, 0, 1), point=(0, 0, 1 - height)).mass == pytest.approx(np.pi * height**2 * (3 - height) / 3, rel=3e-3)
+    assert ball.cut((0, 0, 1), point=(0, 0, 1 - height)).mass == pytest.approx(
+        np.pi * height**2 * (3 - height) / 3, rel=3e-3
+    )
 
 
 def test_what_was_moved_is_cut_where_it_is() -> None:
     body = RigidBody.from_mesh(*box((2.0, 2.0, 2.0)), density=3.0)
-    moved = body.translated((10, 0, 0)).rotated((0, 0, 0.6, 0.8)).scaled(length=2.0, mass=5.0).mirrored((1, 2, 3))
+    moved = (
+        body.translated((10, 0, 0)).rotated((0, 0, 0.6, 0.8)).scaled(length=2.0, mass=5.0).mirrored((1, 2, 3))
+    )
     half = moved.cut((3, 2, 1), point=moved.center_of_mass)
     assert half.mass == pytest.approx(0.5 * float(moved.mass), rel=1e-13)
     doubtful = body.with_sigma(mass=0.1)

@@ -65,7 +65,9 @@ def three(path: Path) -> Path:
 
     with zipfile.ZipFile(io.BytesIO(data)) as old, zipfile.ZipFile(path / "a.3mf", "w") as new:
         for member in old.namelist():
-            new.writestr(member, old.read(member).replace(b'id="1" type="model"', b'id="1" type="model" name="plate"'))
+            new.writestr(
+                member, old.read(member).replace(b'id="1" type="model"', b'id="1" type="model" name="plate"')
+            )
     return path / "a.3mf"
 
 
@@ -73,13 +75,18 @@ def gltf(path: Path) -> Path:
     blob, views, accessors, meshes, nodes = b"", [], [], [], []
     for name, (vertices, faces) in zip(NAMES, MESHES, strict=True):
         own = vertices.astype("<f4")
-        for data, kind, count in ((own.tobytes(), 5126, len(own)), (faces.astype("<u4").tobytes(), 5125, faces.size)):
+        for data, kind, count in (
+            (own.tobytes(), 5126, len(own)),
+            (faces.astype("<u4").tobytes(), 5125, faces.size),
+        ):
             views.append({"buffer": 0, "byteOffset": len(blob), "byteLength": len(data)})
             form = {"bufferView": len(views) - 1, "componentType": kind, "count": count}
             bounds = {"min": own.min(axis=0).tolist(), "max": own.max(axis=0).tolist()}
             accessors.append(form | ({"type": "VEC3"} | bounds if kind == 5126 else {"type": "SCALAR"}))
             blob += data
-        meshes.append({"primitives": [{"attributes": {"POSITION": len(accessors) - 2}, "indices": len(accessors) - 1}]})
+        meshes.append(
+            {"primitives": [{"attributes": {"POSITION": len(accessors) - 2}, "indices": len(accessors) - 1}]}
+        )
         nodes.append({"mesh": len(meshes) - 1, "name": name})
     uri = "data:application/octet-stream;base64," + base64.b64encode(blob).decode()
     scene = {
@@ -96,7 +103,14 @@ def gltf(path: Path) -> Path:
     return path / "a.gltf"
 
 
-FORMATS = {"o": obj_by("o"), "g": obj_by("g"), "usemtl": obj_by("usemtl"), "stl": stl, "3mf": three, "gltf": gltf}
+FORMATS = {
+    "o": obj_by("o"),
+    "g": obj_by("g"),
+    "usemtl": obj_by("usemtl"),
+    "stl": stl,
+    "3mf": three,
+    "gltf": gltf,
+}
 
 
 @pytest.mark.parametrize("form", FORMATS)
@@ -111,10 +125,14 @@ def test_every_format_with_names(form: str, tmp_path: Path) -> None:
     ):
         body = RigidBody.from_file(path, density=given, length_unit=unit)
         assert body.isclose(by_hand(densities), rtol=1e-7 if form == "gltf" else 1e-13)
-    with pytest.raises(PolhodeError, match=r"no component 'nut'; give one density for each of .*plate") as told:
+    with pytest.raises(
+        PolhodeError, match=r"no component 'nut'; give one density for each of .*plate"
+    ) as told:
         RigidBody.from_file(path, density={"nut": 1.0}, length_unit=unit)
     assert "bolt" in str(told.value)
-    with pytest.raises(PolhodeError, match=r'nothing is said of component .*; add it, or "\*" for all others'):
+    with pytest.raises(
+        PolhodeError, match=r'nothing is said of component .*; add it, or "\*" for all others'
+    ):
         RigidBody.from_file(path, density={"plate": 1.0}, length_unit=unit)
 
 
@@ -126,7 +144,12 @@ def test_the_command_line_and_assemblies(tmp_path: Path) -> None:
     )
     assert code == 0, err
     assert json.loads(out)["mass"] == pytest.approx(float(expected.mass), rel=1e-12)
-    part = {"name": "a", "file": "a.obj", "length_unit": "m", "density": {"plate": 2700, "bolt": "7.8 g/cm^3"}}
+    part = {
+        "name": "a",
+        "file": "a.obj",
+        "length_unit": "m",
+        "density": {"plate": 2700, "bolt": "7.8 g/cm^3"},
+    }
     made = assembly.read({"name": "whole", "part": [part]}, folder=tmp_path)
     assert made.body.isclose(expected, rtol=1e-13)
     with pytest.raises(PolhodeError, match="part 'a': .*no component 'nut'"):
@@ -144,7 +167,13 @@ def test_two_hundred_random_assemblies(rng: np.random.Generator, tmp_path: Path)
         ]
         given, densities = forms[rng.integers(3)]
         position = rng.normal(size=3)
-        part = {"name": "a", "file": "a.obj", "length_unit": "m", "density": given, "position": position.tolist()}
+        part = {
+            "name": "a",
+            "file": "a.obj",
+            "length_unit": "m",
+            "density": given,
+            "position": position.tolist(),
+        }
         made = assembly.read({"name": "whole", "part": [part]}, folder=tmp_path)
         assert made.body.isclose(by_hand(densities).translated(position), rtol=1e-12)
 
@@ -169,7 +198,11 @@ def test_solids_of_cad(tmp_path: Path) -> None:
 
 
 def test_the_more_specific_name_goes_first() -> None:
-    names = [("a/bolt#1", "a/bolt", "bolt", "steel"), ("a/bolt#2", "a/bolt", "bolt", "steel"), ("nut", "nut", "nut", "brass")]
+    names = [
+        ("a/bolt#1", "a/bolt", "bolt", "steel"),
+        ("a/bolt#2", "a/bolt", "bolt", "steel"),
+        ("nut", "nut", "nut", "brass"),
+    ]
     assert assign({"steel": 1, "a/bolt#2": 2, "*": 3}, names) == [1, 2, 3]
     assert assign({"bolt": 1, "steel": 2, 1: 5}, names) == [5, 1, None]
     assert assign({"*": 4}, names) == [4, 4, 4]

@@ -73,7 +73,9 @@ def test_arrays_of_numpy(tmp_path: Path, labels: np.ndarray) -> None:
     plain = RigidBody.from_file(tmp_path / "a.npy", mass=2.0)
     assert plain.mass == pytest.approx(2.0, rel=1e-15)
     np.save(tmp_path / "four.npy", np.ones((2, 2, 2, 3)))
-    with pytest.raises(FileFormatError, match=r"three dimensions is needed, and this one has the shape \(2, 2, 2, 3\)"):
+    with pytest.raises(
+        FileFormatError, match=r"three dimensions is needed, and this one has the shape \(2, 2, 2, 3\)"
+    ):
         read_image(tmp_path / "four.npy")
     np.save(tmp_path / "one.npy", np.ones((2, 2, 2, 1)))
     assert read_image(tmp_path / "one.npy").values.shape == (2, 2, 2)

@@ -40,14 +40,29 @@ def test_a_closed_mesh_is_a_box_without_its_inside(tmp_path: Path) -> None:
 
 
 def test_the_same_in_an_assembly_and_on_the_command_line(sheet: Path) -> None:
-    part = {"name": "plate", "file": "sheet.obj", "length_unit": "mm", "density": "2.7 g/cm^3", "thickness": "2 mm"}
+    part = {
+        "name": "plate",
+        "file": "sheet.obj",
+        "length_unit": "mm",
+        "density": "2.7 g/cm^3",
+        "thickness": "2 mm",
+    }
     made = assembly.read({"name": "a", "part": [part]}, folder=sheet.parent)
     assert made.body.isclose(PLATE, rtol=1e-13)
     bare = assembly.read({"name": "a", "part": [part | {"thickness": 2}]}, folder=sheet.parent)
     assert bare.body.isclose(PLATE, rtol=1e-13)
     for thickness in ("2mm", "2", "0.002 m"):
         code, out, err = run(
-            "report", sheet, "--length-unit", "mm", "--density", "2.7 g/cm^3", "--thickness", thickness, "--format", "json"
+            "report",
+            sheet,
+            "--length-unit",
+            "mm",
+            "--density",
+            "2.7 g/cm^3",
+            "--thickness",
+            thickness,
+            "--format",
+            "json",
         )
         assert code == 0, err
         told = json.loads(out)

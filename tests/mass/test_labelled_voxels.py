@@ -12,13 +12,17 @@ from polhode import RigidBody, errors, solids
 SIX = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
 
 
-def exact_body(density: np.ndarray, affine: np.ndarray) -> tuple[Fraction, list[Fraction], list[list[Fraction]]]:
+def exact_body(
+    density: np.ndarray, affine: np.ndarray
+) -> tuple[Fraction, list[Fraction], list[list[Fraction]]]:
     """Mass, centre and second moment about it, of cells that are parallelepipeds, in rationals."""
     a = [[Fraction(float(x)) for x in row] for row in affine[:3]]
     edges = [[a[i][k] for i in range(3)] for k in range(3)]
     (p, q, r) = edges
     volume = abs(
-        p[0] * (q[1] * r[2] - q[2] * r[1]) - p[1] * (q[0] * r[2] - q[2] * r[0]) + p[2] * (q[0] * r[1] - q[1] * r[0])
+        p[0] * (q[1] * r[2] - q[2] * r[1])
+        - p[1] * (q[0] * r[2] - q[2] * r[0])
+        + p[2] * (q[0] * r[1] - q[1] * r[0])
     )
     mass, first = Fraction(0), [Fraction(0)] * 3
     second = [[Fraction(0)] * 3 for _ in range(3)]
@@ -109,7 +113,19 @@ def test_what_the_affine_must_be() -> None:
         RigidBody.from_voxels(density, affine=np.diag([np.nan, 1, 1, 1]))
 
 
-KINDS: list[Any] = [bool, np.uint8, np.int8, np.uint16, np.int16, np.uint32, np.int32, np.int64, np.uint64, float, ">i2"]
+KINDS: list[Any] = [
+    bool,
+    np.uint8,
+    np.int8,
+    np.uint16,
+    np.int16,
+    np.uint32,
+    np.int32,
+    np.int64,
+    np.uint64,
+    float,
+    ">i2",
+]
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -36,7 +36,9 @@ def test_through_a_plane_of_coordinates_it_is_exact() -> None:
         signs = [-1 if i == axis else 1 for i in range(3)]
         image = body.mirrored(3.0 * np.eye(3)[axis], (1, 1, 1))
         for i in range(3):
-            assert image.center_of_mass[i] == (2 - body.center_of_mass[i] if i == axis else body.center_of_mass[i])
+            assert image.center_of_mass[i] == (
+                2 - body.center_of_mass[i] if i == axis else body.center_of_mass[i]
+            )
             for j in range(3):
                 assert Fraction(float(image.inertia[i, j])) == signs[i] * signs[j] * rows[i][j]
         assert np.array_equal(image.principal_moments, body.principal_moments)
@@ -111,7 +113,9 @@ def test_random_parts_of_assemblies_against_a_sum_by_hand(rng: np.random.Generat
         inner = {"name": "inner", "part": [part(mirror=normal.tolist(), position=position.tolist())]}
         turned = part(rotation={"axis": axis.tolist(), "degrees": degrees}, mirror=normal.tolist())
         turn = np.deg2rad(degrees) * axis / np.linalg.norm(axis)
-        quaternion = np.append(np.sin(np.linalg.norm(turn) / 2) * axis / np.linalg.norm(axis), np.cos(np.linalg.norm(turn) / 2))
+        quaternion = np.append(
+            np.sin(np.linalg.norm(turn) / 2) * axis / np.linalg.norm(axis), np.cos(np.linalg.norm(turn) / 2)
+        )
         if degrees < 0:
             quaternion[:3] *= -1.0
         found = assembly.read(inner).body

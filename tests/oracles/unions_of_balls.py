@@ -84,7 +84,7 @@ def _kinks(balls):
     for (x, _, _), r in balls:
         found += [x - r, x + r]
     for (a, r), (b, q) in itertools.combinations(balls, 2):
-        way = [v - u for u, v in zip(a, b)]
+        way = [v - u for u, v in zip(a, b, strict=True)]
         d = mp.sqrt(sum(w * w for w in way))
         if d == 0 or d >= r + q or d <= abs(r - q):
             continue
@@ -92,7 +92,7 @@ def _kinks(balls):
         reach = mp.sqrt(max(r * r - h * h, 0)) * mp.sqrt(max(1 - (way[0] / d) ** 2, 0))
         found += [a[0] + h * way[0] / d - reach, a[0] + h * way[0] / d + reach]
     for (a, r), (b, q), (c, p) in itertools.combinations(balls, 3):
-        one, two = (mp.matrix([v - u for u, v in zip(a, other)]) for other in (b, c))
+        one, two = (mp.matrix([v - u for u, v in zip(a, other, strict=True)]) for other in (b, c))
         sides = [(_dot(w, w) + r * r - s * s) / 2 for w, s in ((one, q), (two, p))]
         cross = mp.matrix(
             [
@@ -113,13 +113,13 @@ def _kinks(balls):
 
 
 def _dot(a, b):
-    return sum(u * v for u, v in zip(a, b))
+    return sum(u * v for u, v in zip(a, b, strict=True))
 
 
 def union_by_slices(centers, radii, nodes=48, digits=40):
     """Volume, first moments (3) and second moments (xx, yy, zz, xy, xz, yz) of a union of balls."""
     with mp.workdps(digits):
-        balls = [([mp.mpf(float(x)) for x in c], mp.mpf(float(r))) for c, r in zip(centers, radii)]
+        balls = [([mp.mpf(float(x)) for x in c], mp.mpf(float(r))) for c, r in zip(centers, radii, strict=True)]
         kinks = _kinks(balls)
         rule = _rule(nodes, digits)
         sums = [mp.mpf(0)] * 10

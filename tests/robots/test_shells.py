@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from polhode import robots
+
+
+def parse(source: bytes) -> robots.Robot:
+    return robots.parse_robot(source, name="r", folder=Path())
+
 
 SHELLS = {
     "sphere": 'size="0.3"',
@@ -23,7 +30,7 @@ def test_a_shell_is_that_of_mujoco(name: str, weight: str) -> None:
         '<mujoco><worldbody><body name="b"><joint type="hinge"/>'
         f'<geom {SHELLS[name]} {weight} shellinertia="true"/></body></worldbody></mujoco>'
     )
-    (verdict,) = robots.check(robots.parse_robot(text.encode()))
+    (verdict,) = robots.check(parse(text.encode()))
     model = mujoco.MjModel.from_xml_string(text)
     assert verdict.verdict == "inferred"
     assert verdict.mass == pytest.approx(model.body_mass[1], rel=1e-12)
@@ -35,7 +42,10 @@ MIRRORED = 'ixx="4" ixy="0.5" ixz="0.25" iyy="5" iyz="-0.75" izz="6"'
 
 
 def two_arms(left: str, right: str, names: tuple[str, str] = ("left_arm", "right_arm")) -> bytes:
-    links = "".join(f'<link name="{name}"><inertial>{body}</inertial></link>' for name, body in zip(names, (left, right), strict=True))
+    links = "".join(
+        f'<link name="{name}"><inertial>{body}</inertial></link>'
+        for name, body in zip(names, (left, right), strict=True)
+    )
     return f'<robot name="r">{links}</robot>'.encode()
 
 
@@ -53,9 +63,11 @@ def inertial(tensor: str, place: str = "0.1 0.2 0.3", mass: str = "2") -> str:
         (inertial(MIRRORED.replace('"6"', '"7"'), "0.1 -0.2 0.3"), "its principal moments are"),
     ],
 )
-@pytest.mark.parametrize("names", [("left_arm", "right_arm"), ("LeftArm", "RightArm"), ("l_arm", "r_arm"), ("FL_hip", "FR_hip")])
+@pytest.mark.parametrize(
+    "names", [("left_arm", "right_arm"), ("LeftArm", "RightArm"), ("l_arm", "r_arm"), ("FL_hip", "FR_hip")]
+)
 def test_twins(right: str, says: str, names: tuple[str, str]) -> None:
-    robot = robots.parse_robot(two_arms(inertial(TENSOR), right, names))
+    robot = parse(two_arms(inertial(TENSOR), right, names))
     notes = [note for verdict in robots.check(robot) for note in verdict.notes if "mirror image" in note]
     assert len(notes) == bool(says)
     if says:
@@ -64,5 +76,5 @@ def test_twins(right: str, says: str, names: tuple[str, str]) -> None:
 
 def test_links_that_are_no_twins() -> None:
     for names in (("arm", "leg"), ("left_arm", "right_leg"), ("frame", "flame"), ("ball", "barr")):
-        robot = robots.parse_robot(two_arms(inertial(TENSOR), inertial(TENSOR), names))
+        robot = parse(two_arms(inertial(TENSOR), inertial(TENSOR), names))
         assert not any("mirror" in note for verdict in robots.check(robot) for note in verdict.notes)

@@ -12,7 +12,7 @@ from polhode._core import RigidBody
 from polhode._format import Argument
 from polhode.assembly.tables import COMMON, FILE, KINDS, PRINTED, PartError, check_keys, text_of
 from polhode.errors import PolhodeError
-from polhode.images import body_of_image, is_image, read_image, unit_of
+from polhode.io.images import body_of_image, is_image, read_image, unit_of
 from polhode.interop.printouts import from_printout
 from polhode.io.budget import words_of
 from polhode.io.components import MOST_FACES, overlapping
@@ -126,7 +126,9 @@ def _weight(table: Mapping[str, Any], scope: Scope, what: str) -> dict[str, Any]
     density = table["density"]
     if isinstance(density, dict):
         return {
-            "density": {name: scope.amount(f"density of {name}", each, "kg/m^3") for name, each in density.items()}
+            "density": {
+                name: scope.amount(f"density of {name}", each, "kg/m^3") for name, each in density.items()
+            }
         }
     return {"density": scope.amount("density", density, "kg/m^3")}
 

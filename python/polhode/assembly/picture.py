@@ -9,7 +9,7 @@ import numpy as np
 from polhode._hints import with_hints
 from polhode.draw.shape import body_shape
 from polhode.draw.triangles import cluster_vertices
-from polhode.images import is_image
+from polhode.io.images import is_image
 from polhode.io.content import is_molecule
 from polhode.io.formats import CAD_SUFFIXES, SAVED_SUFFIXES, load
 from polhode.io.unpacked import inner_suffix
@@ -80,4 +80,8 @@ def _surface(part: Member, most: int) -> tuple[Floats, NDArray[np.int64]]:
 
 def _is_mesh(file: Path) -> bool:
     """Return whether a file holds triangles: no atoms, no solids of CAD, no numbers alone."""
-    return not is_molecule(file) and not is_image(file) and inner_suffix(file) not in (*SAVED_SUFFIXES, *CAD_SUFFIXES)
+    return (
+        not is_molecule(file)
+        and not is_image(file)
+        and inner_suffix(file) not in (*SAVED_SUFFIXES, *CAD_SUFFIXES)
+    )

@@ -172,9 +172,7 @@ def densities_of(text: str, unit: str | None) -> dict[str, float | Uncertain]:
         name, is_named, value = (word.strip() for word in item.partition("="))
         if not is_named or name in given:
             what = "is given twice" if name in given else "names no component"
-            raise PolhodeError(
-                f"--density: {item.strip()!r} {what}; give NAME=DENSITY for each, by commas"
-            )
+            raise PolhodeError(f"--density: {item.strip()!r} {what}; give NAME=DENSITY for each, by commas")
         if unit is None and has_unit(value):
             raise PolhodeError(
                 f"--density: {value!r} has a unit, but the file's coordinates have none; state "

@@ -23,7 +23,7 @@ from polhode.cli.tables import (
     trust_fields,
 )
 from polhode.errors import PolhodeError
-from polhode.images import body_of_image, is_image, read_image, unit_of
+from polhode.io.images import body_of_image, is_image, read_image, unit_of
 from polhode.io.formats import check_arguments
 from polhode.io.mesh_solid import naming_file
 from polhode.io.read import is_whole, read_whole

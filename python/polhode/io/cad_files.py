@@ -603,9 +603,7 @@ def names_of_solids(cad: CadFile) -> list[tuple[str, ...]]:
         own = part.name if number == 1 else f"{part.name}#{number}"
         names.append((own, f"{part.name}#{number}", part.name, part.name.rpartition("/")[2], part.material))
     # The bare name is that of all, where it stands twice.
-    return [
-        (of[1], *of[2:]) if counts[of[2]] > 1 else of for of in names
-    ]
+    return [(of[1], *of[2:]) if counts[of[2]] > 1 else of for of in names]
 
 
 def solids_of(

@@ -151,7 +151,9 @@ def _cut_triangles(crossed: Integers, corners: Floats, heights: Floats) -> tuple
     numbers = np.full(crossed.shape, -1)
     numbers[is_cut] = len(corners) + number.reshape(-1)
     made = []
-    for triangle, sides, cuts in zip(crossed.tolist(), heights[crossed].tolist(), numbers.tolist(), strict=True):
+    for triangle, sides, cuts in zip(
+        crossed.tolist(), heights[crossed].tolist(), numbers.tolist(), strict=True
+    ):
         polygon = []
         for corner, side, cut in zip(triangle, sides, cuts, strict=True):
             polygon += [corner] if side >= 0.0 else []
@@ -166,7 +168,9 @@ def _open_edges(faces: Integers) -> Integers:
     count = int(faces.max(initial=0)) + 1
     low, high = edges.min(axis=1), edges.max(axis=1)
     pairs, number = np.unique(low * count + high, return_inverse=True)
-    surplus = np.bincount(number.reshape(-1), weights=np.where(edges[:, 0] == low, 1.0, -1.0)).astype(np.int64)
+    surplus = np.bincount(number.reshape(-1), weights=np.where(edges[:, 0] == low, 1.0, -1.0)).astype(
+        np.int64
+    )
     ends = np.column_stack([pairs // count, pairs % count])
     ends[surplus < 0] = ends[surplus < 0, ::-1]
     return np.repeat(ends, np.abs(surplus), axis=0)

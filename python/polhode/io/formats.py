@@ -18,7 +18,7 @@ import numpy as np
 from polhode import _core
 from polhode._format import Argument
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.images import is_image
+from polhode.io.images import is_image
 from polhode.io.budget import Budget, check_ordinary, naming, status_of, whole_of
 from polhode.io.cad_geometry import check_occt
 from polhode.io.content import EXPECTED_CONTENT, MOLECULE_SUFFIXES, Content, is_molecule, open_file, unread
@@ -60,7 +60,17 @@ __all__ = [
 SAVED_SUFFIXES: Final = (".json", ".npz")
 """Of bodies that ``RigidBody.save`` wrote, and of reports."""
 ASSEMBLY_SUFFIX: Final = ".toml"
-_OF_MESHES: Final = ("density", "mass", "thickness", "weld", "closure", "orient", "union", "repair", "index_base")
+_OF_MESHES: Final = (
+    "density",
+    "mass",
+    "thickness",
+    "weld",
+    "closure",
+    "orient",
+    "union",
+    "repair",
+    "index_base",
+)
 _OF_MOLECULES: Final = ("masses", "bond_sigma", "mass_sigmas")
 CAD_SUFFIXES: Final = (".step", ".stp", ".igs", ".iges")
 _METRE: Final = ("m", "metre", "meter")

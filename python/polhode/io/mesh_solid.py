@@ -170,7 +170,10 @@ def _sheet(
     name = next((name for name, value in asked.items() if value), None)
     if name is not None:
         raise PolhodeError(
-            Argument(name), ": ", Argument("thickness"), " makes a sheet, of an open mesh too; leave one of the two out"
+            Argument(name),
+            ": ",
+            Argument("thickness"),
+            " makes a sheet, of an open mesh too; leave one of the two out",
         )
     if loaded.cad is not None:
         raise PolhodeError(
@@ -179,7 +182,9 @@ def _sheet(
     mesh = weld_within(loaded.mesh, weld) if weld != 0.0 else loaded.mesh
     vertices, welded = mesh.vertices * scale, len(loaded.mesh.vertices) - len(mesh.vertices)
     with naming_file(loaded.path):
-        volume = float(_core.RigidBody.from_surface(vertices, mesh.faces, density=1.0, thickness=thickness).mass)
+        volume = float(
+            _core.RigidBody.from_surface(vertices, mesh.faces, density=1.0, thickness=thickness).mass
+        )
         body = _core.RigidBody.from_surface(
             vertices, mesh.faces, density=density, mass=mass, thickness=thickness
         )

@@ -25,7 +25,15 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-__all__ = ["OTHERS", "OVERLAPPING", "assign", "body_by_names", "body_of_parts", "named_parts", "names_of_part"]
+__all__ = [
+    "OTHERS",
+    "OVERLAPPING",
+    "assign",
+    "body_by_names",
+    "body_of_parts",
+    "named_parts",
+    "names_of_part",
+]
 
 OTHERS: Final = "*"
 """Stands for all components that nothing else names."""

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from polhode._format import Argument
 from polhode.errors import PolhodeError
-from polhode.images import body_of_image, is_image, read_image, unit_of
+from polhode.io.images import body_of_image, is_image, read_image, unit_of
 from polhode.io.content import is_molecule
 from polhode.io.formats import (
     ASSEMBLY_SUFFIX,
@@ -97,7 +97,8 @@ def body_from_file(
     scale = 1.0 if unit is None else metres_per(unit)
     if callable(density):
         raise PolhodeError(
-            Argument("density"), f": {os.fspath(path)} is no image, whose values a function could take; give a number"
+            Argument("density"),
+            f": {os.fspath(path)} is no image, whose values a function could take; give a number",
         )
     if isinstance(density, Mapping):
         from polhode.io.named_densities import body_by_names

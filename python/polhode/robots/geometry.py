@@ -204,7 +204,9 @@ class GeometryReader:
             self._solids[key] = self._mesh_solid(shape, folder) if is_mesh else _solid(shape)
         solid, note = self._solids[key]
         volume = None
-        if shape.counting == "shell" and solid is not None:  # beside what its mass would have to be if it were full
+        if (
+            shape.counting == "shell" and solid is not None
+        ):  # beside what its mass would have to be if it were full
             volume = self._volume(replace(shape, counting=""), folder)
         if note:
             notes.setdefault(note, shape.where)

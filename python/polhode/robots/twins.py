@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 
 __all__ = ["twin_notes"]
 
-_SIDE: Final = re.compile(r"(?i:left|right)|(?<![A-Za-z])[lr](?![A-Za-z])|(?<![A-Za-z])[LR](?![A-Za-z])|(?<![A-Za-z])[LRFH]{2}(?![A-Za-z])")
+_SIDE: Final = re.compile(
+    r"(?i:left|right)|(?<![A-Za-z])[lr](?![A-Za-z])|(?<![A-Za-z])[LR](?![A-Za-z])|(?<![A-Za-z])[LRFH]{2}(?![A-Za-z])"
+)
 """Words of a name that tell the side: left, R, r, FL, LH."""
 _OTHER: Final = {"left": "right", "right": "left", "l": "r", "r": "l"}
 _ALIKE: Final = 1e-2
