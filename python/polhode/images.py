@@ -1,7 +1,9 @@
-"""Images of scanners and simulations: voxels in NIfTI, NRRD and NumPy files, segmentations, densities from grey values.
+"""Images of scanners and simulations: voxels in files, segmentations, densities from grey values.
 
-``RigidBody.from_file`` and ``polhode report`` read an image as one body; :class:`polhode.labelled.Labelled` has a
-``from_file`` that reads a segmentation as one body for each label. The functions here are what they are built on.
+``RigidBody.from_file`` and ``polhode report`` read an image as one body; :class:`polhode.labelled.Labelled`
+has a
+``from_file`` that reads a segmentation as one body for each label. The functions here are what they are
+built on.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from polhode.io import cut_mesh
 
 
 def volume_beyond(vertices: np.ndarray, faces: np.ndarray, n: list[Fraction], p: list[Fraction]):
-    """Volume and first moment of what lies beyond a plane, in rationals: each face with a point of the plane, clipped."""
+    """Volume and first moment beyond a plane, in rationals: each face with a point of the plane, clipped."""
     v = [[Fraction(float(x)) - q for x, q in zip(row, p, strict=True)] for row in vertices]
     height = [sum(a * b for a, b in zip(n, row, strict=True)) for row in v]
     six, first = Fraction(0), [Fraction(0)] * 3
@@ -63,7 +63,7 @@ SHAPES = {"box": box((3.0, 2.0, 1.0)), "torus": torus(14, 7), "hollow": hollow()
 @pytest.mark.parametrize("name", SHAPES)
 def test_against_rationals(name: str, rng: np.random.Generator) -> None:
     vertices, faces = SHAPES[name]
-    vertices = vertices + (1.0, 2.0, 3.0)
+    vertices = vertices + np.array([1.0, 2.0, 3.0])
     body = RigidBody.from_mesh(vertices, faces, density=2.0)
     for _ in range(15):
         normal = rng.integers(-9, 10, 3)

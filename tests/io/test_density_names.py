@@ -152,12 +152,12 @@ def test_the_command_line_and_assemblies(tmp_path: Path) -> None:
     }
     made = assembly.read({"name": "whole", "part": [part]}, folder=tmp_path)
     assert made.body.isclose(expected, rtol=1e-13)
-    with pytest.raises(PolhodeError, match="part 'a': .*no component 'nut'"):
+    with pytest.raises(PolhodeError, match=r"part 'a': .*no component 'nut'"):
         assembly.read({"name": "whole", "part": [part | {"density": {"nut": 1}}]}, folder=tmp_path)
 
 
 def test_two_hundred_random_assemblies(rng: np.random.Generator, tmp_path: Path) -> None:
-    path = FORMATS["g"](tmp_path)
+    FORMATS["g"](tmp_path)
     for _ in range(200):
         rho = rng.uniform(1.0, 9.0, 3).round(2).tolist()
         forms = [

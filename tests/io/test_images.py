@@ -131,7 +131,7 @@ def test_command_line_and_assembly(tmp_path: Path, labels: np.ndarray) -> None:
     part = {"name": "bone", "file": "a.npy", "length_unit": "mm", "density": {"1": 1000, "*": "2 g/cm^3"}}
     made = assembly.read({"name": "whole", "part": [part]}, folder=tmp_path).body
     assert made.isclose(expected, rtol=1e-13)
-    with pytest.raises(PolhodeError, match="closure: .* is an image of voxels, not a mesh; leave it out"):
+    with pytest.raises(PolhodeError, match=r"closure: .* is an image of voxels, not a mesh; leave it out"):
         assembly.read({"name": "whole", "part": [part | {"closure": "caps"}]}, folder=tmp_path)
 
 
@@ -139,7 +139,7 @@ def test_refused(tmp_path: Path) -> None:
     np.save(tmp_path / "a.npy", np.ones((2, 2, 2)))
     with pytest.raises(PolhodeError, match="no voxel has the value 'bone'; the values are 1"):
         RigidBody.from_file(tmp_path / "a.npy", density={"bone": 1.0})
-    with pytest.raises(PolhodeError, match="thickness: .* is an image of voxels, not a mesh"):
+    with pytest.raises(PolhodeError, match=r"thickness: .* is an image of voxels, not a mesh"):
         RigidBody.from_file(tmp_path / "a.npy", density=1.0, thickness=0.1)
     with pytest.raises(TypeError, match="exactly one of mass= and density="):
         RigidBody.from_file(tmp_path / "a.npy")

@@ -77,7 +77,7 @@ def test_refused(sheet: Path, tmp_path: Path) -> None:
     with pytest.raises(PolhodeError, match="thickness must be positive and finite"):
         RigidBody.from_file(sheet, density=1.0, thickness=0.0)
     (tmp_path / "water.xyz").write_text("1\nO\nO 0 0 0\n")
-    with pytest.raises(PolhodeError, match="thickness: .* is a molecule, not a mesh"):
+    with pytest.raises(PolhodeError, match=r"thickness: .* is a molecule, not a mesh"):
         RigidBody.from_file(tmp_path / "water.xyz", thickness=0.1)
     code, _, err = run("report", sheet, "--thickness", "2mm", "--density", "1")
     assert code == 2

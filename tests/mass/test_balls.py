@@ -9,7 +9,6 @@ import time
 import numpy as np
 import pytest
 from oracles.unions_of_balls import sampled_union, union_by_slices
-
 from polhode import RigidBody, solids
 from polhode.errors import PolhodeError
 
@@ -114,7 +113,7 @@ def test_spheres_that_touch(gap, inner):
 
 @pytest.mark.parametrize("shift", [0.0, 1e-17, 1e-15, 1e-12, 1e-9, 1e-6])
 def test_planes_through_a_center_and_a_common_line(shift):
-    """Eight balls at the corners of a cube around one: planes pass through its center, and three circles meet."""
+    """Eight balls at the corners of a cube around one: planes pass through its center, three circles meet."""
     corners = np.array(list(itertools.product([-1.0, 1.0], repeat=3)))
     centers = np.concatenate([corners, [[shift, 0.0, 0.0]]])
     for radius in (1.2, math.sqrt(2.0), 1.5, math.sqrt(3.0), 2.0):

@@ -181,7 +181,7 @@ def test_refused() -> None:
         RigidBody.from_labelled_voxels(image, {12: 1.0}, spacing=1.0)
     with pytest.raises(errors.PolhodeError, match="expected whole numbers, got fractions"):
         RigidBody.from_labelled_voxels(image + 0.5, 1.0, spacing=1.0)
-    with pytest.raises(errors.PolhodeError, match="label 3: density must be positive, got -1.0"):
+    with pytest.raises(errors.PolhodeError, match=r"label 3: density must be positive, got -1.0"):
         RigidBody.from_labelled_voxels(image, {3: -1.0}, spacing=1.0)
     with pytest.raises(ValueError, match=r"labels: expected shape \(nx, ny, nz\), got \(4,\)"):
         RigidBody.from_labelled_voxels([1, 2, 3, 4], 1.0, spacing=1.0)

@@ -77,7 +77,7 @@ def test_what_is_uncertain_is_so_in_the_image(rng: np.random.Generator) -> None:
     assert float(whole.sigma.mass) == pytest.approx(2.0 * float(body.sigma.mass))
 
 
-def test_pictures_show_the_image(rng: np.random.Generator) -> None:
+def test_pictures_show_the_image() -> None:
     from polhode.draw.shape import body_shape
 
     body = solids.wedge((3, 2, 1), density=2.0).translated((1, 2, 3))
@@ -127,7 +127,8 @@ def test_random_parts_of_assemblies_against_a_sum_by_hand(rng: np.random.Generat
 
 def test_an_assembly_mirrored_whole(tmp_path) -> None:
     (tmp_path / "arm.toml").write_text(
-        'name = "arm"\n[[part]]\nname = "a"\nsolid = "wedge"\nsize = [3, 2, 1]\ndensity = 2\nposition = [1, 2, 3]\n'
+        'name = "arm"\n[[part]]\nname = "a"\nsolid = "wedge"\nsize = [3, 2, 1]\ndensity = 2\n'
+        "position = [1, 2, 3]\n"
         '[[part]]\nname = "b"\nsolid = "wedge"\nsize = [1, 2, 3]\ndensity = 1\nmirror = [0, 0, 1]\n'
     )
     (tmp_path / "both.toml").write_text(

@@ -1,4 +1,4 @@
-"""Moments of unions of balls by slices: disks in closed form, the third direction by quadrature to 40 digits."""
+"""Moments of unions of balls by slices: disks in closed form, the third direction by quadrature."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ import numpy as np
 
 __all__ = ["sampled_union", "union_by_slices"]
 
-_INTEGRALS = {
-    (0, 0): lambda t, c, s: t,
-    (1, 0): lambda t, c, s: s,
-    (0, 1): lambda t, c, s: -c,
+_INTEGRALS = {  # of the angle t, its cosine and its sine
+    (0, 0): lambda t, *_: t,
+    (1, 0): lambda *of: of[2],
+    (0, 1): lambda *of: -of[1],
     (2, 0): lambda t, c, s: (t + s * c) / 2,
     (0, 2): lambda t, c, s: (t - s * c) / 2,
-    (1, 1): lambda t, c, s: s * s / 2,
-    (3, 0): lambda t, c, s: s - s**3 / 3,
-    (0, 3): lambda t, c, s: -c + c**3 / 3,
-    (2, 1): lambda t, c, s: -(c**3) / 3,
-    (1, 2): lambda t, c, s: s**3 / 3,
+    (1, 1): lambda *of: of[2] ** 2 / 2,
+    (3, 0): lambda *of: of[2] - of[2] ** 3 / 3,
+    (0, 3): lambda *of: -of[1] + of[1] ** 3 / 3,
+    (2, 1): lambda *of: -(of[1] ** 3) / 3,
+    (1, 2): lambda *of: of[2] ** 3 / 3,
 }
 """Antiderivatives of cᵐ sⁿ by the angle."""
 _MONOMIALS = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
@@ -79,7 +79,7 @@ def _disks(disks):
 
 
 def _kinks(balls):
-    """Where along x the slices change their kind: ends of spheres and of their circles, points of three spheres."""
+    """Where slices change their kind: ends of spheres and of their circles, points of three spheres."""
     found = []
     for (x, _, _), r in balls:
         found += [x - r, x + r]
@@ -119,7 +119,9 @@ def _dot(a, b):
 def union_by_slices(centers, radii, nodes=48, digits=40):
     """Volume, first moments (3) and second moments (xx, yy, zz, xy, xz, yz) of a union of balls."""
     with mp.workdps(digits):
-        balls = [([mp.mpf(float(x)) for x in c], mp.mpf(float(r))) for c, r in zip(centers, radii, strict=True)]
+        balls = [
+            ([mp.mpf(float(x)) for x in c], mp.mpf(float(r))) for c, r in zip(centers, radii, strict=True)
+        ]
         kinks = _kinks(balls)
         rule = _rule(nodes, digits)
         sums = [mp.mpf(0)] * 10

@@ -12,12 +12,12 @@ from polhode._core import RigidBody
 from polhode._format import Argument
 from polhode.assembly.tables import COMMON, FILE, KINDS, PRINTED, PartError, check_keys, text_of
 from polhode.errors import PolhodeError
-from polhode.io.images import body_of_image, is_image, read_image, unit_of
 from polhode.interop.printouts import from_printout
 from polhode.io.budget import words_of
 from polhode.io.components import MOST_FACES, overlapping
 from polhode.io.content import is_molecule
 from polhode.io.formats import SAVED_SUFFIXES, body_of_molecule, check_arguments, load, read_saved
+from polhode.io.images import body_of_image, is_image, read_image, unit_of
 from polhode.io.mesh_solid import solid_of
 from polhode.io.named_densities import body_by_names
 from polhode.units import metres_per

@@ -9,9 +9,9 @@ import numpy as np
 from polhode._hints import with_hints
 from polhode.draw.shape import body_shape
 from polhode.draw.triangles import cluster_vertices
-from polhode.io.images import is_image
 from polhode.io.content import is_molecule
 from polhode.io.formats import CAD_SUFFIXES, SAVED_SUFFIXES, load
+from polhode.io.images import is_image
 from polhode.io.unpacked import inner_suffix
 from polhode.plot import body as draw_body
 from polhode.plot import principal_axes

@@ -245,7 +245,7 @@ def place_of(table: Mapping[str, Any], scope: Scope) -> Place:
         size = float(np.abs(normal).max())
         if size == 0.0:
             raise PartError(
-                f"{scope.where}: mirror: a normal of length 0 has no direction; write that of the plane, as in "
+                f"{scope.where}: mirror: a normal of length 0 has no direction; write one, as in "
                 "mirror = [0, 1, 0]"
             )
         normal = normal / size

@@ -113,7 +113,8 @@ def weigh(loaded: Loaded, solid: MeshSolid, options: BodyOptions, scale: float, 
     if len(densities) < len(parts):
         absent = parts[found.index(None)].name
         raise PolhodeError(
-            f'--density: no density is given for component {absent}; add {absent}=DENSITY, or "*=DENSITY" for all others'
+            f"--density: no density is given for component {absent}; add {absent}=DENSITY, or "
+            '"*=DENSITY" for all others'
         )
     notes = describe_overlaps(overlaps(parts), sum(part.volume for part in parts), _unit(options))
     notes += [OVERLAPPING] if notes else []

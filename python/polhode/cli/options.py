@@ -109,7 +109,8 @@ class BodyOptions:
         Unit of the coordinates in the file; results are then in SI units. Without it, results are in the
         file's own unit, and the numbers that you type must have no unit.
     thickness
-        Thickness of a sheet, such as 2mm: the mesh, open or closed, is the middle of a shell and not the surface of a
+        Thickness of a sheet, such as 2mm: the mesh, open or closed, is the middle of a shell and not the
+        surface of a
         solid. A number without a unit is in the unit of the file.
     weld
         Join corners that are at most this far apart, such as 1e-6. A number without a unit is in the unit of

@@ -23,8 +23,8 @@ from polhode.cli.tables import (
     trust_fields,
 )
 from polhode.errors import PolhodeError
-from polhode.io.images import body_of_image, is_image, read_image, unit_of
 from polhode.io.formats import check_arguments
+from polhode.io.images import body_of_image, is_image, read_image, unit_of
 from polhode.io.mesh_solid import naming_file
 from polhode.io.read import is_whole, read_whole
 from polhode.units import amount, has_unit, metres_per, quantities, quantity, split, vector
@@ -68,8 +68,8 @@ def _image_body(file: Path, options: BodyOptions) -> LoadedBody:
     check_arguments(file, **{name: _is_given(options, name) for name in _OF_SHAPES})
     if (options.density is None) == (options.mass is None):
         raise PolhodeError(
-            f"--density, --mass: {file} is an image of voxels, which needs one of the two, such as --density 1000 for a "
-            'mask, or --density "1=1050, 2=1900" by its values'
+            f"--density, --mass: {file} is an image of voxels, which needs one of them, such as --density 1000 "
+            'for a mask, or --density "1=1050, 2=1900" by its values'
         )
     image = read_image(file)
     unit = unit_of(image, file, options.length_unit)

@@ -595,7 +595,7 @@ class SolidPart(NamedTuple):
 
 
 def names_of_solids(cad: CadFile) -> list[tuple[str, ...]]:
-    """Return the names of each solid: with its path and, where that stands twice, #2 and so on; the last name alone; the material."""
+    """Return the names of each solid: its path (#2 where that stands twice), last name, material."""
     counts: dict[str, int] = {}
     names = []
     for part in cad.parts:

@@ -361,7 +361,7 @@ def overlapping(vertices: Floats, faces: Integers, unit: str = " m^3") -> list[s
 
 
 def groups_of(path: Path) -> tuple[list[str], list[str]]:
-    """Return names of each triangle of an OBJ file that is not packed: of its group (``o``, else ``g``) and its material."""
+    """Return the group (``o``, else ``g``) and the material of each triangle of an unpacked OBJ file."""
     found: list[str] = []
     materials: list[str] = []
     names = {"o": "", "g": "", "usemtl": ""}

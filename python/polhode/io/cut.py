@@ -1,4 +1,4 @@
-"""A solid cut by a plane: the part on one side, closed by its section. Hulls below their waterline, castings, sawn-off parts."""
+"""A solid cut by a plane, closed by its section: hulls below their waterline, castings, sawn-off parts."""
 
 from __future__ import annotations
 
@@ -41,7 +41,8 @@ def cut_mesh(
     Returns
     -------
     Mesh
-        Closed. The section is a fan of triangles about one point: of a section that is not convex they overlap with
+        Closed. The section is a fan of triangles about one point: of a section that is not convex they
+        overlap with
         opposite signs, which changes no integral, but is not meant to be drawn.
 
     Raises
@@ -54,7 +55,8 @@ def cut_mesh(
     >>> from polhode import RigidBody
     >>> from polhode.io import cut_mesh
     >>> corners = [(0, 0, 0), (2, 0, 0), (0, 2, 0), (0, 0, 2)]
-    >>> top = cut_mesh(corners, [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)], normal=(0, 0, 1), point=(0, 0, 1))
+    >>> faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+    >>> top = cut_mesh(corners, faces, normal=(0, 0, 1), point=(0, 0, 1))
     >>> RigidBody.from_mesh(top.vertices, top.faces, density=6.0).mass
     1.0
     """
@@ -85,8 +87,8 @@ def cut_mesh(
     if not len(whole) and not len(crossed):
         highest = float(heights[triangles].max(initial=-np.inf))
         raise PolhodeError(
-            f"normal, point: nothing lies beyond the plane: the highest corner is at {highest:g} from it; move the "
-            "point, or turn the normal round"
+            f"normal, point: nothing lies beyond the plane: the highest corner is at {highest:g} from it; "
+            "move the point, or turn the normal round"
         )
     cut, corners = _cut_triangles(crossed, corners, heights)
     left = np.concatenate([whole, cut])
@@ -112,7 +114,8 @@ def cut_body(body: RigidBody, normal: ArrayLike, point: ArrayLike = (0.0, 0.0, 0
         own = parts[0][0].rpartition("::")[2] if parts else ""
         kind = "no shape" if not parts else f"{len(parts)} shapes" if len(parts) > 1 else f"the shape {own!r}"
         raise PolhodeError(
-            f"cut: a body is cut that holds one closed mesh, of at most 20,000 faces, and this one holds {kind}; {_WAY_OUT}"
+            f"cut: a body is cut that holds one closed mesh of at most 20,000 faces, and this one holds "
+            f"{kind}; {_WAY_OUT}"
         )
     _, numbers, triangles, place, _ = parts[0]
     turn, shift = np.array(place[:9]).reshape(3, 3), np.array(place[9:])
@@ -136,7 +139,7 @@ def _vector(given: ArrayLike, name: str) -> Floats:
 
 
 def _cut_triangles(crossed: Integers, corners: Floats, heights: Floats) -> tuple[Integers, Floats]:
-    """Return the parts of triangles above the plane, and the corners with those on their edges; an edge is cut once."""
+    """Return the parts of triangles above the plane, and the corners with those on edges, each cut once."""
     if not len(crossed):
         return crossed, corners
     a, b = crossed, np.roll(crossed, -1, axis=1)

@@ -18,10 +18,10 @@ import numpy as np
 from polhode import _core
 from polhode._format import Argument
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.io.images import is_image
 from polhode.io.budget import Budget, check_ordinary, naming, status_of, whole_of
 from polhode.io.cad_geometry import check_occt
 from polhode.io.content import EXPECTED_CONTENT, MOLECULE_SUFFIXES, Content, is_molecule, open_file, unread
+from polhode.io.images import is_image
 from polhode.io.mesh import Mesh, check_faces, weld, weld_within
 from polhode.io.mesh_solid import MeshSolid, naming_file, solid_of
 from polhode.io.plates import read_numbered_plates

@@ -92,19 +92,22 @@ def is_image(path: str | os.PathLike[str]) -> bool:
 
 
 def read_image(path: str | os.PathLike[str]) -> Image:
-    """Read an image of three dimensions: NIfTI by nibabel, NRRD by pynrrd (extra ``image``), NumPy's ``.npy``.
+    """Read an image: NIfTI by nibabel, NRRD by pynrrd (extra ``image``), arrays of NumPy (``.npy``).
 
     Parameters
     ----------
     path : str or os.PathLike
-        ``.nii``, ``.nii.gz``, ``.nrrd``, ``.nhdr`` or ``.npy``. An array of NumPy has no unit, and its voxels are
+        ``.nii``, ``.nii.gz``, ``.nrrd``, ``.nhdr`` or ``.npy``. An array of NumPy has no unit, and its
+        voxels are
         cubes of edge 1 with the first one at the origin.
 
     Returns
     -------
     Image
-        The axes are those of the file: NIfTI's first axis runs to the patient's right, its second to the front and its
-        third to the head (RAS); NRRD says which in its header, mostly left, back and head (LPS). The two differ by half
+        The axes are those of the file: NIfTI's first axis runs to the patient's right, its second to the
+        front and its
+        third to the head (RAS); NRRD says which in its header, mostly left, back and head (LPS). The two
+        differ by half
         a turn about the third axis.
 
     Raises
@@ -149,8 +152,8 @@ def read_image(path: str | os.PathLike[str]) -> Image:
         values = values[..., 0]
     if values.ndim != 3:
         raise FileFormatError(
-            f"{file}: an image of three dimensions is needed, and this one has the shape {values.shape}; save one "
-            "instant or one channel of it"
+            f"{file}: an image of three dimensions is needed, and this one has the shape {values.shape}; "
+            "save one instant or one channel of it"
         )
     if values.dtype.kind not in "biuf":
         raise FileFormatError(
@@ -202,9 +205,10 @@ def _read_nrrd(file: Path) -> Image:
 
 
 def grey_value_density(table: ArrayLike) -> Callable[[ArrayLike], Floats]:
-    """Make the density of each voxel from its grey value, such as a CT number in Hounsfield units, by a table.
+    """Make densities from grey values, such as CT numbers in Hounsfield units, by a table.
 
-    Between two rows of the table the density is linear. Below its first value it is that of the first row, so that padding and air
+    Between two rows of the table the density is linear. Below its first value it is that of the first row,
+    so that padding and air
     count as the first row says. A value above the last one is an error, since metal may be any denser.
 
     Parameters
@@ -267,7 +271,8 @@ def body_of_image(
     ----------
     image : Image
     density : float, mapping or callable
-        A number that the values are multiplied by, where they are a mask or fractions; ``{value: number}`` with the density of
+        A number that the values are multiplied by, where they are a mask or fractions; ``{value: number}``
+        with the density of
         the voxels of each value, ``"*"`` for all other values but 0; or a function of the values, such as
         :func:`grey_value_density`. Values that the mapping does not name have no matter.
     mass : float
@@ -299,7 +304,8 @@ def body_of_image(
         found = np.asarray(density(values), dtype=np.float64)
         if found.shape != values.shape:
             raise ValueError(
-                f"density: expected it to return shape {values.shape}, one number for each voxel, got {found.shape}"
+                f"density: expected it to return shape {values.shape}, a number for each voxel, got "
+                f"{found.shape}"
             )
     else:
         found = np.zeros(values.shape)
@@ -356,14 +362,14 @@ def bodies_of_labels(
     origin: ArrayLike | None = None,
     affine: ArrayLike | None = None,
 ) -> tuple[NDArray[np.int64], RigidBody]:
-    """Make a body for each label of an image: what ``RigidBody.from_labelled_voxels`` does, with its parameters."""
+    """Make a body for each label of an image, with the parameters of ``RigidBody.from_labelled_voxels``."""
     own = _whole_numbers(labels)
     weights = density if isinstance(density, Mapping) else _core.real_numbers(density, "density")
     is_image = not isinstance(weights, Mapping) and weights.ndim > 0
     if not isinstance(weights, Mapping) and weights.shape not in ((), own.shape):
         raise ValueError(
-            f"density: expected one number, a mapping of labels, or an array of the shape of labels {own.shape}, got "
-            f"{weights.shape}"
+            f"density: expected one number, a mapping of labels, or an array of the shape of labels "
+            f"{own.shape}, got {weights.shape}"
         )
     if own.flags.f_contiguous and not own.flags.c_contiguous and not is_image:  # as nibabel reads it
         own, spacing, origin, affine = _turned_round(own, spacing, origin, affine)
@@ -419,7 +425,7 @@ def _affine_of(spacing: ArrayLike | None, origin: ArrayLike | None, affine: Arra
 def _turned_round(
     labels: NDArray[Any], spacing: ArrayLike | None, origin: ArrayLike | None, affine: ArrayLike | None
 ) -> tuple[NDArray[Any], ArrayLike | None, ArrayLike | None, ArrayLike | None]:
-    """Exchange the first and the last axis, so that labels need not be copied; nothing where arguments do not fit."""
+    """Exchange the first and the last axis, so that labels need not be copied, where arguments fit."""
     try:
         known = _affine_of(spacing, origin, affine)
     except (ValueError, TypeError, AssertionError):
@@ -446,7 +452,7 @@ def _whole_numbers(labels: ArrayLike) -> NDArray[Any]:
             np.isfinite(own).all() and (np.abs(own) < 2.0**53).all() and (own == np.trunc(own)).all()
         ):
             raise PolhodeError(
-                "labels: expected whole numbers, got fractions; an image of densities or grey values goes to from_voxels"
+                "labels: expected whole numbers, got fractions; densities and grey values go to from_voxels"
             )
         return own.astype(np.int64)
     if own.dtype.kind not in "iu":

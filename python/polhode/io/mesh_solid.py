@@ -92,7 +92,8 @@ def solid_of(
 ) -> MeshSolid:
     """Make the solid that the mesh of a loaded file bounds; see :func:`solid_from_file`.
 
-    With `union` components that overlap are joined first, see :mod:`polhode.io.union`. With `thickness`, in units
+    With `union` components that overlap are joined first, see :mod:`polhode.io.union`. With `thickness`, in
+    units
     of the result, the mesh is the middle of a sheet.
     """
     file = loaded.path

@@ -1,4 +1,4 @@
-"""Components of meshes and solids of CAD whose densities are told by name, by number, or as those of all others."""
+"""Components of meshes and solids of CAD whose densities are given by name, by number or for all others."""
 
 from __future__ import annotations
 
@@ -106,8 +106,8 @@ def assign(given: Mapping[Any, T], names: Sequence[Sequence[str]], where: str = 
             at = f"{where} has" if where else "there is"
             raise PolhodeError(
                 Argument("density"),
-                f": {at} no component {key!r}; give one density for each of {known}, by name or by number from 1 to "
-                f'{len(names)}, and "{OTHERS}" for all others',
+                f": {at} no component {key!r}; give one density for each of {known}, by name or by number "
+                f'from 1 to {len(names)}, and "{OTHERS}" for all others',
             )
         for k, place in of_key:
             if place < rank[k]:

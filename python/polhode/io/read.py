@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from polhode._format import Argument
 from polhode.errors import PolhodeError
-from polhode.io.images import body_of_image, is_image, read_image, unit_of
 from polhode.io.content import is_molecule
 from polhode.io.formats import (
     ASSEMBLY_SUFFIX,
@@ -25,6 +24,7 @@ from polhode.io.formats import (
     read_saved,
     warn,
 )
+from polhode.io.images import body_of_image, is_image, read_image, unit_of
 from polhode.io.mesh_solid import naming_file, solid_of
 from polhode.units import metres_per
 

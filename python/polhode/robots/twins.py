@@ -31,9 +31,9 @@ _FRAMES: Final = tuple(np.array(signs) for signs in itertools.product((1.0, -1.0
 def twin_notes(links: Sequence[Link]) -> Iterator[tuple[int, str]]:
     """Return the number of each link that is no mirror image of its twin, and what differs.
 
-    Twins are links whose names differ by left and right. What no choice of their frames changes is compared: mass,
-    principal moments, the distance of the centre of mass from the origin. Where these agree, the second one must be the
-    mirror image of the first, in axes that may each run the other way, and not its copy.
+    Twins are links whose names differ by left and right. What no choice of their frames changes is compared:
+    mass, principal moments, the distance of the centre of mass from the origin. Where these agree, the second
+    one must be the mirror image of the first, in axes that may each run the other way, and not its copy.
     """
     places = {link.name: place for place, link in enumerate(links)}
     for place, link in enumerate(links):
