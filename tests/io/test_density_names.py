@@ -6,8 +6,8 @@ import base64
 import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import numpy as np
 import pytest
 from boxes import at
 from cad_files import write_assembly
@@ -16,6 +16,9 @@ from mesh_files import ascii_stl, three_mf
 from polhode import RigidBody, assembly, solids
 from polhode.errors import PolhodeError
 from polhode.io.named_densities import assign
+
+if TYPE_CHECKING:
+    import numpy as np
 
 SIDES = [(1.0, 1.0, 1.0), (1.0, 0.5, 0.75), (0.25, 0.5, 1.0)]
 PLACES = [(0.0, 0.0, 0.0), (3.0, 0.5, 0.25), (0.0, 5.0, 0.0)]

@@ -236,10 +236,10 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
     if is_image(path):
         check_arguments(path, **{key: key in table for key in FILE})
         image = read_image(path)
-        unit = unit_of(image, path, table.get("length_unit")) or scope.length_unit
-        if unit is None:
+        known = unit_of(image, path, table.get("length_unit")) or scope.length_unit
+        if known is None:
             raise PartError(f"{scope.where}: {path.name} does not say its unit of length; state length_unit")
-        metres = metres_per(unit)
+        metres = metres_per(known)
         return Matter(body_of_image(image, **_weight(table, scope, path.name), scale=metres), metres)
     loaded = load(path, index_base=options.pop("index_base", 1))
     metres = metres_per(_unit_of(loaded, table, scope))

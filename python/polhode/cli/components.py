@@ -108,10 +108,10 @@ def weigh(loaded: Loaded, solid: MeshSolid, options: BodyOptions, scale: float, 
         body, solids = solids_of(loaded.cad, given)
         return solid._replace(body=body, parts=solids)
     parts = named_parts(loaded, scale, weld)
-    found = assign(given, [names_of_part(part) for part in parts])
-    densities = [density for density in found if density is not None]
+    said = assign(given, [names_of_part(part) for part in parts])
+    densities = [density for density in said if density is not None]
     if len(densities) < len(parts):
-        absent = parts[found.index(None)].name
+        absent = parts[said.index(None)].name
         raise PolhodeError(
             f"--density: no density is given for component {absent}; add {absent}=DENSITY, or "
             '"*=DENSITY" for all others'

@@ -68,7 +68,7 @@ def _image_body(file: Path, options: BodyOptions) -> LoadedBody:
     check_arguments(file, **{name: _is_given(options, name) for name in _OF_SHAPES})
     if (options.density is None) == (options.mass is None):
         raise PolhodeError(
-            f"--density, --mass: {file} is an image of voxels, which needs one of them, such as --density 1000 "
+            f"--density, --mass: {file} is an image of voxels, which needs one of them: --density 1000 "
             'for a mask, or --density "1=1050, 2=1900" by its values'
         )
     image = read_image(file)

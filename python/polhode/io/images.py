@@ -23,8 +23,10 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from polhode._core import RigidBody
+    from polhode._typing import SupportsSigma
 
     Floats = NDArray[np.float64]
+    Number = float | _core.Uncertain | SupportsSigma
 
 __all__ = [
     "IMAGE_SUFFIXES",
@@ -261,8 +263,8 @@ def grey_value_density(table: ArrayLike) -> Callable[[ArrayLike], Floats]:
 
 def body_of_image(
     image: Image,
-    density: float | Mapping[float | str, float] | Callable[[NDArray[Any]], ArrayLike] | None = None,
-    mass: float | None = None,
+    density: Number | Mapping[Any, float] | Callable[[NDArray[Any]], ArrayLike] | None = None,
+    mass: Number | None = None,
     scale: float = 1.0,
 ) -> RigidBody:
     """Make the body of an image, its voxels homogeneous cells.

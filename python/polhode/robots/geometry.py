@@ -52,8 +52,8 @@ _SOLIDS: Final[dict[str, Callable[[tuple[float, ...]], RigidBody]]] = {
 _SHELLS: Final[dict[str, Callable[[tuple[float, ...]], RigidBody]]] = {
     "box": lambda size: _box_shell(*size),
     "sphere": lambda size: solids.hollow_sphere(size[0], size[0], mass=4.0 * np.pi * size[0] ** 2),
-    "cylinder": lambda size: _can(*size, cap=laminae.disk(size[0], density=1.0)),
-    "capsule": lambda size: _can(*size, cap=_dome(size[0])),
+    "cylinder": lambda size: _can(laminae.disk(size[0], density=1.0), *size),
+    "capsule": lambda size: _can(_dome(size[0]), *size),
 }
 """Of a mass per area of 1."""
 # How well a box or a cylinder is taken to stand for the true part, of its diagonal.
@@ -395,7 +395,7 @@ def _box_shell(a: float, b: float, c: float) -> RigidBody:
     return sum(faces[1:], start=faces[0])
 
 
-def _can(radius: float, length: float, cap: RigidBody) -> RigidBody:
+def _can(cap: RigidBody, radius: float, length: float) -> RigidBody:
     """Return the wall of a cylinder with a cap on both ends, the given one toward +z."""
     wall = solids.tube(radius, radius, length, mass=2.0 * np.pi * radius * length)
     top = cap.translated((0, 0, length / 2))
