@@ -127,7 +127,7 @@ _HOMES = (
 _APART = dict.fromkeys(("Ensemble", "ensemble"), ("polhode.ensembles.call",))
 """Names whose module is imported for them alone: it has many files."""
 
-_LATER = ("animation", "io", "molecules", "plot", "robots", "samples", "symbolic", "units", "view")
+_LATER = ("animation", "images", "io", "molecules", "plot", "robots", "samples", "symbolic", "units", "view")
 """Modules that a star import leaves out: some need libraries, and their names are those of many scripts."""
 
 __all__ = [

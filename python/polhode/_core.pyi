@@ -78,6 +78,7 @@ __all__ = [
     "inertia_to_center_of_mass",
     "kepler_period",
     "kepler_states",
+    "labelled_voxels",
     "least_spin",
     "local_frames",
     "machine",

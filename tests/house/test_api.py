@@ -60,7 +60,7 @@ class TestNames:
         modules = {name for name in visible if isinstance(getattr(polhode, name), types.ModuleType)}
         internal = modules - set(polhode.__all__)
         assert visible - internal == set(polhode.__all__)
-        known = {"animation", "cli", "draw", "ensembles", "io", "molecules", "motion", "plot", "principal"}
+        known = {"animation", "cli", "draw", "ensembles", "images", "io", "molecules", "motion", "plot", "principal"}
         known |= {"results", "robots", "samples", "symbolic", "units", "view"}
         assert internal <= known
 

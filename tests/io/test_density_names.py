@@ -15,7 +15,7 @@ from command_line import run
 from mesh_files import ascii_stl, three_mf
 from polhode import RigidBody, assembly, solids
 from polhode.errors import PolhodeError
-from polhode.io.named_densities import assign
+from polhode.io.components import assign
 
 if TYPE_CHECKING:
     import numpy as np

@@ -14,13 +14,14 @@ from polhode.io.components import (
     MOST_FACES,
     MOST_PARTS,
     Part,
+    assign,
     describe_overlaps,
     labels,
     overlapping,
     overlaps,
     parts_of,
 )
-from polhode.io.named_densities import OVERLAPPING, assign, body_of_parts, named_parts, names_of_part
+from polhode.io.named_densities import OVERLAPPING, body_of_parts, named_parts, names_of_part
 from polhode.io.repair import repair_mesh
 from polhode.units import amount, has_unit
 

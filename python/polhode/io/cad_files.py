@@ -13,7 +13,7 @@ from polhode import _core
 from polhode.errors import FileFormatError, MeshError, PolhodeError
 from polhode.io.budget import Budget, read_bytes
 from polhode.io.cad_geometry import moments_of_faces, occt
-from polhode.io.components import Overlap, describe_overlaps
+from polhode.io.components import Overlap, assign, describe_overlaps
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -628,8 +628,6 @@ def solids_of(
         raise PolhodeError("density and mass: give one of the two, since the other follows from the volume")
     own: list[Number | None] = [part.density for part in cad.parts]
     if isinstance(density, Mapping):
-        from polhode.io.named_densities import assign
-
         said = assign(density, names_of_solids(cad))
         own = [known if new is None else new for known, new in zip(own, said, strict=True)]
         density = None

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 import warnings
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from polhode import _core
 from polhode._format import Argument
 from polhode.errors import PolhodeError
-from polhode.io.components import describe_overlaps, groups_of, overlaps, parts_of
+from polhode.io.components import OTHERS, assign, describe_overlaps, groups_of, overlaps, parts_of
 from polhode.io.mesh import weld_within
 from polhode.io.mesh_solid import naming_file, solid_of
 from polhode.io.unpacked import inner_suffix, unpack
@@ -23,21 +23,14 @@ if TYPE_CHECKING:
 
     Number = float | _core.Uncertain | SupportsSigma
 
-T = TypeVar("T")
-
 __all__ = [
-    "OTHERS",
     "OVERLAPPING",
-    "assign",
     "body_by_names",
     "body_of_parts",
     "named_parts",
     "names_of_part",
 ]
 
-OTHERS: Final = "*"
-"""Stands for all components that nothing else names."""
-_SHOWN: Final = 12
 OVERLAPPING = "components of several densities overlap: take what they share out of one of them"
 
 
@@ -67,52 +60,6 @@ def named_parts(loaded: Loaded, scale: float, weld: float) -> list[Part]:
 def names_of_part(part: Part) -> tuple[str, ...]:
     """Return the names of a component, from that which it has alone to those that others may have too."""
     return part.name, part.group, part.material
-
-
-def assign(given: Mapping[Any, T], names: Sequence[Sequence[str]], where: str = "") -> list[T | None]:
-    """Assign each component what is given for it, by name or number.
-
-    Parameters
-    ----------
-    given : mapping
-        By a name, by the number of the component, counted from 1, or ``"*"`` for all others.
-    names : sequence of sequence of str
-        Of each component, the most specific one first; "" is no name.
-    where : str
-        Of the file, for errors.
-
-    Returns
-    -------
-    list
-        None for a component of which nothing is said. What names a component more specifically goes first.
-
-    Raises
-    ------
-    PolhodeError
-        When a name or number is that of no component; the names are listed.
-    """
-    found: list[T | None] = [given.get(OTHERS)] * len(names)
-    rank = [1 << 30] * len(names)
-    for key, value in given.items():
-        if key == OTHERS:
-            continue
-        text = str(key).strip()
-        of_key = [(k, of.index(text)) for k, of in enumerate(names) if text in of]
-        if not of_key and text.isdecimal() and 1 <= int(text[:9]) <= len(names):
-            of_key = [(int(text) - 1, -1)]
-        if not of_key or not text:
-            every = dict.fromkeys(name for of in names for name in of if name)
-            known = ", ".join([*every][:_SHOWN]) + (" …" if len(every) > _SHOWN else "")
-            at = f"{where} has" if where else "there is"
-            raise PolhodeError(
-                Argument("density"),
-                f": {at} no component {key!r}; give one density for each of {known}, by name or by number "
-                f'from 1 to {len(names)}, and "{OTHERS}" for all others',
-            )
-        for k, place in of_key:
-            if place < rank[k]:
-                found[k], rank[k] = value, place
-    return found
 
 
 def body_of_parts(parts: Sequence[Part], densities: Sequence[Number]) -> _core.RigidBody:

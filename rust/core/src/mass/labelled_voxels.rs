@@ -7,13 +7,16 @@
 //! # Examples
 //!
 //! ```
-//! use polhode::mass::labelled_voxels::count_labels;
+//! use polhode::mass::labelled_voxels::{LabelledCells, count_labels};
+//! use polhode::mass::voxels::edges_of_boxes;
 //! use std::ops::ControlFlow;
 //!
 //! // Two cells of label 7 and one of label 9 in a row, cells of 1 × 1 × 1.
 //! let found = count_labels(&[7_u8, 7, 9], [1, 1, 3], &mut |_| ControlFlow::Continue(()))?;
-//! let body = found[0].body(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], &[0.0; 3], 6.0)?;
-//! assert_eq!((found[0].label, body.mass(), body.center_of_mass().z), (7, 12.0, 0.5));
+//! let first: &LabelledCells = &found[0];
+//! let body = first.body(&edges_of_boxes([1.0; 3])?, &[0.0; 3], 6.0)?;
+//! assert_eq!((first.label, first.count(), body.mass()), (7, 2, 12.0));
+//! assert_eq!(body.center_of_mass().z, 0.5);
 //! assert_eq!(body.inertia()[(0, 0)], 5.0); // m (1² + 2²)/12
 //! # Ok::<(), polhode::Error>(())
 //! ```
@@ -207,7 +210,6 @@ impl LabelledCells {
 
     /// The number of cells.
     #[must_use]
-    #[expect(clippy::cast_possible_truncation, reason = "cells of an array")]
     pub fn count(&self) -> usize {
         self.count as usize
     }
@@ -306,7 +308,7 @@ impl Matter for Placed<'_> {
             let mut sum = DoubleDouble::default();
             for (i, row) in exact.iter().enumerate() {
                 for (j, &element) in row.iter().enumerate() {
-                    sum = sum + edges[a][i] * element * edges[b][j];
+                    sum += edges[a][i] * element * edges[b][j];
                 }
             }
             sum.rounded() * per_mass * self.mass

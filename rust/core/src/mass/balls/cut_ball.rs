@@ -461,16 +461,14 @@ impl<'a> Disk<'a> {
     }
 }
 
+/// Where an edge enters a ball and leaves it.
+type Ends = (Option<Vector3<f64>>, Option<Vector3<f64>>);
+
 /// Where the edge from corner a to corner b is in the unit ball: where it enters and leaves, `None` where it does at its ends. `None`
 /// of an edge outside.
 ///
 /// Both faces of an edge ask: so what decides is computed in one order of its ends.
-fn crossings(
-    points: &[Vector3<f64>],
-    is_inside: &[bool],
-    a: usize,
-    b: usize,
-) -> Option<(Option<Vector3<f64>>, Option<Vector3<f64>>)> {
+fn crossings(points: &[Vector3<f64>], is_inside: &[bool], a: usize, b: usize) -> Option<Ends> {
     if is_inside[a] && is_inside[b] {
         return Some((None, None));
     }
