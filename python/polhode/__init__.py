@@ -47,6 +47,7 @@ if TYPE_CHECKING:
         uncertainty,
         validity,
     )
+    from polhode import images as images
     from polhode import io as io
     from polhode import molecules as molecules
     from polhode import plot as plot
@@ -132,7 +133,7 @@ _APART = {
 }
 """Names whose module is imported for them alone."""
 
-_LATER = ("animation", "io", "molecules", "plot", "robots", "samples", "symbolic", "units", "view")
+_LATER = ("animation", "images", "io", "molecules", "plot", "robots", "samples", "symbolic", "units", "view")
 """Modules that a star import leaves out: some need libraries, and their names are those of many scripts."""
 
 __all__ = [

@@ -81,6 +81,7 @@ __all__ = [
     "inertia_to_center_of_mass",
     "kepler_period",
     "kepler_states",
+    "labelled_voxels",
     "least_spin",
     "local_frames",
     "machine",
@@ -367,9 +368,27 @@ class RigidBody:
         masses: ArrayLike, positions: ArrayLike, labels: ArrayLike, *, return_labels: Literal[True]
     ) -> tuple[NDArray[np.int64], RigidBody]: ...
     @staticmethod
-    def from_voxels(
-        density: ArrayLike, spacing: ArrayLike, origin: ArrayLike = (0.0, 0.0, 0.0)
+    def from_balls(
+        centers: ArrayLike, radii: ArrayLike, *, density: _Number | None = None, mass: _Number | None = None
     ) -> RigidBody: ...
+    @staticmethod
+    def from_voxels(
+        density: ArrayLike,
+        spacing: ArrayLike | None = None,
+        origin: ArrayLike = (0.0, 0.0, 0.0),
+        *,
+        affine: ArrayLike | None = None,
+    ) -> RigidBody: ...
+    @staticmethod
+    def from_labelled_voxels(
+        labels: ArrayLike | PathLike[str],
+        density: ArrayLike | Mapping[int | str, float],
+        *,
+        spacing: ArrayLike | None = None,
+        origin: ArrayLike = (0.0, 0.0, 0.0),
+        affine: ArrayLike | None = None,
+        length_unit: str | None = None,
+    ) -> tuple[NDArray[np.int64], RigidBody]: ...
     @staticmethod
     def from_mesh(
         vertices: _Numbers,
@@ -399,9 +418,13 @@ class RigidBody:
     def from_file(
         path: str | PathLike[str],
         *,
-        density: _Number | Mapping[str, _Number] | None = None,
+        density: _Number
+        | Mapping[Any, _Number]
+        | Callable[[NDArray[Any]], ArrayLike]
+        | None = None,
         mass: _Number | None = None,
         length_unit: str | None = None,
+        thickness: float | None = None,
         weld: float = 0.0,
         closure: Literal["caps", "hull"] | None = None,
         orient: bool = False,
@@ -480,6 +503,8 @@ class RigidBody:
     def principal_about(self, about: _About) -> PrincipalAxes: ...
     def translated(self, displacement: _Numbers) -> RigidBody: ...
     def rotated(self, rotation: _Attitude | Uncertain) -> RigidBody: ...
+    def mirrored(self, normal: ArrayLike, point: ArrayLike = (0.0, 0.0, 0.0)) -> RigidBody: ...
+    def cut(self, normal: ArrayLike, point: ArrayLike = (0.0, 0.0, 0.0)) -> RigidBody: ...
     def scaled(self, length: _Numbers = 1.0, mass: _Numbers = 1.0) -> RigidBody: ...
     def isclose(self, other: RigidBody, rtol: float = 1e-9, atol: float = 0.0) -> Any: ...
     def kinetic_energy(
@@ -1099,6 +1124,13 @@ def classify_tops(moments: ArrayLike, rtol: ArrayLike) -> Any: ...
 def real_numbers(values: ArrayLike, name: str) -> _Floats: ...
 def read_stl(path: str) -> tuple[_Floats, NDArray[np.int64]]: ...
 def read_plates(path: str, index_base: int = 1) -> tuple[_Floats, NDArray[np.int64]]: ...
+def labelled_voxels(
+    labels: NDArray[Any],
+    spacing: ArrayLike | None,
+    origin: ArrayLike | None,
+    affine: ArrayLike | None,
+    choose: Callable[[NDArray[np.int64], NDArray[np.uint64], NDArray[np.uint64]], ArrayLike | None],
+) -> tuple[NDArray[np.int64], RigidBody] | None: ...
 def surface_area(vertices: ArrayLike, faces: ArrayLike) -> float: ...
 def stream_solid(
     path: str | PathLike[str],

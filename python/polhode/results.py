@@ -215,8 +215,9 @@ class Provenance:
     ----------
     source : str
         What the body was made of: ``"tensor"``, ``"principal moments"``, ``"particles"``, ``"mesh"``,
-        ``"surface"``, ``"curve"``, ``"tetrahedra"``, ``"voxels"``, ``"density"``, ``"solid"``, ``"lamina"``,
-        ``"rod"``, ``"bodies"``, ``"second moment"``; of a molecule ``"atoms, most common isotopes"``,
+        ``"surface"``, ``"curve"``, ``"tetrahedra"``, ``"voxels"``, ``"balls"``, ``"density"``, ``"solid"``,
+        ``"lamina"``, ``"rod"``, ``"bodies"``, ``"second moment"``; of a molecule ``"atoms, most common
+        isotopes"``,
         ``"atoms, average masses"`` or ``"atoms, masses of their own"`` (set in ASE).
     elements : int
         Number of particles, triangles, segments, cells or bodies; 1 for one tensor or solid.

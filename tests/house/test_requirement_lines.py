@@ -22,6 +22,7 @@ FILES = sorted(PACKAGE.rglob("*.py"))
 LINE = re.compile(r"(?:polhode|\.)\[([a-z{][^\]]*)\]")
 OTHER_NAMES = {
     "OCP": "cadquery-ocp-novtk",
+    "nrrd": "pynrrd",
     "PIL": "pillow",
     "imageio_ffmpeg": "imageio-ffmpeg",
     "mpl_toolkits": "matplotlib",

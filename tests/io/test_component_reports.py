@@ -160,7 +160,7 @@ class TestReport:
             ("body=1", "no density is given for component insert; add insert=DENSITY"),
             (
                 "body=1,insert=2,lid=3",
-                "'lid=3' names no component; give NAME=DENSITY for each, by commas, of body, insert",
+                "there is no component 'lid'; give one density for each of body, insert, by name",
             ),
             ("body=1,body=2", "'body=2' is given twice"),
             ("body=1,insert=0", "insert=0 is not above 0"),

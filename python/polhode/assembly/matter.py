@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import inspect
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from polhode import laminae, rods, solids
+from polhode._core import RigidBody
 from polhode._format import Argument
 from polhode.assembly.tables import COMMON, FILE, KINDS, PRINTED, PartError, check_keys, text_of
 from polhode.errors import PolhodeError
@@ -15,7 +17,9 @@ from polhode.io.budget import words_of
 from polhode.io.components import MOST_FACES, overlapping
 from polhode.io.content import is_molecule
 from polhode.io.formats import SAVED_SUFFIXES, body_of_molecule, check_arguments, load, read_saved
+from polhode.io.images import body_of_image, is_image, read_image, unit_of
 from polhode.io.mesh_solid import solid_of
+from polhode.io.named_densities import body_by_names
 from polhode.units import metres_per
 
 if TYPE_CHECKING:
@@ -24,13 +28,15 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from polhode._core import RigidBody
     from polhode.assembly.tables import Scope
     from polhode.io.formats import FileContent
 
 __all__ = ["Matter", "body_of_part", "kind_of"]
 
-_SHAPES: Final = {name: getattr(room, name) for room in (solids, laminae, rods) for name in room.__all__}
+_SHAPES: Final = {
+    **{name: getattr(room, name) for room in (solids, laminae, rods) for name in room.__all__},
+    "balls": RigidBody.from_balls,
+}
 _PARAMETERS: Final = {
     name: [key for key in inspect.signature(shape).parameters if key != "degrees"]  # numbers have units
     for name, shape in _SHAPES.items()
@@ -117,7 +123,14 @@ def _weight(table: Mapping[str, Any], scope: Scope, what: str) -> dict[str, Any]
         raise PartError(f"{scope.where}: {what} needs its mass or its density; state one of the two")
     if "mass" in table:
         return {"mass": scope.amount("mass", table["mass"], "kg")}
-    return {"density": scope.amount("density", table["density"], "kg/m^3")}
+    density = table["density"]
+    if isinstance(density, dict):
+        return {
+            "density": {
+                name: scope.amount(f"density of {name}", each, "kg/m^3") for name, each in density.items()
+            }
+        }
+    return {"density": scope.amount("density", density, "kg/m^3")}
 
 
 def _solid(table: Mapping[str, Any], scope: Scope) -> Matter:
@@ -205,7 +218,8 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
                 "save one of them alone"
             )
         return Matter(body, scope.metres)
-    options = {key: table[key] for key in FILE if key in table and key not in ("mass", "density", "weld")}
+    with_units = ("mass", "density", "thickness", "weld")
+    options = {key: table[key] for key in FILE if key in table and key not in with_units}
     for key in (key for key in _SWITCHES if key in table):
         if not isinstance(table[key], bool):
             raise PartError(
@@ -214,19 +228,34 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
             )
     if is_molecule(path):
         unit = str(table.get("length_unit", "angstrom"))
-        options |= {key: table[key] for key in ("mass", "density", "weld") if key in table}
+        options |= {key: table[key] for key in with_units if key in table}
         none = {"weld": 0.0, "index_base": 1}
         check_arguments(path, **{key: value != none.get(key, False) for key, value in options.items()})
         body, notes, crossed = body_of_molecule(path, unit)
         return Matter(body, metres_per(unit), notes=(*crossed, *notes))
+    if is_image(path):
+        check_arguments(path, **{key: key in table for key in FILE})
+        image = read_image(path)
+        known = unit_of(image, path, table.get("length_unit")) or scope.length_unit
+        if known is None:
+            raise PartError(f"{scope.where}: {path.name} does not say its unit of length; state length_unit")
+        metres = metres_per(known)
+        return Matter(body_of_image(image, **_weight(table, scope, path.name), scale=metres), metres)
     loaded = load(path, index_base=options.pop("index_base", 1))
     metres = metres_per(_unit_of(loaded, table, scope))
+    if "thickness" in table:
+        options["thickness"] = scope.lengths("thickness", table["thickness"], 1)[0]
     if "weld" in table:
         options["weld"] = scope.lengths("weld", table["weld"], 1)[0] / metres
     if not ({"mass", "density"}.isdisjoint(table) and _has_materials(loaded)):
         options |= _weight(table, scope, path.name)
+    if isinstance(options.get("density"), dict):
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            body = body_by_names(loaded, options.pop("density"), scale=metres, **options)
+        return Matter(body, metres, notes=(*loaded.notes, *(str(each.message) for each in told)))
     solid = solid_of(loaded, scale=metres, **options)
-    is_whole = options.keys().isdisjoint(("union", "closure", "repair", "weld"))
+    is_whole = options.keys().isdisjoint(("union", "closure", "repair", "weld", "thickness"))
     if loaded.cad is not None or not is_whole or solid.faces > MOST_FACES:
         return Matter(
             solid.body, metres, notes=loaded.notes

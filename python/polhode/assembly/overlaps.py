@@ -325,6 +325,8 @@ def _place_surface(part: Instance, segments: int) -> Surface:
     surface = part.form.surface(segments) if part.form else None
     assert surface is not None
     vertices, faces = surface
+    if np.linalg.det(part.place.rotation) < 0.0:  # a mirror image: turned outward again
+        faces = faces[:, ::-1]
     return vertices @ part.place.rotation.T + part.place.displacement, faces
 
 

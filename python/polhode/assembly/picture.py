@@ -11,6 +11,7 @@ from polhode.draw.shape import body_shape
 from polhode.draw.triangles import cluster_vertices
 from polhode.io.content import is_molecule
 from polhode.io.formats import CAD_SUFFIXES, SAVED_SUFFIXES, load
+from polhode.io.images import is_image
 from polhode.io.unpacked import inner_suffix
 from polhode.plot import body as draw_body
 from polhode.plot import principal_axes
@@ -69,6 +70,8 @@ def _surface(part: Member, most: int) -> tuple[Floats, NDArray[np.int64]]:
     if part.file is not None and _is_mesh(part.file):
         mesh = load(part.file).mesh
         vertices, faces, _ = cluster_vertices(mesh.vertices * part.metres, mesh.faces, most)
+        if np.linalg.det(part.rotation) < 0.0:  # a mirror image: turned outward again
+            faces = faces[:, ::-1]
         return vertices @ part.rotation.T + part.displacement, faces
     drawn, _ = body_shape(part.body, np.zeros(3), is_cut=False)
     vertices, faces, _ = cluster_vertices(drawn.vertices, drawn.faces, most)
@@ -77,4 +80,8 @@ def _surface(part: Member, most: int) -> tuple[Floats, NDArray[np.int64]]:
 
 def _is_mesh(file: Path) -> bool:
     """Return whether a file holds triangles: no atoms, no solids of CAD, no numbers alone."""
-    return not is_molecule(file) and inner_suffix(file) not in (*SAVED_SUFFIXES, *CAD_SUFFIXES)
+    return (
+        not is_molecule(file)
+        and not is_image(file)
+        and inner_suffix(file) not in (*SAVED_SUFFIXES, *CAD_SUFFIXES)
+    )

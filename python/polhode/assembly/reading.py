@@ -77,7 +77,8 @@ def read(
     Each part has a ``name`` and is one of
 
     - ``solid``: a shape of :mod:`polhode.solids`, :mod:`polhode.laminae` or :mod:`polhode.rods`, with its
-      arguments as keys, and ``mass`` or ``density``;
+      arguments as keys, and ``mass`` or ``density``; ``"balls"`` is the union of overlapping balls, with
+      ``centers`` and ``radii``;
     - ``file``: a mesh, with ``mass`` or ``density`` (also ``weld``, ``closure``, ``orient``, ``union``,
       ``repair``, ``index_base``), a molecule, a body that was saved, or a report of one (JSON);
     - ``assembly``: another such file;
@@ -86,8 +87,9 @@ def read(
 
     A part is at ``position``, turned by ``rotation``: a table with ``axis`` and ``degrees`` (or ``radians``);
     ``sequence`` with three angles under the key ``degrees`` or ``radians``; ``quaternion_xyzw``; or
-    ``matrix``: ``r = R r_part + position``. ``count`` is the number of copies; each copy is moved from
-    the one before by ``turn`` and ``step``.
+    ``matrix``: ``r = R r_part + position``. ``mirror`` is the normal of a plane through the origin of the
+    part: the part is replaced by its mirror image, before it is turned and placed. ``count`` is the number of
+    copies; each copy is moved from the one before by ``turn`` and ``step``.
 
     Numbers without a unit are lengths in ``length_unit`` of the part or of the file, else in metres; masses
     in kg; densities in kg/m^3. A text may have its own unit: ``"2.7 g/cm^3"``, ``"5.0 ± 0.1 lbm"``, ``"10 20

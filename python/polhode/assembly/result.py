@@ -62,7 +62,8 @@ class Member(NamedTuple):
     metres : float
         Metres in one unit of length of that file.
     rotation, displacement : numpy.ndarray, shapes (3, 3) and (3,)
-        Position of the part: ``r = rotation @ r_part + displacement``.
+        Position of the part: ``r = rotation @ r_part + displacement``. The rotation of a mirror image has the
+        determinant -1.
     """
 
     id: str

@@ -44,8 +44,8 @@ TOP: Final = ("name", "comment", "length_unit", "part")
 KINDS: Final = ("solid", "file", "assembly", "inertia")
 """Keys that define a part; exactly one is needed."""
 REPEATED: Final = ("count", "step", "turn")
-COMMON: Final = ("name", "comment", *KINDS, "length_unit", "position", "rotation", *REPEATED)
-FILE: Final = ("mass", "density", "weld", "closure", "orient", "union", "repair", "index_base")
+COMMON: Final = ("name", "comment", *KINDS, "length_unit", "mirror", "position", "rotation", *REPEATED)
+FILE: Final = ("mass", "density", "thickness", "weld", "closure", "orient", "union", "repair", "index_base")
 _MOST_NAMES: Final = 30
 PRINTED: Final = ("mass", "com", "tensor", "products", "about", "rtol")
 """Keys of `inertia`, as CAD programs print it."""
@@ -213,7 +213,7 @@ MOST_COPIES: Final = 100_000
 
 
 class Place(NamedTuple):
-    """A placement r → R r + d."""
+    """A placement r → R r + d; R may also mirror."""
 
     rotation: Floats
     displacement: Floats
@@ -224,8 +224,12 @@ class Place(NamedTuple):
 
     def place(self, body: _core.RigidBody) -> _core.RigidBody:
         """Place a body."""
-        if not np.array_equal(self.rotation, np.eye(3)):
-            body = body.rotated(_core.quaternion_from_matrix(self.rotation))
+        rotation = self.rotation
+        if np.linalg.det(rotation) < 0.0:  # a mirror through the plane x = 0, then a rotation
+            body = body.mirrored((1.0, 0.0, 0.0))
+            rotation = rotation * (-1.0, 1.0, 1.0)
+        if not np.array_equal(rotation, np.eye(3)):
+            body = body.rotated(_core.quaternion_from_matrix(rotation))
         return body.translated(self.displacement) if self.displacement.any() else body
 
 
@@ -233,9 +237,21 @@ HERE: Final = Place(np.eye(3), np.zeros(3))
 
 
 def place_of(table: Mapping[str, Any], scope: Scope) -> Place:
-    """Read the position and rotation of a part."""
+    """Read the mirror, rotation and position of a part, in the order in which they act."""
     position = scope.lengths("position", table["position"], 3) if "position" in table else (0.0, 0.0, 0.0)
-    return Place(_rotation(table.get("rotation"), "rotation", scope), np.array(position))
+    rotation = _rotation(table.get("rotation"), "rotation", scope)
+    if "mirror" in table:
+        normal = np.array(scope.numbers("mirror", table["mirror"], "1", count=3))
+        size = float(np.abs(normal).max())
+        if size == 0.0:
+            raise PartError(
+                f"{scope.where}: mirror: a normal of length 0 has no direction; write one, as in "
+                "mirror = [0, 1, 0]"
+            )
+        normal = normal / size
+        normal /= np.linalg.norm(normal)
+        rotation = rotation @ (np.eye(3) - 2.0 * np.outer(normal, normal))
+    return Place(rotation, np.array(position))
 
 
 def copies(table: Mapping[str, Any], scope: Scope) -> list[Place]:
@@ -351,7 +367,8 @@ def _matrix(given: Any, scope: Scope) -> Floats:
             if off > _OFF_UNITY
             else "it mirrors"
         )
-        raise PartError(f"{scope.where}: matrix: {what}; a rotation keeps lengths and hands")
+        way_out = "; mirror = [1, 0, 0] makes a mirror image" if off <= _OFF_UNITY else ""
+        raise PartError(f"{scope.where}: matrix: {what}; a rotation keeps lengths and hands{way_out}")
     if off == 0.0:
         return rows
     u, _, v = np.linalg.svd(rows)

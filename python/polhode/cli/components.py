@@ -9,17 +9,19 @@ from polhode import Uncertain
 from polhode._format import with_sigma
 from polhode.cli.layout import Cell, Column, Table
 from polhode.errors import PolhodeError
+from polhode.io.cad_files import solids_of
 from polhode.io.components import (
     MOST_FACES,
     MOST_PARTS,
     Part,
+    assign,
     describe_overlaps,
     labels,
     overlapping,
     overlaps,
     parts_of,
 )
-from polhode.io.named_densities import OVERLAPPING, body_of_parts, named_parts
+from polhode.io.named_densities import OVERLAPPING, body_of_parts, named_parts, names_of_part
 from polhode.io.repair import repair_mesh
 from polhode.units import amount, has_unit
 
@@ -96,20 +98,27 @@ def weigh(
     loaded: FileContent, solid: MeshSolid, options: BodyOptions, scale: float, weld: float
 ) -> MeshSolid:
     """Assign each component its own density."""
-    if loaded.cad is not None:
-        raise PolhodeError(
-            "--density: components of CAD have the densities of their materials; give one number for "
-            "those without, or leave it out"
-        )
     for name, is_given in (
         ("union", options.union),
         ("closure", options.closure is not None),
         ("repair", options.repair),
+        ("thickness", options.thickness is not None),
     ):
         if is_given:
             raise PolhodeError(f"--{name}: components of several densities are not joined; leave it out")
+    given = densities_of(options.density or "", options.length_unit)
+    if loaded.cad is not None:
+        body, solids = solids_of(loaded.cad, given)
+        return solid._replace(body=body, parts=solids)
     parts = named_parts(loaded, scale, weld)
-    densities = _densities(options.density or "", [part.name for part in parts], options.length_unit)
+    said = assign(given, [names_of_part(part) for part in parts])
+    densities = [density for density in said if density is not None]
+    if len(densities) < len(parts):
+        absent = parts[said.index(None)].name
+        raise PolhodeError(
+            f"--density: no density is given for component {absent}; add {absent}=DENSITY, or "
+            '"*=DENSITY" for all others'
+        )
     notes = describe_overlaps(overlaps(parts), sum(part.volume for part in parts), _unit(options))
     notes += [OVERLAPPING] if notes else []
     found = Components(parts, densities, notes)
@@ -160,16 +169,14 @@ def _unit(options: BodyOptions) -> str:
     return " m^3" if options.length_unit is not None else ""
 
 
-def _densities(text: str, names: list[str], unit: str | None) -> list[float | Uncertain]:
+def densities_of(text: str, unit: str | None) -> dict[str, float | Uncertain]:
+    """Read the density of each component that --density names."""
     given: dict[str, float | Uncertain] = {}
     for item in text.split(","):
         name, is_named, value = (word.strip() for word in item.partition("="))
-        if not is_named or name in given or name not in names:
-            known = ", ".join(names[:12]) + (" …" if len(names) > 12 else "")
+        if not is_named or name in given:
             what = "is given twice" if name in given else "names no component"
-            raise PolhodeError(
-                f"--density: {item.strip()!r} {what}; give NAME=DENSITY for each, by commas, of {known}"
-            )
+            raise PolhodeError(f"--density: {item.strip()!r} {what}; give NAME=DENSITY for each, by commas")
         if unit is None and has_unit(value):
             raise PolhodeError(
                 f"--density: {value!r} has a unit, but the file's coordinates have none; state "
@@ -178,9 +185,4 @@ def _densities(text: str, names: list[str], unit: str | None) -> list[float | Un
         given[name] = found = amount(value, "kg/m^3", "--density")
         if not _value(found) > 0.0:
             raise PolhodeError(f"--density: {item.strip()} is not above 0; give a positive density")
-    absent = [name for name in names if name not in given]
-    if absent:
-        raise PolhodeError(
-            f"--density: no density is given for component {absent[0]}; add {absent[0]}=DENSITY"
-        )
-    return [given[name] for name in names]
+    return given

@@ -127,14 +127,21 @@ def _load_mesh(file: Path, options: BodyOptions, with_shape: bool, with_componen
     density = 1.0 if assumed else _amount(options.density, "kg/m^3", "--density", unit)
     mass = _amount(options.mass, "kg", "--mass", unit)
     weld = _weld(options)
-    solid = _solid(loaded, options, density, mass, scale, weld)
+    thickness = None
+    if options.thickness is not None:
+        thickness = in_file_unit(options.thickness, "--thickness", unit) * scale
+    solid = _solid(loaded, options, density, mass, scale, weld, thickness)
     if has_names(options.density):
         solid = weigh(loaded, solid, options, scale, weld)
-    elif with_components:
+    elif with_components and thickness is None:
         solid = solid._replace(components=components_of(loaded, solid, options, scale, weld))
     provenance = solid.body.provenance
     notes = [*_note_units(options, unit), *_of_unit(loaded, asked), *loaded.notes]
-    notes += [] if with_components else overlaps_beside(loaded, solid, options, scale)
+    if thickness is not None:
+        notes.append(f"the mesh is the middle of a sheet {options.thickness} thick (--thickness)")
+    notes += (
+        [] if with_components or thickness is not None else overlaps_beside(loaded, solid, options, scale)
+    )
     notes += _unusual(solid.volume, unit, loaded)
     if weld != 0.0 and not options.repair:
         notes.append(f"{solid.welded} corners were joined to others within {weld:g} (--weld)")
@@ -209,6 +216,7 @@ def _solid(
     mass: float | Uncertain | None,
     scale: float,
     weld: float,
+    thickness: float | None,
 ) -> MeshSolid:
     with reading_progress(loaded.path) as tell:
         return solid_of(
@@ -222,6 +230,7 @@ def _solid(
             union=options.union,
             repair=options.repair,
             progress=tell,
+            thickness=thickness,
         )
 
 
@@ -285,6 +294,7 @@ def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
         file,
         density=options.density is not None,
         mass=options.mass is not None,
+        thickness=options.thickness is not None,
         weld=options.weld is not None,
         closure=options.closure is not None,
         orient=options.orient,

@@ -109,6 +109,10 @@ class BodyOptions:
     length_unit
         Unit of the coordinates in the file; results are then in SI units. Without it, results are in the
         file's own unit, and the numbers that you type must have no unit.
+    thickness
+        Thickness of a sheet, such as 2mm: the mesh, open or closed, is the middle of a shell and not the
+        surface of a
+        solid. A number without a unit is in the unit of the file.
     weld
         Join corners that are at most this far apart, such as 1e-6. A number without a unit is in the unit of
         the file. Without it, only equal corners are joined.
@@ -146,6 +150,7 @@ class BodyOptions:
     density: Annotated[str | None, BODY] = None
     mass: Annotated[str | None, BODY] = None
     length_unit: Annotated[LengthUnit | None, BODY] = None
+    thickness: Annotated[str | None, MESH] = None
     weld: Annotated[str | None, MESH] = None
     closure: Annotated[Literal["caps", "hull"] | None, MESH] = None
     orient: Annotated[bool, FLAG, MESH] = False

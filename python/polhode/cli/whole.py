@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import TYPE_CHECKING, Final
 
+from polhode.cli.components import has_names
 from polhode.cli.files import label
 from polhode.cli.layout import Field, Report
 from polhode.cli.loading import LoadedBody, load_body
@@ -23,8 +24,10 @@ from polhode.cli.tables import (
 )
 from polhode.errors import PolhodeError
 from polhode.io.formats import check_arguments
+from polhode.io.images import body_of_image, is_image, read_image, unit_of
+from polhode.io.mesh_solid import naming_file
 from polhode.io.read import is_whole, read_whole
-from polhode.units import amount, has_unit, quantities, split, vector
+from polhode.units import amount, has_unit, metres_per, quantities, quantity, split, vector
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -39,7 +42,7 @@ __all__ = [
     "whole_report",
 ]
 
-_OF_MESHES: Final = ("weld", "closure", "orient", "union", "repair", "index_base")
+_OF_MESHES: Final = ("thickness", "weld", "closure", "orient", "union", "repair", "index_base")
 _OF_SHAPES: Final = ("density", "mass", *_OF_MESHES, "bond_sigma", "mass_sigmas")
 _OF_PRINTOUTS: Final = ("inertia", "center_of_mass", "products", "inertia_about")
 _PLAIN: Final = BodyOptions()
@@ -51,6 +54,8 @@ def any_body(file: Path | None, options: BodyOptions, **how: bool) -> LoadedBody
         return _read_printout(file, options)
     if is_whole(file):
         return _whole_body(file, options)
+    if is_image(file):
+        return _image_body(file, options)
     return load_body(file, options, **how)
 
 
@@ -64,6 +69,36 @@ def _whole_body(file: Path, options: BodyOptions) -> LoadedBody:
         )
     mass_unit, length = ("kg", "m") if has_units else ("mass", "unit")
     return LoadedBody(body, [], mass_unit, length, notes=notes, kind=kind)
+
+
+def _image_body(file: Path, options: BodyOptions) -> LoadedBody:
+    """Read an image of voxels."""
+    check_arguments(file, **{name: _is_given(options, name) for name in _OF_SHAPES})
+    if (options.density is None) == (options.mass is None):
+        raise PolhodeError(
+            f"--density, --mass: {file} is an image of voxels, which needs one of them: --density 1000 "
+            'for a mask, or --density "1=1050, 2=1900" by its values'
+        )
+    image = read_image(file)
+    unit = unit_of(image, file, options.length_unit)
+    weight = options.density or options.mass or ""
+    names = [item.partition("=")[::2] for item in weight.split(",")] if has_names(options.density) else []
+    if unit is None and has_unit(names[0][1] if names else weight):
+        raise PolhodeError("--density, --mass: the file states no unit of length; state --length-unit too")
+    density: float | dict[float | str, float] | None = None
+    if names:
+        density = {name.strip(): quantity(text, "kg/m^3", "--density") for name, text in names}
+    elif options.density is not None:
+        density = quantity(options.density, "kg/m^3", "--density")
+    mass = None if options.mass is None else quantity(options.mass, "kg", "--mass")
+    with naming_file(file):
+        body = body_of_image(image, density, mass, 1.0 if unit is None else metres_per(unit))
+    sides = " x ".join(map(str, image.values.shape))
+    notes = [f"{sides} voxels, each a homogeneous cell; its axes are those of the file"]
+    if unit is None:
+        notes.append("unit unknown: all results are in the file's own unit of length")
+    mass_unit, length = ("kg", "m") if unit else ("mass", "unit")
+    return LoadedBody(body, [], mass_unit, length, notes=(*notes,), kind="image", length_unit=unit)
 
 
 def _read_printout(file: Path | None, options: BodyOptions) -> LoadedBody:

@@ -9,6 +9,7 @@ import numpy as np
 
 from polhode import _core
 from polhode.draw.triangles import (
+    balls_surface,
     both_sides,
     cluster_vertices,
     particles_surface,
@@ -270,10 +271,10 @@ _MARKED: Final = frozenset(
 )
 """Round ones: quarters in two shades show how they turn."""
 _HOLLOW: Final = frozenset(
-    {"mesh", "surface", "wire", "particles", "tube", "torus", "annulus", "polygon", "arc"}
+    {"mesh", "surface", "wire", "particles", "balls", "tube", "torus", "annulus", "polygon", "arc"}
 )
 """Shapes that can hide a part of themselves."""
-_GIVEN: Final = frozenset({"mesh", "surface", "wire", "particles", "inertia"})
+_GIVEN: Final = frozenset({"mesh", "surface", "wire", "particles", "balls", "inertia"})
 """Shapes whose surface has an area."""
 _THICK: Final = 0.01
 """Thickness of a line relative to its length."""
@@ -400,6 +401,8 @@ def _piece(
         normal = np.cross(second - first, third - first)
         axis = np.abs(normal).argmax(axis=1)
         group = 2 * axis + (normal[np.arange(len(faces)), axis] < 0.0)
+    if np.linalg.det(turn) < 0.0:  # a mirror image, whose triangles would be seen from inside
+        faces = faces[:, ::-1]
     return Piece(vertices @ turn.T + shift, faces, group, is_dark, name not in _HOLLOW)
 
 
@@ -439,6 +442,8 @@ def _surface(
         return both_sides(numbers.reshape(-1, 3), faces)
     if name == "particles":
         return particles_surface(numbers)
+    if name == "balls":
+        return balls_surface(numbers)
     if name == "inertia":
         return box(_core.RigidBody._from_numbers(numbers))
     for surface in (solid_surface, sheet_surface, wire_surface):

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     Surface = tuple[Floats, Integers]
 
 __all__ = [
+    "balls_surface",
     "both_sides",
     "cluster_vertices",
     "particles_surface",
@@ -311,9 +312,19 @@ def particles_surface(numbers: Floats) -> Surface:
     masses, positions = numbers[: len(numbers) // 4], numbers[len(numbers) // 4 :].reshape(-1, 3)
     size = float(np.ptp(positions, axis=0).max()) or 1.0
     heavy = masses > 0.0
-    corners, faces = _small_sphere(1 if np.count_nonzero(heavy) <= _FEW else 0)
     radii = _BALL * size * np.cbrt(masses[heavy] / masses.max())
-    vertices = positions[heavy][:, np.newaxis] + radii[:, np.newaxis, np.newaxis] * corners
+    return _small_spheres(radii, positions[heavy], 1 if len(radii) <= _FEW else 0)
+
+
+def balls_surface(numbers: Floats) -> Surface:
+    """Return the spheres of balls, which may overlap: numbers are all radii, then all centers."""
+    radii, centers = numbers[: len(numbers) // 4], numbers[len(numbers) // 4 :].reshape(-1, 3)
+    return _small_spheres(radii, centers, 3 if len(radii) <= _FEW // 10 else 2 if len(radii) <= _FEW else 1)
+
+
+def _small_spheres(radii: Floats, centers: Floats, times: int) -> Surface:
+    corners, faces = _small_sphere(times)
+    vertices = centers[:, np.newaxis] + radii[:, np.newaxis, np.newaxis] * corners
     first = len(corners) * np.arange(len(radii))
     return vertices.reshape(-1, 3), (first[:, np.newaxis, np.newaxis] + faces).reshape(-1, 3)
 

@@ -17,6 +17,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from polhode.io.cut import cut_mesh
     from polhode.io.formats import FileContent, load, read_mesh, solid_from_file
     from polhode.io.mesh import Mesh
     from polhode.io.mesh_solid import MeshSolid
@@ -47,6 +48,7 @@ _HOMES = {
     "MeshSolid": "mesh_solid",
     "Molecule": "molecules",
     "TRAJECTORY_SCHEMA": "saved",
+    "cut_mesh": "cut",
     "load": "formats",
     "read_mesh": "formats",
     "read_xyz": "molecules",
@@ -61,6 +63,7 @@ __all__ = [
     "Mesh",
     "MeshSolid",
     "Molecule",
+    "cut_mesh",
     "load",
     "read_mesh",
     "read_xyz",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -12,7 +13,7 @@ from polhode import _core
 from polhode.errors import FileFormatError, MeshError, PolhodeError
 from polhode.io.budget import Budget, read_bytes
 from polhode.io.cad_geometry import moments_of_faces, occt
-from polhode.io.components import Overlap, describe_overlaps
+from polhode.io.components import Overlap, assign, describe_overlaps
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -594,8 +595,20 @@ class SolidPart(NamedTuple):
     volume: float
 
 
+def names_of_solids(cad: CadFile) -> list[tuple[str, ...]]:
+    """Return the names of each solid: its path (#2 where that stands twice), last name, material."""
+    counts: dict[str, int] = {}
+    names = []
+    for part in cad.parts:
+        counts[part.name] = number = counts.get(part.name, 0) + 1
+        own = part.name if number == 1 else f"{part.name}#{number}"
+        names.append((own, f"{part.name}#{number}", part.name, part.name.rpartition("/")[2], part.material))
+    # The bare name is that of all, where it stands twice.
+    return [(of[1], *of[2:]) if counts[of[2]] > 1 else of for of in names]
+
+
 def solids_of(
-    cad: CadFile, density: Number | None = None, mass: Number | None = None
+    cad: CadFile, density: Number | Mapping[Any, Number] | None = None, mass: Number | None = None
 ) -> tuple[_core.RigidBody, tuple[SolidPart, ...]]:
     """Return the whole and its parts.
 
@@ -604,7 +617,8 @@ def solids_of(
     cad : CadFile
     density, mass : float or Uncertain, optional
         At most one: of every part, or of the whole. Without `density` each part has that of its material;
-        without materials `mass` goes by volume.
+        without materials `mass` goes by volume. A mapping has the densities of parts by name or number; the
+        others have those of their materials.
 
     Raises
     ------
@@ -613,19 +627,23 @@ def solids_of(
     """
     if density is not None and mass is not None:
         raise PolhodeError("density and mass: give one of the two, since the other follows from the volume")
-    own = [part.density for part in cad.parts]
+    own: list[Number | None] = [part.density for part in cad.parts]
+    if isinstance(density, Mapping):
+        said = assign(density, names_of_solids(cad))
+        own = [known if new is None else new for known, new in zip(own, said, strict=True)]
+        density = None
     if density is None and mass is None and None in own:
         nameless = cad.parts[own.index(None)].name
         raise PolhodeError(f"density or mass is needed: {nameless!r} has no density in the file; give one")
     uses_own = density is None and None not in own
     known: dict[int, _core.RigidBody] = {}
     parts = []
-    for part in cad.parts:
+    for part, of_material in zip(cad.parts, own, strict=True):
         key = id(part.moments)
         if key not in known:
             known[key] = _at_density_1(part.moments)
         placed = known[key].rotated(_quaternion(part.rotation)).translated(part.position * _METRE)
-        weight: Number = part.density if uses_own and part.density is not None else 1.0
+        weight: Number = of_material if uses_own and of_material is not None else 1.0
         weight = weight if density is None else density
         parts.append(
             SolidPart(part.name, part.material, placed.scaled(mass=weight), part.moments.volume * _METRE**3)

@@ -7,15 +7,17 @@ they share is counted twice, unless they are joined, which :mod:`polhode.io.unio
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
 
 import numpy as np
 
+from polhode._format import Argument
+from polhode.errors import PolhodeError
 from polhode.io.mesh import weld
 from polhode.io.union import has_union, is_closed, shared_volume
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -23,11 +25,15 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Integers = NDArray[np.int64]
 
+T = TypeVar("T")
+
 __all__ = [
     "MOST_FACES",
     "MOST_PARTS",
+    "OTHERS",
     "Overlap",
     "Part",
+    "assign",
     "describe_overlaps",
     "groups_of",
     "labels",
@@ -51,6 +57,9 @@ MOST_FACES: Final = 50_000
 # Nor are components with more triangles than this, counted once for each pair whose boxes meet.
 _MOST_PAIRED: Final = 50_000
 # As a part of lengths (and of areas): nearer than this a ray does not tell on which side it passes.
+OTHERS: Final = "*"
+"""Stands for all components that nothing else names."""
+_SHOWN: Final = 12
 _NEAR: Final = 1e-9
 _ASKEW: Final = np.array([[2.0, -3.0, 6.0], [6.0, -2.0, -3.0], [3.0, 6.0, 2.0]]) / 7.0
 """A rotation: edges of parts run along the axes, and rays should not meet them."""
@@ -72,6 +81,8 @@ class Part(NamedTuple):
     cavities : int
     was_inward : bool
         Whether its surface faced inward in the mesh.
+    group, material : str
+        Names that the file gives to all of its faces, which other components may have too; "" for none.
     """
 
     name: str
@@ -80,6 +91,8 @@ class Part(NamedTuple):
     volume: float
     cavities: int
     was_inward: bool = False
+    group: str = ""
+    material: str = ""
 
 
 class Overlap(NamedTuple):
@@ -123,7 +136,11 @@ def labels(faces: Integers, count: int) -> NDArray[np.intp]:
 
 
 def parts_of(
-    vertices: Floats, faces: Integers, groups: Sequence[str] | None = None, most: int = MOST_PARTS
+    vertices: Floats,
+    faces: Integers,
+    groups: Sequence[str] | None = None,
+    most: int = MOST_PARTS,
+    materials: Sequence[str] | None = None,
 ) -> list[Part]:
     """Take a closed mesh apart.
 
@@ -135,6 +152,8 @@ def parts_of(
         The name of the group of each face.
     most : int
         How many components are told apart.
+    materials : sequence of str, optional
+        The name of the material of each face.
 
     Returns
     -------
@@ -154,7 +173,8 @@ def parts_of(
     if is_turned:
         faces, volumes = faces[:, ::-1], -volumes
     if not 1 < count <= most:
-        return [Part("1", vertices, faces, float(volumes.sum()), 0, is_turned)]
+        own = (_name_of_all(names, range(len(names or ()))) for names in (groups, materials))
+        return [Part("1", vertices, faces, float(volumes.sum()), 0, is_turned, *own)]
     order, starts = np.argsort(label, kind="stable"), np.cumsum(np.bincount(label))[:-1]
     of = np.split(order, starts)
     outer = [k for k in range(count) if volumes[k] > 0.0]
@@ -190,9 +210,17 @@ def parts_of(
             float(volumes[k] + sum(volumes[hole] for hole in holes[k])),
             len(holes[k]),
             is_turned != (k in turned),
+            _name_of_all(groups, of[k]),
+            _name_of_all(materials, of[k]),
         )
         for k, name in zip(outer, names, strict=True)
     ]
+
+
+def _name_of_all(names: Sequence[str] | None, faces: Iterable[int]) -> str:
+    """Return the name that all these faces have; "" where they differ."""
+    found = {names[face] for face in faces} if names else set()
+    return found.pop() if len(found) == 1 else ""
 
 
 def meeting(parts: Sequence[Part]) -> list[tuple[int, int]]:
@@ -341,10 +369,57 @@ def overlapping(vertices: Floats, faces: Integers, unit: str = " m^3") -> list[s
     return describe_overlaps(found, total, unit)
 
 
-def groups_of(path: Path) -> list[str]:
-    """Return the name of the group (``o``, else ``g``) of each triangle of an OBJ file that is not packed."""
+def assign(given: Mapping[Any, T], names: Sequence[Sequence[str]], where: str = "") -> list[T | None]:
+    """Assign each component what is given for it, by name or number.
+
+    Parameters
+    ----------
+    given : mapping
+        By a name, by the number of the component, counted from 1, or ``"*"`` for all others.
+    names : sequence of sequence of str
+        Of each component, the most specific one first; "" is no name.
+    where : str
+        Of the file, for errors.
+
+    Returns
+    -------
+    list
+        None for a component of which nothing is said. What names a component more specifically goes first.
+
+    Raises
+    ------
+    PolhodeError
+        When a name or number is that of no component; the names are listed.
+    """
+    found: list[T | None] = [given.get(OTHERS)] * len(names)
+    rank = [1 << 30] * len(names)
+    for key, value in given.items():
+        if key == OTHERS:
+            continue
+        text = str(key).strip()
+        of_key = [(k, of.index(text)) for k, of in enumerate(names) if text in of]
+        if not of_key and text.isdecimal() and 1 <= int(text[:9]) <= len(names):
+            of_key = [(int(text) - 1, -1)]
+        if not of_key or not text:
+            every = dict.fromkeys(name for of in names for name in of if name)
+            known = ", ".join([*every][:_SHOWN]) + (" …" if len(every) > _SHOWN else "")
+            at = f"{where} has" if where else "there is"
+            raise PolhodeError(
+                Argument("density"),
+                f": {at} no component {key!r}; give one density for each of {known}, by name or by number "
+                f'from 1 to {len(names)}, and "{OTHERS}" for all others',
+            )
+        for k, place in of_key:
+            if place < rank[k]:
+                found[k], rank[k] = value, place
+    return found
+
+
+def groups_of(path: Path) -> tuple[list[str], list[str]]:
+    """Return the group (``o``, else ``g``) and the material of each triangle of an unpacked OBJ file."""
     found: list[str] = []
-    names = {"o": "", "g": ""}
+    materials: list[str] = []
+    names = {"o": "", "g": "", "usemtl": ""}
     with path.open(encoding="utf-8", errors="replace") as lines:
         for line in lines:
             pieces = [line]
@@ -358,7 +433,8 @@ def groups_of(path: Path) -> list[str]:
             elif words and words[0] == "f":
                 corners = next((i for i, word in enumerate(words) if word.startswith("#")), len(words)) - 1
                 found += [names["o"] or names["g"]] * (corners - 2)
-    return found
+                materials += [names["usemtl"]] * (corners - 2)
+    return found, materials
 
 
 def _names(found: list[str]) -> list[str]:

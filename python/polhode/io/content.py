@@ -83,7 +83,15 @@ _FOREIGN: Final = (
         ),
         "export it as a mesh such as .stl, .obj or .glb",
     ),
-    ((".nii", ".nrrd", ".mha", ".dcm", ".npy"), "RigidBody.from_voxels takes voxels as an array"),
+    (
+        (".dcm", ".dicom", ".ima"),
+        "convert the folder of its series to NIfTI, as dcm2niix does: dcm2niix -z y -f scan FOLDER",
+    ),
+    ((".mha", ".mhd", ".tif", ".tiff", ".vti"), "RigidBody.from_voxels takes voxels as an array"),
+    (
+        (".nii", ".nrrd", ".nhdr", ".npy"),
+        "RigidBody.from_file, polhode report and assemblies read images, unpacked or as .nii.gz",
+    ),
     ((".urdf", ".xacro", ".mjcf"), "polhode check judges the links of robots"),
 )  # fmt: skip
 """Suffixes of others, with what to do with such a file."""
@@ -194,6 +202,8 @@ def open_file(file: Path) -> Iterator[Content]:
 def _checked_format(file: Path, head: bytes, size: int) -> str | None:
     if not head:
         raise FileFormatError(file, ": the file is empty; export it again")
+    if head[128:132] == b"DICM":
+        raise unread(file, ".dcm", ())
     robot = next((name for root, name in _ROBOT_ROOTS if root in head), None)
     if robot is not None and head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<"):
         raise FileFormatError(file, f": is a robot ({robot}); polhode check judges its links")

@@ -21,6 +21,7 @@ from polhode.errors import FileFormatError, PolhodeError
 from polhode.io.budget import Budget, check_ordinary, naming, status_of, whole_of
 from polhode.io.cad_geometry import check_occt
 from polhode.io.content import EXPECTED_CONTENT, MOLECULE_SUFFIXES, Content, is_molecule, open_file, unread
+from polhode.io.images import is_image
 from polhode.io.mesh import Mesh, check_faces, weld, weld_within
 from polhode.io.mesh_solid import MeshSolid, naming_file, solid_of
 from polhode.io.plates import read_numbered_plates
@@ -59,7 +60,17 @@ __all__ = [
 SAVED_SUFFIXES: Final = (".json", ".npz")
 """Of bodies that ``RigidBody.save`` wrote, and of reports."""
 ASSEMBLY_SUFFIX: Final = ".toml"
-_OF_MESHES: Final = ("density", "mass", "weld", "closure", "orient", "union", "repair", "index_base")
+_OF_MESHES: Final = (
+    "density",
+    "mass",
+    "thickness",
+    "weld",
+    "closure",
+    "orient",
+    "union",
+    "repair",
+    "index_base",
+)
 _OF_MOLECULES: Final = ("masses", "bond_sigma", "mass_sigmas")
 CAD_SUFFIXES: Final = (".step", ".stp", ".igs", ".iges")
 _METRE: Final = ("m", "metre", "meter")
@@ -467,6 +478,9 @@ def check_arguments(path: str | os.PathLike[str], **given: bool) -> None:
         what = "a saved body, whole as it is"
     elif is_molecule(file):
         what, unused = "a molecule, not a mesh", _OF_MESHES
+    elif is_image(file):
+        what = "an image of voxels, not a mesh"
+        unused = (*(name for name in _OF_MESHES if name not in ("density", "mass")), *_OF_MOLECULES)
     else:
         what, unused = "a mesh, not a molecule", _OF_MOLECULES
     name = next((name for name, is_given in given.items() if is_given and name in unused), None)

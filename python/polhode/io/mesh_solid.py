@@ -88,12 +88,18 @@ def solid_of(
     union: bool = False,
     repair: bool = False,
     progress: Callable[[float], object] | None = None,
+    thickness: float | None = None,
 ) -> MeshSolid:
     """Make the solid that the mesh of a loaded file bounds; see :func:`solid_from_file`.
 
-    With `union` components that overlap are joined first, see :mod:`polhode.io.union`.
+    With `union` components that overlap are joined first, see :mod:`polhode.io.union`. With `thickness`, in
+    units
+    of the result, the mesh is the middle of a sheet.
     """
     file = loaded.path
+    if thickness is not None:
+        options = {"closure": closure, "orient": orient, "union": union, "repair": repair}
+        return _sheet(loaded, density, mass, scale, weld, thickness, options)
     asked = {"weld": weld != 0.0, "closure": closure, "orient": orient, "repair": repair}
     if loaded.cad is not None:
         return _cad_solid(loaded, loaded.cad, density, mass, {**asked, "union": union})
@@ -152,6 +158,41 @@ def solid_of(
     return MeshSolid(body._welded(welded), mesh.format, count, len(mesh.faces), volume, area, welded)
 
 
+def _sheet(
+    loaded: FileContent,
+    density: Number | None,
+    mass: Number | None,
+    scale: float,
+    weld: float,
+    thickness: float,
+    asked: Mapping[str, object],
+) -> MeshSolid:
+    """Make the shell of this thickness about the mesh of a file, open or closed."""
+    name = next((name for name, value in asked.items() if value), None)
+    if name is not None:
+        raise PolhodeError(
+            Argument(name),
+            ": ",
+            Argument("thickness"),
+            " makes a sheet, of an open mesh too; leave one of the two out",
+        )
+    if loaded.cad is not None:
+        raise PolhodeError(
+            Argument("thickness"), f": {loaded.path} holds solids, not a mesh; leave it out, or export a mesh"
+        )
+    mesh = weld_within(loaded.mesh, weld) if weld != 0.0 else loaded.mesh
+    vertices, welded = mesh.vertices * scale, len(loaded.mesh.vertices) - len(mesh.vertices)
+    with naming_file(loaded.path):
+        volume = float(
+            _core.RigidBody.from_surface(vertices, mesh.faces, density=1.0, thickness=thickness).mass
+        )
+        body = _core.RigidBody.from_surface(
+            vertices, mesh.faces, density=density, mass=mass, thickness=thickness
+        )
+        area = _core.surface_area(vertices, mesh.faces)
+    return MeshSolid(body, mesh.format, len(mesh.vertices), len(mesh.faces), volume, area, welded)
+
+
 def _join_components(loaded: FileContent, mesh: Mesh, orient: bool) -> FileContent:
     """Return the file with the components of its mesh joined to one solid."""
     from polhode.io.components import parts_of
@@ -174,7 +215,7 @@ def _join_components(loaded: FileContent, mesh: Mesh, orient: bool) -> FileConte
 def _cad_solid(
     loaded: FileContent,
     cad: CadFile,
-    density: Number | None,
+    density: Number | Mapping[Any, Number] | None,
     mass: Number | None,
     asked: Mapping[str, object],
 ) -> MeshSolid:

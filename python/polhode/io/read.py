@@ -9,8 +9,10 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
+from polhode._format import Argument
+from polhode.errors import PolhodeError
 from polhode.io.content import is_molecule
 from polhode.io.formats import (
     ASSEMBLY_SUFFIX,
@@ -22,7 +24,8 @@ from polhode.io.formats import (
     read_saved,
     warn,
 )
-from polhode.io.mesh_solid import solid_of
+from polhode.io.images import body_of_image, is_image, read_image, unit_of
+from polhode.io.mesh_solid import naming_file, solid_of
 from polhode.units import metres_per
 
 if TYPE_CHECKING:
@@ -33,17 +36,16 @@ if TYPE_CHECKING:
     from polhode._typing import SupportsSigma
     from polhode.molecules.nuclides import Masses
 
-    Number = float | _core.Uncertain | SupportsSigma
-
 __all__ = ["body_from_file", "is_whole", "read_whole"]
 
 
 def body_from_file(
     path: str | os.PathLike[str],
     *,
-    density: Number | Mapping[str, Number] | None = None,
+    density: Any = None,
     mass: float | _core.Uncertain | SupportsSigma | None = None,
     length_unit: str | None = None,
+    thickness: float | None = None,
     weld: float = 0.0,
     closure: Literal["caps", "hull"] | None = None,
     orient: bool = False,
@@ -74,7 +76,13 @@ def body_from_file(
         index_base=index_base != 1,
         masses=masses != "most_common",
         length_unit=length_unit is not None,
+        thickness=thickness is not None,
     )
+    if is_image(path):
+        image = read_image(path)
+        unit = unit_of(image, path, length_unit)
+        with naming_file(path):
+            return body_of_image(image, density, mass, 1.0 if unit is None else metres_per(unit))
     if is_whole(path):
         whole = read_whole(path, length_unit)
         warn(path, whole.overlaps)
@@ -87,6 +95,11 @@ def body_from_file(
     warn(path, () if loaded.cad is None else loaded.cad.overlaps)
     unit = loaded.length(length_unit)
     scale = 1.0 if unit is None else metres_per(unit)
+    if callable(density):
+        raise PolhodeError(
+            Argument("density"),
+            f": {os.fspath(path)} is no image, whose values a function could take; give a number",
+        )
     if isinstance(density, Mapping):
         from polhode.io.named_densities import body_by_names
 
@@ -98,6 +111,7 @@ def body_from_file(
             orient=orient,
             progress=progress,
             mass=mass is not None,
+            thickness=thickness is not None,
             closure=closure,
             union=union,
             repair=repair,
@@ -113,6 +127,7 @@ def body_from_file(
         union=union,
         repair=repair,
         progress=progress,
+        thickness=thickness,
     ).body
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from polhode import RigidBody, solids
+from polhode import RigidBody, laminae, solids
 from polhode._format import Note
 from polhode.errors import PolhodeError
 from polhode.io.components import overlapping
@@ -49,6 +49,13 @@ _SOLIDS: Final[dict[str, Callable[[tuple[float, ...]], RigidBody]]] = {
     "capsule": lambda size: solids.capsule(size[0], size[1], density=1.0),
     "ellipsoid": lambda size: solids.ellipsoid(size, density=1.0),
 }
+_SHELLS: Final[dict[str, Callable[[tuple[float, ...]], RigidBody]]] = {
+    "box": lambda size: _box_shell(*size),
+    "sphere": lambda size: solids.hollow_sphere(size[0], size[0], mass=4.0 * np.pi * size[0] ** 2),
+    "cylinder": lambda size: _can(laminae.disk(size[0], density=1.0), *size),
+    "capsule": lambda size: _can(_dome(size[0]), *size),
+}
+"""Of a mass per area of 1."""
 # How well a box or a cylinder is taken to stand for the true part, of its diagonal.
 _OF_PRIMITIVES: Final = 0.02
 # What MuJoCo counts of a mesh beyond its volume is told from here on.
@@ -196,6 +203,11 @@ class GeometryReader:
             is_mesh = shape.kind == "mesh"
             self._solids[key] = self._mesh_solid(shape, folder) if is_mesh else _solid(shape)
         solid, note = self._solids[key]
+        volume = None
+        if (
+            shape.counting == "shell" and solid is not None
+        ):  # beside what its mass would have to be if it were full
+            volume = self._volume(replace(shape, counting=""), folder)
         if note:
             notes.setdefault(note, shape.where)
         if solid is None:
@@ -204,7 +216,12 @@ class GeometryReader:
         if not weight > 0.0:
             return None
         placed = solid.rotated(_quaternion(shape.place.rotation)).translated(shape.place.position)
-        return placed.scaled(mass=weight), float(solid.mass)
+        return placed.scaled(mass=weight), float(solid.mass) if volume is None else volume
+
+    def _volume(self, shape: Shape, folder: Path) -> float:
+        """Return the volume that a surface bounds; infinite of one that bounds none."""
+        full, _ = self._mesh_solid(shape, folder) if shape.kind == "mesh" else _solid(shape)
+        return np.inf if full is None else float(full.mass)
 
     def _mesh_solid(self, shape: Shape, folder: Path) -> tuple[RigidBody | None, str]:
         """Return the solid that a mesh bounds, or its convex hull, and notes on it."""
@@ -219,6 +236,11 @@ class GeometryReader:
             return read.solids.scaled(mass=factor**3, length=factor), note
         mesh = read.mesh
         vertices = mesh.vertices * np.array(shape.size)
+        if shape.counting == "shell":
+            try:
+                return RigidBody.from_surface(vertices, mesh.faces, areal_density=1.0), ""
+            except ValueError as error:
+                return None, f"mesh {name}: {error}"
         solid, first = None, ""
         if shape.counting != "convex":
             try:
@@ -356,10 +378,35 @@ def _solid(shape: Shape) -> tuple[RigidBody | None, str]:
     """Return the solid of a shape that is no mesh, or why there is none."""
     if shape.kind not in _SOLIDS:
         return None, f"a shape of kind {quote(shape.kind)} has no volume that could be told"
+    made = _SHELLS if shape.counting == "shell" and shape.kind in _SHELLS else _SOLIDS
     try:
-        return _SOLIDS[shape.kind](shape.size), ""
+        return made[shape.kind](shape.size), ""
     except ValueError as error:
         return None, f"{shape.kind}: {error}"
+
+
+def _box_shell(a: float, b: float, c: float) -> RigidBody:
+    """Return the six faces of a box."""
+    pairs = (((a, b, 0.0), (0, 0, c / 2)), ((0.0, b, c), (a / 2, 0, 0)), ((a, 0.0, c), (0, b / 2, 0)))
+    faces = []
+    for sides, half in pairs:
+        face = solids.box(sides, mass=float(np.prod([side for side in sides if side])))
+        faces += [face.translated(half), face.translated(-np.array(half))]
+    return sum(faces[1:], start=faces[0])
+
+
+def _can(cap: RigidBody, radius: float, length: float) -> RigidBody:
+    """Return the wall of a cylinder with a cap on both ends, the given one toward +z."""
+    wall = solids.tube(radius, radius, length, mass=2.0 * np.pi * radius * length)
+    top = cap.translated((0, 0, length / 2))
+    return wall + top + top.rotated((1.0, 0.0, 0.0, 0.0))
+
+
+def _dome(radius: float) -> RigidBody:
+    """Return half a sphere without thickness, its rim in the plane z = 0."""
+    across, along = 5.0 / 12.0, 2.0 / 3.0  # of m r², about its centre of mass at r/2
+    mass = 2.0 * np.pi * radius**2
+    return RigidBody(mass, np.diag([across, across, along]) * mass * radius**2, (0, 0, radius / 2))
 
 
 def _quaternion(rotation: Floats) -> Floats:

@@ -338,7 +338,7 @@ class _Reader:
         return Inertial(float(mass), place.position, place.rotation @ tensor @ place.rotation.T)
 
     def _shape(self, member: Member, *, weighs: bool) -> Shape:
-        """Read a geom; add a note if a hollow one defines the inertia."""
+        """Read a geom; one with ``shellinertia`` counts as a shell."""
         geom, frame, inherited, problem = member
         if problem:
             raise FileFormatError(problem)
@@ -353,7 +353,8 @@ class _Reader:
         if len(self.groups) == 2 and group.isdecimal() and len(group) < 10:
             low, high = self.groups
             mass = mass if low <= int(group) <= high else 0.0
-        if weighs and attributes.get("shellinertia") == "true":
+        is_shell = weighs and attributes.get("shellinertia") == "true"
+        if is_shell and kind == "ellipsoid":  # MuJoCo has no closed form for its surface either
             return Shape(f"{kind}, hollow", (), frame, "collision", "", density, mass, geom.where)
         if kind == "mesh":
             place = frame.then(self._place(geom, attributes))
@@ -362,12 +363,16 @@ class _Reader:
                 return Shape("mesh", (1.0, 1.0, 1.0), place, "collision", "", density, mass, geom.where)
             mesh, address = self.meshes[name]
             own = {**self.of_meshes.get(mesh.attributes.get("class", "main"), {}), **mesh.attributes}
+            own |= {"inertia": "shell"} if is_shell else {}
             return mesh_shape(geom, place, mesh, own, address, density, mass, weighs=weighs)
         if "mesh" in attributes:  # MuJoCo takes the size from the mesh, whatever stands here
             kind = f"{kind} fitted to a mesh"
             return Shape(kind, (), frame, "collision", "", density, mass, geom.where)
         place, size = self._read_size(geom, attributes, kind)
-        return Shape(kind, size, frame.then(place), "collision", "", density, mass, geom.where)
+        counting = "shell" if is_shell else ""
+        return Shape(
+            kind, size, frame.then(place), "collision", "", density, mass, geom.where, counting=counting
+        )
 
     def _read_size(
         self, geom: Element, attributes: dict[str, str], kind: str
@@ -540,7 +545,6 @@ def mesh_shape(
     factors = scale(mesh, attributes.get("scale", "1"))
     counting = attributes.get("inertia", "legacy") if weighs else ""
     kind = "mesh" if address else "mesh without a file"
-    kind = "mesh, hollow" if counting == "shell" else kind
     shift = numbers(mesh, attributes.get("refpos", "0 0 0"), 3, "refpos")
     w, x, y, z = numbers(mesh, attributes.get("refquat", "1 0 0 0"), 4, "refquat")
     back = matrix(unit(mesh, np.array([x, y, z, w]))).T

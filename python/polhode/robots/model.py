@@ -98,8 +98,9 @@ class Shape:
         Why the numbers of a visual shape cannot be read; "" if they can. If those of a collision shape cannot
         be read, the link is ``"unreadable"``.
     counting : str
-        How a simulator that computes the inertia from a mesh fills it: ``"legacy"`` or ``"convex"`` (MuJoCo).
-        For any other value the mesh is filled as it is.
+        How a simulator that computes the inertia fills a mesh: ``"legacy"`` or ``"convex"`` (MuJoCo); or
+        ``"shell"`` of a mesh or another shape whose mass is on its surface, where `density` is per area. For
+        any other value the shape is filled as it is.
     """
 
     kind: str

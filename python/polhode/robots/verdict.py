@@ -23,6 +23,7 @@ from polhode.robots.room import (
     times,
     too_dense,
 )
+from polhode.robots.twins import twin_notes
 from polhode.validity import nearest_valid
 
 if TYPE_CHECKING:
@@ -153,6 +154,8 @@ def judge(
             judging.link(link, each, standing)._replace(file=link.file)
             for link, each, standing in zip(robot.links, read, stand, strict=True)
         ]
+        for place, note in twin_notes(robot.links):
+            found[place] = found[place]._replace(notes=(*found[place].notes, note))
         return _fill_masses(robot, as_compiled(robot, found), geometry, density, mass)
 
 

@@ -144,12 +144,8 @@ fn mass() {
     time("tetrahedra", || {
         tetrahedra(&nodes, &cells, density, &mut go_on)
     });
-    let grid = Grid {
-        density: &masses[..64_000],
-        shape: [40; 3],
-        spacing: [0.1, 0.2, 0.3],
-        origin: [1.0, 2.0, 3.0],
-    };
+    let (spacing, origin) = ([0.1, 0.2, 0.3], [1.0, 2.0, 3.0]);
+    let grid = Grid::of_boxes(&masses[..64_000], [40; 3], spacing, origin).expect("a grid");
     time("voxels", || voxels(&grid, &mut go_on));
     let region = Region::ball(1.0, &Vector3::zeros(), 0.0).expect("a region");
     time("density", || {

@@ -53,12 +53,8 @@ fn streamed(masses: &[f64], positions: &[[f64; 3]]) -> RigidBody {
 fn of_every_source() -> Vec<RigidBody> {
     let (masses, positions) = cloud(600_011, 0.5, 1);
     let (thin_masses, thin_positions) = cloud(600_011, 1e-7, 2);
-    let grid = Grid {
-        density: &masses[..80 * 80 * 80],
-        shape: [80; 3],
-        spacing: [1.0, 2.0, 0.5],
-        origin: [0.0; 3],
-    };
+    let (cells, spacing) = (&masses[..80 * 80 * 80], [1.0, 2.0, 0.5]);
+    let grid = Grid::of_boxes(cells, [80; 3], spacing, [0.0; 3]).expect("a grid");
     let mut bodies = vec![
         particles(&masses, &positions).expect("cloud"),
         particles(&thin_masses, &thin_positions).expect("rod"),

@@ -256,13 +256,8 @@ fn of_voxels(draw: &mut Draw<'_>) -> Result<Made> {
         .collect::<Result<Vec<f64>>>()?;
     let spacing = [draw.positive()?, draw.positive()?, draw.positive()?];
     let origin = draw.numbers()?;
-    let grid = Grid {
-        density: &density,
-        shape,
-        spacing,
-        origin,
-    };
-    Ok(voxels(&grid, &mut patience(1000)))
+    let grid = Grid::of_boxes(&density, shape, spacing, origin);
+    Ok(grid.and_then(|grid| voxels(&grid, &mut patience(1000))))
 }
 
 fn solid(draw: &mut Draw<'_>) -> Result<Made> {

@@ -11,7 +11,7 @@ pub(crate) const MOST_ROWS: usize = 64;
 /// So are bodies of more parts.
 const MOST_PARTS: usize = 256;
 /// Particles and corners that are kept, and faces: those of a larger body would double its memory.
-const MOST_POINTS: usize = 256;
+pub(crate) const MOST_POINTS: usize = 256;
 pub(crate) const MOST_FACES: usize = 20_000;
 
 /// Says that the body is known by its inertia alone, whatever it is made of.

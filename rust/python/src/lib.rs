@@ -70,6 +70,7 @@ mod stack;
 mod times;
 mod tops;
 mod uncertain;
+mod voxels;
 
 use pyo3::prelude::*;
 
@@ -158,6 +159,8 @@ mod _core {
     use crate::tops::{free_precession, least_spin, nutation_damping, steady_precession};
     #[pymodule_export]
     use crate::uncertain::PyUncertain;
+    #[pymodule_export]
+    use crate::voxels::labelled_voxels;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

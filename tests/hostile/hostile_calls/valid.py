@@ -43,7 +43,7 @@ NO_TEST = {
         for name in ("FreeMotion", "GyrostatMotion", "HeavyTop")
         for what in ("animate", "plot")
     ),
-    *("read_stl", "read_plates", "stream_solid", "compiled"),
+    *("read_stl", "read_plates", "stream_solid", "compiled", "labelled_voxels"),
     "machine",  # takes nothing
     # Objects of other libraries, which have to be there.
     *("RigidBody.from_mesh_object", "RigidBody.from_atoms"),
@@ -64,6 +64,7 @@ TURNS = [QUATERNION, [0.5, 0.5, -0.5, 0.5], [0.0, 0.0, 0.0, 1.0]]
 RATES = [OMEGA, [0.5, 1.0, 0.25], [0.0, 1.0, 0.0]]
 TETRAHEDRON = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 FACES = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
+MESHED = RigidBody.from_mesh(TETRAHEDRON, FACES, density=2.0)
 TENSOR = [[2.0, 0.25, 0.0], [0.25, 3.0, -0.5], [0.0, -0.5, 4.0]]
 
 
@@ -135,7 +136,21 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "RigidBody.__sub__": {"self": [TUMBLER], "other": RigidBody.from_principal(0.5, (0.125, 0.25, 0.25))},
     "RigidBody.from_density": {"density": gas, "rtol": 1e-3, "max_evaluations": 30_000},
     "RigidBody.from_radial_density": {"density": gas, "rtol": 1e-4},
-    "RigidBody.from_voxels": {"density": [[[1.0, 0.5], [2.0, 1.0]]]},
+    "RigidBody.from_balls": {
+        "centers": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]],
+        "radii": [1.0, 0.5],
+        "mass": None,
+        "density": 2.0,
+    },
+    "RigidBody.from_voxels": {"density": [[[1.0, 0.5], [2.0, 1.0]]], "spacing": 0.5, "affine": None},
+    "RigidBody.from_labelled_voxels": {
+        "labels": [[[1, 2], [0, 1]]],
+        "density": 2.0,
+        "spacing": 0.5,
+        "origin": None,
+        "affine": None,
+    },
+    "RigidBody.cut": {"self": [MESHED], "normal": [0.0, 0.0, 1.0], "point": [0.0, 0.0, 0.1]},
     "RigidBody.from_principal": {"axes": QUATERNION},
     "RigidBody.combined": {"axis": None},
     "RigidBody.heavy_top": {"self": [TOP]},

@@ -111,7 +111,7 @@ COMPILED: Final = {
     "scaled to a total that is not known": Row(
         mjcf(
             f'<body name="a">{HINGE}{GEOM}</body>'
-            f'<body name="b">{HINGE}<geom size="0.1" shellinertia="true"/></body>',
+            f'<body name="b">{HINGE}<geom type="ellipsoid" size="0.1 0.2 0.3" shellinertia="true"/></body>',
             before='<compiler settotalmass="2"/>',
         ),
         {"a": "inferred", "b": "inferred"},

@@ -264,6 +264,16 @@ pub enum BodyFault {
     /// Bytes that no accumulator wrote.
     #[error("the bytes are not those of a MassAccumulator, or not whole")]
     NotAnAccumulator,
+    /// A ball has no radius.
+    #[error(
+        "radii must be positive and finite: radii[{index}] is {radius:?}; leave out balls of no size"
+    )]
+    NotARadius {
+        /// Which ball.
+        index: usize,
+        /// The number.
+        radius: f64,
+    },
     /// A label that names no body.
     #[error(
         "labels must be the numbers of bodies, counted from 0, or -1 for particles of no body: labels[{index}] is {label}"
@@ -303,6 +313,7 @@ impl BodyFault {
             | Self::Overlap { .. }
             | Self::MissingParticles { .. }
             | Self::NotAnAccumulator
+            | Self::NotARadius { .. }
             | Self::Label { .. } => Kind::Argument,
         }
     }

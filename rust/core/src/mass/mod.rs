@@ -18,6 +18,8 @@
 //! | particles, stacks of them, particles with labels | [`particles`] |
 //! | particles in chunks, more than fit into memory | [`accumulator`] |
 //! | voxels | [`voxels`] |
+//! | voxels with labels, all bodies of an image in one pass | [`labelled_voxels`] |
+//! | unions of overlapping balls | [`balls`] |
 //! | homogeneous solids | [`solids`] |
 //! | homogeneous laminae, in the x-y plane | [`laminae`] |
 //! | homogeneous thin rods | [`rods`] |
@@ -81,6 +83,7 @@
 pub mod accumulator;
 pub mod amount;
 pub mod assemblies;
+pub mod balls;
 pub mod body;
 pub mod curve;
 pub mod density;
@@ -89,6 +92,7 @@ pub mod error_bound;
 pub mod forms;
 pub mod inertial_parameters;
 mod integrator;
+pub mod labelled_voxels;
 pub mod laminae;
 pub mod parallel_axis;
 pub mod particles;

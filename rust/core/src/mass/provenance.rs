@@ -41,10 +41,12 @@ pub enum BodySource {
     AverageAtoms,
     /// Atoms whose masses came with them.
     OwnAtoms,
+    /// The union of balls.
+    Balls,
 }
 
 impl BodySource {
-    const ALL: [Self; 17] = [
+    const ALL: [Self; 18] = [
         Self::Tensor,
         Self::PrincipalMoments,
         Self::SecondMoment,
@@ -62,6 +64,7 @@ impl BodySource {
         Self::CommonIsotopes,
         Self::AverageAtoms,
         Self::OwnAtoms,
+        Self::Balls,
     ];
 }
 
@@ -85,6 +88,7 @@ impl fmt::Display for BodySource {
             Self::Lamina => "lamina",
             Self::Rod => "rod",
             Self::Bodies => "bodies",
+            Self::Balls => "balls",
         })
     }
 }

@@ -1,4 +1,4 @@
-//! Bodies from bodies: moved, turned, scaled.
+//! Bodies from bodies: moved, turned, mirrored, scaled.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -59,8 +59,58 @@ impl RigidBody {
     /// When R is not a rotation; a turned centre of mass or tensor that is not finite.
     pub fn rotated(&self, rotation: &Matrix3<f64>) -> Result<Self, Error> {
         check_rotation("rotation", rotation)?;
-        let inertia = mean_of_halves(&(rotation * self.inertia * rotation.transpose()));
-        let center_of_mass = rotation * self.center_of_mass;
+        let axes = with_sign_rule(rotation * self.principal.axes);
+        self.in_new_axes(rotation, rotation * self.center_of_mass, axes)
+    }
+
+    /// The mirror image through the plane with this normal through a point: with `M = 1 − 2 n nᵀ`, `C → p + M (C − p)`, `I → M I M`; its
+    /// moments stay as they are.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::RigidBody;
+    /// use polhode::nalgebra::{Matrix3, Vector3};
+    ///
+    /// let tensor = Matrix3::new(4.0, -0.5, 0.25, -0.5, 5.0, 0.75, 0.25, 0.75, 6.0);
+    /// let left = RigidBody::new(1.0, &tensor, &Vector3::new(1.0, 2.0, 3.0), 0.0)?;
+    /// let right = left.mirrored(&Vector3::y(), &Vector3::zeros())?;
+    /// assert_eq!(right.center_of_mass(), Vector3::new(1.0, -2.0, 3.0));
+    /// assert_eq!(right.inertia()[(0, 1)], 0.5); // products with y change their sign
+    /// assert_eq!(right.principal().moments, left.principal().moments);
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the normal has no direction; a number that is not finite.
+    pub fn mirrored(&self, normal: &Vector3<f64>, point: &Vector3<f64>) -> Result<Self, Error> {
+        all_finite("point", point)?;
+        let n = unit_normal(normal)?;
+        let mirror = Matrix3::identity() - n * n.transpose() * 2.0;
+        let center_of_mass = point + mirror * (self.center_of_mass - point);
+        let axes = mirror * self.principal.axes;
+        let (u, v) = (axes.column(0).into_owned(), axes.column(1).into_owned());
+        let axes = with_sign_rule(Matrix3::from_columns(&[u, v, u.cross(&v)]));
+        let image = self.in_new_axes(&mirror, center_of_mass, axes)?;
+        // The way to the plane is rounded, too.
+        let way = ErrorBound::default().rounded(point, 0.0);
+        Ok(Self {
+            error_bound: ErrorBound {
+                center_of_mass: image.error_bound.center_of_mass + 2.0 * way.center_of_mass,
+                ..image.error_bound
+            },
+            ..image
+        })
+    }
+
+    /// The body whose tensor was taken by an orthogonal matrix, with its new centre of mass and principal axes.
+    fn in_new_axes(
+        &self,
+        matrix: &Matrix3<f64>,
+        center_of_mass: Vector3<f64>,
+        axes: Matrix3<f64>,
+    ) -> Result<Self, Error> {
+        let inertia = mean_of_halves(&(matrix * self.inertia * matrix.transpose()));
         all_finite_of_body("center_of_mass", &center_of_mass)?;
         all_finite_of_body("inertia", &inertia)?;
         // The factors by which an element of a turned vector takes up three others are a row of R, whose sizes add up to √3 at
@@ -72,7 +122,7 @@ impl RigidBody {
         };
         let principal = PrincipalAxes {
             moments: self.principal.moments,
-            axes: with_sign_rule(rotation * self.principal.axes),
+            axes,
         };
         Ok(Self {
             mass: self.mass,
@@ -150,6 +200,20 @@ impl RigidBody {
         all_finite_of_body("center_of_mass", &scaled.center_of_mass)?;
         Ok(scaled)
     }
+}
+
+/// The unit vector along the normal of a plane.
+///
+/// # Errors
+/// When a component is not finite, or all are zero.
+pub(super) fn unit_normal(normal: &Vector3<f64>) -> Result<Vector3<f64>, Error> {
+    all_finite("normal", normal)?;
+    let largest = normal.amax();
+    if largest == 0.0 {
+        return Err(Error::NoDirection { what: "normal" });
+    }
+    let scaled = normal.map(|x| times_power_of_two(x, -exponent(largest)));
+    Ok(scaled / scaled.norm())
 }
 
 #[cfg(test)]

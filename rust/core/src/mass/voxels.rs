@@ -9,7 +9,7 @@
 //!
 //! /// A cube of 1 m, of cells with these densities.
 //! fn cube<T: Voxel>(density: &[T]) -> Result<RigidBody, polhode::Error> {
-//!     let grid = Grid { density, shape: [2; 3], spacing: [0.5; 3], origin: [0.25; 3] };
+//!     let grid = Grid::of_boxes(density, [2; 3], [0.5; 3], [0.25; 3])?;
 //!     voxels(&grid, &mut |_| ControlFlow::Continue(()))
 //! }
 //! let body = cube(&[1000.0_f32; 8])?; // as a scanner stores them
@@ -41,17 +41,139 @@ use crate::numerics::tree_sum::{depth, sum_blocks, sum_terms};
 
 // The body of a grid of cells.
 
-/// Densities on a grid: that of cell (i, j, k) at `(i ny + j) nz + k`, its centre at `origin + (i hx, j hy, k hz)`.
+/// Densities on a grid: that of cell (i, j, k) at `(i ny + j) nz + k`, its centre at `origin + i e₁ + j e₂ + k e₃`.
 #[derive(Clone, Copy, Debug)]
 pub struct Grid<'a, T> {
     /// The densities.
     pub density: &'a [T],
-    /// Cells along x, y, z.
+    /// Cells along the three edges.
     pub shape: [usize; 3],
-    /// Edges h of a cell.
-    pub spacing: [f64; 3],
+    /// Edges of a cell: the steps e from its centre to the next ones. They may be skew, and left-handed.
+    pub edges: [[f64; 3]; 3],
     /// Centre of the cell (0, 0, 0).
     pub origin: [f64; 3],
+}
+
+impl<'a, T> Grid<'a, T> {
+    /// A grid of boxes, with edges of these lengths along x, y and z.
+    ///
+    /// # Errors
+    /// When a length is not positive and finite.
+    pub fn of_boxes(
+        density: &'a [T],
+        shape: [usize; 3],
+        spacing: [f64; 3],
+        origin: [f64; 3],
+    ) -> Result<Self, Error> {
+        Ok(Self {
+            density,
+            shape,
+            edges: edges_of_boxes(spacing)?,
+            origin,
+        })
+    }
+}
+
+/// The edges of a box by their lengths.
+///
+/// # Errors
+/// When a length is not positive and finite.
+pub fn edges_of_boxes(spacing: [f64; 3]) -> Result<[[f64; 3]; 3], Error> {
+    for value in spacing {
+        finite("spacing", value)?;
+        if value <= 0.0 {
+            return Err(Error::OutOfDomain {
+                what: "spacing",
+                law: "positive",
+                value,
+            });
+        }
+    }
+    let [x, y, z] = spacing;
+    Ok([[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]])
+}
+
+/// Edges of which the volume is a smaller part of the product of their lengths are in one plane to rounding.
+const FLAT: f64 = 1e-14;
+
+/// The edges of a cell, and what follows from them.
+#[derive(Clone, Copy)]
+pub(super) struct Edges {
+    /// As columns.
+    pub(super) matrix: Matrix3<f64>,
+    is_box: bool,
+}
+
+impl Edges {
+    pub(super) fn of(edges: &[[f64; 3]; 3]) -> Self {
+        let matrix = Matrix3::from_columns(&edges.map(Vector3::from));
+        Self {
+            matrix,
+            is_box: matrix == Matrix3::from_diagonal(&matrix.diagonal()),
+        }
+    }
+
+    /// The exponents of their lengths.
+    pub(super) fn exponents(&self) -> [i32; 3] {
+        [0, 1, 2].map(|k| exponent(self.matrix.column(k).amax()))
+    }
+
+    /// The same, divided by a power of two.
+    pub(super) fn scaled(&self, power: i32) -> Self {
+        Self {
+            matrix: self.matrix.map(|x| times_power_of_two(x, -power)),
+            ..*self
+        }
+    }
+
+    /// The volume of a cell, divided by a power of two for each edge.
+    pub(super) fn volume(&self) -> f64 {
+        let powers = self.exponents();
+        let own = |i: usize, k: usize| times_power_of_two(self.matrix[(i, k)], -powers[k]);
+        if self.is_box {
+            return (own(0, 0) * own(1, 1) * own(2, 2)).abs();
+        }
+        Matrix3::from_fn(own).determinant().abs()
+    }
+
+    /// That they are finite and span a volume.
+    ///
+    /// # Errors
+    /// The number that offends.
+    pub(super) fn check(&self) -> Result<(), Error> {
+        all_finite("affine", self.matrix.as_slice())?;
+        let powers = self.exponents();
+        let lengths: f64 = (0..3)
+            .map(|k| {
+                let edge = self.matrix.column(k);
+                edge.map(|x| times_power_of_two(x, -powers[k])).norm()
+            })
+            .product();
+        let value = self.volume() / lengths;
+        if value > FLAT {
+            return Ok(());
+        }
+        let value = if value.is_nan() { 0.0 } else { value };
+        Err(Error::OutOfDomain {
+            what: "affine",
+            law: "a matrix whose first three columns, the edges of a voxel, are not in one plane: their volume over the product of their lengths must be above 1e-14",
+            value,
+        })
+    }
+
+    /// The second moment of a cell of unit mass about its own centre.
+    pub(super) fn of_cell(&self) -> Matrix3<f64> {
+        self.matrix * self.matrix.transpose() / 12.0
+    }
+
+    /// A vector in steps along the edges.
+    fn steps(&self, vector: &Vector3<f64>) -> Vector3<f64> {
+        if self.is_box {
+            return vector.component_div(&self.matrix.diagonal());
+        }
+        let inverse = self.matrix.try_inverse();
+        inverse.map_or_else(Vector3::zeros, |inverse| inverse * vector)
+    }
 }
 
 /// The body of these cells: `I = Σ ρ V ((r² 1 − r rᵀ) + I_cell)`, the second moment of a cell about its own centre being
@@ -75,18 +197,10 @@ pub fn voxels<T: Voxel>(grid: &Grid<'_, T>, watch: &mut Watch<'_>) -> Result<Rig
     if grid.density.is_empty() {
         return Err(Error::Empty { what: "density" });
     }
-    for value in grid.spacing {
-        finite("spacing", value)?;
-        if value <= 0.0 {
-            return Err(Error::OutOfDomain {
-                what: "spacing",
-                law: "positive",
-                value,
-            });
-        }
-    }
+    let edges = Edges::of(&grid.edges);
+    edges.check()?;
     all_finite("origin", &grid.origin)?;
-    let [x, y, z] = grid.spacing.map(exponent);
+    let [x, y, z] = edges.exponents();
     let length = x.max(y).max(z);
     let mut units = Units {
         mass: x + y + z,
@@ -95,7 +209,7 @@ pub fn voxels<T: Voxel>(grid: &Grid<'_, T>, watch: &mut Watch<'_>) -> Result<Rig
     };
     let own = |lengths: [f64; 3]| lengths.map(|x| times_power_of_two(x, -length));
     let near = Grid {
-        spacing: own(grid.spacing),
+        edges: grid.edges.map(own),
         origin: own(grid.origin),
         ..*grid
     };
@@ -115,7 +229,7 @@ pub fn voxels<T: Voxel>(grid: &Grid<'_, T>, watch: &mut Watch<'_>) -> Result<Rig
     let scaled = Grid {
         density: &scaled,
         shape: near.shape,
-        spacing: near.spacing,
+        edges: near.edges,
         origin: near.origin,
     };
     units.in_user_units(&scaled.body(&scaled.about_center(watch)?, watch)?)
@@ -145,31 +259,24 @@ impl<T: Voxel> Grid<'_, T> {
 
     /// The point at these indices, whole or not.
     fn place(&self, index: &Vector3<f64>) -> Vector3<f64> {
-        Vector3::from(self.origin) + Vector3::from(self.spacing).component_mul(index)
+        Vector3::from(self.origin) + Edges::of(&self.edges).matrix * index
     }
 
-    /// How far the way to a place goes: over the origin of the grid, and each part of it is rounded.
-    fn reach(&self, place: &Vector3<f64>) -> Vector3<f64> {
-        place.abs() + Vector3::from(self.origin).abs()
+    /// How far the way to the place at these indices goes: over the origin of the grid and along the edges, and each part of it
+    /// is rounded.
+    fn reach(&self, index: &Vector3<f64>) -> Vector3<f64> {
+        let edges = Edges::of(&self.edges);
+        let way = self.place(index).abs() + Vector3::from(self.origin).abs();
+        if edges.is_box {
+            return way;
+        }
+        way + edges.matrix.abs() * index.abs()
     }
 
     /// The indices of the cell that a point is in.
     fn cell(&self, point: &Vector3<f64>) -> Vector3<f64> {
         let from_origin = point - Vector3::from(self.origin);
-        from_origin
-            .component_div(&Vector3::from(self.spacing))
-            .map(f64::round)
-    }
-
-    /// The volume of a cell, divided by a power of two for each edge.
-    fn volume(&self) -> f64 {
-        let [x, y, z] = (self.spacing).map(|edge| times_power_of_two(edge, -exponent(edge)));
-        x * y * z
-    }
-
-    /// The second moment of the cells about their own centres, for a body of unit mass.
-    fn of_cells(&self) -> Matrix3<f64> {
-        Matrix3::from_diagonal(&Vector3::from(self.spacing).map(|h| h * h / 12.0))
+        Edges::of(&self.edges).steps(&from_origin).map(f64::round)
     }
 
     /// Second moment about the centre of mass in body axes, from sums about the cell with these indices.
@@ -198,15 +305,17 @@ impl<T: Voxel> Grid<'_, T> {
         if !(s > 0.0 && below == 0.0 && sums.iter().all(|sum| sum.is_finite())) {
             self.check()?;
         }
-        let volume = self.volume();
+        let edges = Edges::of(&self.edges);
+        let volume = edges.volume();
         let mass = s * volume;
-        let edges = Matrix3::from_diagonal(&self.spacing.into());
-        let first = edges * Vector3::new(x, y, z) * volume;
-        let second = edges * Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) * edges * volume
-            + self.of_cells() * mass;
+        let first = edges.matrix * Vector3::new(x, y, z) * volume;
+        let sums = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+        let second =
+            edges.matrix * sums * edges.matrix.transpose() * volume + edges.of_cell() * mass;
         let place = self.place(&reference);
         let additions = ny as f64 + depth(nx) + depth(nz);
-        let bound = ErrorBound::of_additions(additions, mass, &self.reach(&place), second.trace());
+        let reach = self.reach(&reference);
+        let bound = ErrorBound::of_additions(additions, mass, &reach, second.trace());
         Ok(SecondMoment::about_reference(
             &place, mass, &first, &second, bound,
         ))
@@ -244,11 +353,11 @@ impl<T: Voxel> Matter for Grid<'_, T> {
     fn moments(&self, frame: &LocalFrame, watch: &mut Watch<'_>) -> Result<SecondMoment, Error> {
         let [_, ny, nz] = self.shape;
         let axes = frame.rotation();
-        let edges = Vector3::from(self.spacing);
+        let edges = Edges::of(&self.edges);
         let from_origin = frame.reference - Vector3::from(self.origin);
         let addend = CentralInAxes {
-            reference: from_origin.component_div(&edges),
-            axes: Matrix3::from_fn(|i, j| edges[i] * axes[(i, j)]),
+            reference: edges.steps(&from_origin),
+            axes: edges.matrix.transpose() * axes,
         };
         let count = self.density.len();
         let sums = sum_blocks(count, watch, |block| {
@@ -261,13 +370,14 @@ impl<T: Voxel> Matter for Grid<'_, T> {
                 .collect();
             block_sums(&masses, &cells, addend)
         })?;
-        let volume = self.volume();
+        let volume = edges.volume();
         let [mass, x, y, z, xx, xy, xz, yy, yz, zz, _] = sums.map(|sum| sum * volume);
         let first = Vector3::new(x, y, z);
         let second = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
-            + axes.tr_mul(&self.of_cells()) * axes * mass;
+            + axes.tr_mul(&edges.of_cell()) * axes * mass;
         let place = self.place(&addend.reference);
-        let bound = ErrorBound::of_sums(count, mass, &self.reach(&place), second.trace());
+        let bound =
+            ErrorBound::of_sums(count, mass, &self.reach(&addend.reference), second.trace());
         let about = SecondMoment::about_reference(&Vector3::zeros(), mass, &first, &second, bound);
         Ok(SecondMoment {
             center_of_mass: place + axes * about.center_of_mass,
@@ -405,6 +515,44 @@ mod tests {
         voxels(grid, &mut |_| ControlFlow::Continue(())).expect("body")
     }
 
+    fn boxes<T>(
+        density: &[T],
+        shape: [usize; 3],
+        spacing: [f64; 3],
+        origin: [f64; 3],
+    ) -> Grid<'_, T> {
+        Grid::of_boxes(density, shape, spacing, origin).expect("boxes")
+    }
+
+    /// A cell with skew edges is a parallelepiped: `m/12 Σ (|e|² 1 − e eᵀ)`, whichever hand its edges have.
+    #[test]
+    fn a_skew_cell_is_a_parallelepiped() {
+        let edges = [[1.0, 0.5, 0.0], [0.0, -2.0, 0.25], [0.5, 0.0, 4.0]];
+        let found = body(&Grid {
+            density: &[3.0],
+            shape: [1; 3],
+            edges,
+            origin: [1.0, 2.0, 3.0],
+        });
+        // |e₁·(e₂ × e₃)|
+        let volume: f64 = 1.0 * (-2.0 * 4.0) - 0.5 * (0.0 * 4.0 - 0.25 * 0.5);
+        assert!((found.mass() - 3.0 * volume.abs()).abs() < 1e-14);
+        assert_eq!(found.center_of_mass(), Vector3::new(1.0, 2.0, 3.0));
+        let mut expected = Matrix3::zeros();
+        for edge in edges.map(Vector3::from) {
+            expected += Matrix3::identity() * edge.norm_squared() - edge * edge.transpose();
+        }
+        expected *= found.mass() / 12.0;
+        assert!((found.inertia() - expected).amax() < 1e-13);
+        let flat = Grid {
+            density: &[1.0],
+            shape: [1; 3],
+            edges: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]],
+            origin: [0.0; 3],
+        };
+        assert!(voxels(&flat, &mut |_| ControlFlow::Continue(())).is_err());
+    }
+
     #[test]
     fn one_cell_is_a_box_wherever_it_is_in_the_grid() {
         for cell in [0, 7, 59] {
@@ -413,12 +561,7 @@ mod tests {
             let shape = [3, 4, 5];
             let index = [cell / 20, cell / 5 % 4, cell % 5].map(|i| i as f64);
             let spacing = [1.0, 2.0, 4.0];
-            let found = body(&Grid {
-                density: &density,
-                shape,
-                spacing,
-                origin: [10.0, 20.0, 30.0],
-            });
+            let found = body(&boxes(&density, shape, spacing, [10.0, 20.0, 30.0]));
             assert_eq!(found.mass(), 16.0);
             let center = [0, 1, 2].map(|a| 10.0 * (1.0 + a as f64) + spacing[a] * index[a]);
             assert_eq!(found.center_of_mass(), Vector3::from(center));
@@ -433,12 +576,7 @@ mod tests {
         let n = 200;
         let mut density = vec![0.0; n * n];
         (0..n).for_each(|i| density[i * n + i] = 1.0);
-        let found = body(&Grid {
-            density: &density,
-            shape: [n, n, 1],
-            spacing: [1.0; 3],
-            origin: [0.0; 3],
-        });
+        let found = body(&boxes(&density, [n, n, 1], [1.0; 3], [0.0; 3]));
         let exact = n as f64 / 6.0;
         assert!((found.principal().moments[0] / exact - 1.0).abs() < 1e-15);
     }
@@ -452,18 +590,8 @@ mod tests {
             let single: Vec<f32> = (0..count).map(|k| 1.0 / (1.0 + k as f32)).collect();
             let double: Vec<f64> = single.iter().map(|&density| density.into()).collect();
             let (spacing, origin) = ([1.0, 0.3, 0.7], [0.1, -2.0, 5.0]);
-            let together = Grid {
-                density: &single[..],
-                shape,
-                spacing,
-                origin,
-            };
-            let by_itself = Grid {
-                density: &double[..],
-                shape,
-                spacing,
-                origin,
-            };
+            let together = boxes(&single[..], shape, spacing, origin);
+            let by_itself = boxes(&double[..], shape, spacing, origin);
             let together = voxels(&together, &mut |_| ControlFlow::Continue(())).expect("body");
             assert!(together == body(&by_itself), "{rows} rows");
         }

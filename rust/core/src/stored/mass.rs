@@ -259,6 +259,7 @@ named! {
         BodySource::Lamina => "lamina",
         BodySource::Rod => "rod",
         BodySource::Bodies => "bodies",
+        BodySource::Balls => "balls",
         BodySource::CommonIsotopes => "atoms, most common isotopes",
         BodySource::AverageAtoms => "atoms, average masses",
         BodySource::OwnAtoms => "atoms, masses of their own",

@@ -13,8 +13,7 @@ use polhode::mass::particles::{
 use polhode::mass::polyhedron::{Index, MeshSolid, Options, closure, polyhedron_watched};
 use polhode::mass::regions::Region;
 use polhode::mass::tetrahedra::{CellDensity, tetrahedra};
-use polhode::mass::voxels::{Grid, Voxel, voxels};
-use polhode::mass::{Amount, curve, surface, thick_shell};
+use polhode::mass::{Amount, balls, curve, surface, thick_shell};
 use polhode::parallel::{self, Watch};
 use polhode::uncertainty::{
     FromPrincipal, FromTensor, FromTensorAboutOrigin, of_mesh, of_particles,
@@ -25,14 +24,12 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{
-    Argument, Item, floats, read, read_indices, read_list, read_or, read_scalar, write,
-};
+use crate::arrays::{Argument, Item, floats, read, read_indices, read_list, read_scalar, write};
 use crate::attitudes::read_rotation;
 use crate::body::PyRigidBody;
 use crate::depth::RecursionGuard;
 use crate::errors::{at_label, at_row, to_py};
-use crate::figure::{MOST_FACES, Outline, alone};
+use crate::figure::{MOST_FACES, MOST_POINTS, Outline, alone};
 use crate::hints::{no_faces, refuse_unknown};
 use crate::interrupt::{Beat, Interrupt, watched};
 use crate::lazy_arrays::{handed_over, is_any};
@@ -42,11 +39,12 @@ use crate::particles::{ParticleArrays, read_labels};
 use crate::regions::PyRegion;
 use crate::shape::tuple;
 use crate::shapes::amount;
-use crate::stack::{BLOCK, Broadcast, Stack, extend, try_watched};
+use crate::stack::{BLOCK, Broadcast, Stack, extend};
 use crate::uncertain::{
     Quantity, Weight, holds_uncertain, is_uncertain, of_numbers, propagate_rows, quantity,
     quantity_list, quantity_or, symmetric, value_of,
 };
+use crate::voxels::{Frame, of_voxels};
 
 /// An optional argument of any array-like kind.
 type Optional<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
@@ -194,22 +192,28 @@ impl PyRigidBody {
     }
 
     /// Body from any file that holds one: a mesh (STL, OBJ, PLY, OFF, DAE, 3MF, glTF, GLB, VTK, plate models), solids of CAD
-    /// (STEP, IGES), a molecule (XYZ, PDB, MOL, SDF), each also packed with gzip; a body that `save` wrote (JSON, npz), with every
-    /// bit of it; a report of the command line (JSON); an assembly (TOML). An argument that the file cannot use is refused.
+    /// (STEP, IGES), a molecule (XYZ, PDB, MOL, SDF), each also packed with gzip; an image of voxels (NIfTI, NRRD, NumPy's npy);
+    /// a body that `save` wrote (JSON, npz), with every bit of it; a report of the command line (JSON); an assembly (TOML). An
+    /// argument that the file cannot use is refused.
     ///
     /// Parameters
     /// ----------
     /// path : str or os.PathLike
     /// density, mass : float
-    ///     For a mesh exactly one of the two; `density` may be a mapping of the names of components to their
-    ///     densities. For a molecule neither, since its atoms have masses. CAD solids whose materials have
-    ///     densities need neither.
+    ///     For a mesh exactly one of the two. For components of several densities a mapping of their names, or of
+    ///     their numbers counted from 1, to densities, where ``"*"`` stands for all others. For an image `density` is a
+    ///     factor of its values, a mapping of values to densities or a function of the values; see
+    ///     :func:`polhode.images.body_of_image`. For a molecule neither, since its atoms have masses. CAD solids whose
+    ///     materials have densities need neither.
     /// length_unit : str, optional
     ///     Unit of the coordinates, such as ``"mm"``. They are converted to metres, and the masses of a
     ///     molecule to kilograms. Without it, coordinates are converted to metres if the file or its format
     ///     states their unit (STEP, IGES, DAE, 3MF, glTF, GLB). All others stay as they are, and a molecule is
     ///     in u and angstrom. A saved body keeps the unit it was saved in. A unit that differs from the one in the
     ///     file is an error.
+    /// thickness : float, optional
+    ///     Thickness of a sheet, in the unit of the result: the mesh, open or closed, is then the middle of a shell, as
+    ///     `from_surface` has it, and not the surface of a solid.
     /// weld : float, optional
     ///     Corners at most this far from each other, in the unit of the file, are joined; by default only
     ///     equal corners. Some exporters write the same corner with different last digits in each triangle,
@@ -256,8 +260,8 @@ impl PyRigidBody {
     /// polhode.io : the readers, which also return vertices and faces.
     #[staticmethod]
     #[pyo3(
-        signature = (path, *, density=None, mass=None, length_unit=None, weld=0.0, closure=None, orient=false, union=false, repair=false, index_base=1, masses="most_common", progress=None, **unknown),
-        text_signature = "(path, *, density=None, mass=None, length_unit=None, weld=0.0, closure=None, orient=False, union=False, repair=False, index_base=1, masses=\"most_common\", progress=None)"
+        signature = (path, *, density=None, mass=None, length_unit=None, thickness=None, weld=0.0, closure=None, orient=false, union=false, repair=false, index_base=1, masses="most_common", progress=None, **unknown),
+        text_signature = "(path, *, density=None, mass=None, length_unit=None, thickness=None, weld=0.0, closure=None, orient=False, union=False, repair=False, index_base=1, masses=\"most_common\", progress=None)"
     )]
     #[expect(clippy::too_many_arguments, reason = "one for each of Python's")]
     fn from_file<'py>(
@@ -266,6 +270,7 @@ impl PyRigidBody {
         density: Option<&Bound<'py, PyAny>>,
         mass: Option<&Bound<'py, PyAny>>,
         #[pyo3(from_py_with = read_scalar)] length_unit: Option<&str>,
+        #[pyo3(from_py_with = read_scalar)] thickness: Option<f64>,
         #[pyo3(from_py_with = read_scalar)] weld: f64,
         #[pyo3(from_py_with = read_scalar)] closure: Option<&str>,
         orient: bool,
@@ -281,6 +286,7 @@ impl PyRigidBody {
             "density",
             "mass",
             "length_unit",
+            "thickness",
             "weld",
             "closure",
             "orient",
@@ -295,6 +301,7 @@ impl PyRigidBody {
         options.set_item("density", density)?;
         options.set_item("mass", mass)?;
         options.set_item("length_unit", length_unit)?;
+        options.set_item("thickness", thickness)?;
         options.set_item("weld", weld)?;
         options.set_item("closure", closure)?;
         options.set_item("orient", orient)?;
@@ -901,7 +908,77 @@ impl PyRigidBody {
         }
     }
 
-    /// Body given by its density on a rectangular grid, where each cell is a homogeneous box.
+    /// Union of overlapping balls of uniform density: a clump of a granular simulation, a molecule of hard spheres, a
+    /// bunch of grapes. What several balls cover counts once.
+    ///
+    /// The volume and the moments are exact: the union is cut into one part for each ball along the planes of the circles
+    /// in which spheres meet, and each part is integrated in closed form. Balls inside others, equal balls and balls that
+    /// touch are allowed.
+    ///
+    /// Parameters
+    /// ----------
+    /// centers : array_like, shape (n, 3)
+    /// radii : float or array_like, shape (n,)
+    ///     Radii of the balls, positive; one number for equal balls.
+    /// density, mass : float
+    ///     Mass per volume, or the total mass of the union: exactly one of the two.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///     Its centre of mass is where it is in the frame of the centers.
+    ///
+    /// Raises
+    /// ------
+    /// PolhodeError
+    ///     Naming the ball whose radius is not positive.
+    ///
+    /// Examples
+    /// --------
+    /// Two unit balls at a distance of 1. A sum over the balls would have the mass 8.38 and count the lens between them
+    /// twice:
+    ///
+    /// >>> from polhode import RigidBody
+    /// >>> clump = RigidBody.from_balls([(0, 0, 0), (1, 0, 0)], [1.0, 1.0], density=1.0)
+    /// >>> round(clump.mass, 8)
+    /// 7.06858347
+    /// >>> clump.principal_moments.round(8)
+    /// array([3.00414797, 5.21308031, 5.21308031])
+    #[staticmethod]
+    #[pyo3(signature = (centers, radii, *, density=None, mass=None))]
+    fn from_balls(
+        py: Python<'_>,
+        centers: &Bound<'_, PyAny>,
+        radii: &Bound<'_, PyAny>,
+        density: Option<Weight>,
+        mass: Option<Weight>,
+    ) -> PyResult<Self> {
+        let amount = amount(number(mass.as_ref()), number(density.as_ref()))?;
+        let centers: Stack<[f64; 3]> = read_list(centers, "centers", "n")?;
+        let n = centers.rows.len();
+        let radii: Stack<f64> = read(radii, "radii")?;
+        let radii = match radii.shape[..] {
+            [] => vec![radii[0]; n],
+            [k] if k == n => radii.rows,
+            _ => {
+                return Err(PyValueError::new_err(format!(
+                    "radii: expected one radius or shape ({n},), one for each ball, got {}",
+                    tuple(&radii.shape)
+                )));
+            }
+        };
+        let body = watched(py, |watch| {
+            balls::balls(&centers.rows, &radii, amount, watch)
+        })?;
+        let body = body.map_err(|error| to_py(py, &error))?;
+        let numbers = || [&radii[..], centers.rows.as_flattened()].concat();
+        let outline = (n <= MOST_POINTS).then(|| Outline::of("balls", numbers()));
+        Self::from(Stack::one(body))
+            .with_shapes(alone(outline))
+            .weigh([density, mass, None])
+    }
+
+    /// Body given by its density on a grid, where each cell (voxel) is homogeneous: an image of a scanner, a simulation.
     ///
     /// The integrals are exact for such cells. They include the second moment ``m h²/12`` of each cell along
     /// each of its edges, which a sum over the centres would miss.
@@ -909,12 +986,16 @@ impl PyRigidBody {
     /// Parameters
     /// ----------
     /// density : array_like, shape (..., nx, ny, nz)
-    ///     Mass per volume, not negative; ``density[i, j, k]`` runs along x, y, z. C-ordered float32 and
-    ///     float64 arrays are not copied; sums are taken in double precision.
+    ///     Mass per volume, not negative. C-ordered float32 and float64 arrays are not copied; sums are taken in double
+    ///     precision.
     /// spacing : float or array_like, shape (3,)
-    ///     Edges of a cell.
+    ///     Edges of a cell; ``density[i, j, k]`` then runs along x, y, z.
     /// origin : array_like, shape (3,), optional
     ///     Centre of the cell ``density[0, 0, 0]``.
+    /// affine : array_like, shape (4, 4)
+    ///     Instead of `spacing` and `origin`: the matrix A that takes the indices of a cell to its centre,
+    ///     ``x = A (i, j, k, 1)``, in lengths of the body. Any sign of the determinant and any shear are allowed, so the
+    ///     affine of a NIfTI image is taken as it is.
     ///
     /// Returns
     /// -------
@@ -924,6 +1005,11 @@ impl PyRigidBody {
     /// ------
     /// InvalidInertiaError
     ///     Naming the cell whose density is negative.
+    ///
+    /// See Also
+    /// --------
+    /// from_labelled_voxels : a body for each label of a segmented image.
+    /// from_file : images as files, NIfTI, NRRD and NumPy.
     ///
     /// Examples
     /// --------
@@ -936,39 +1022,90 @@ impl PyRigidBody {
     /// 12.0
     /// >>> box.principal_moments
     /// array([ 5., 10., 13.])
+    ///
+    /// A scanner whose first axis runs to the left:
+    ///
+    /// >>> affine = [(-0.25, 0, 0, 1), (0, 0.5, 0, 0), (0, 0, 0.75, 0), (0, 0, 0, 1)]
+    /// >>> RigidBody.from_voxels(np.full((4, 4, 4), 2.0), affine=affine).center_of_mass
+    /// array([0.625, 0.75 , 1.125])
     #[staticmethod]
-    #[pyo3(signature = (density, spacing, origin=Argument::default()), text_signature = "(density, spacing, origin=(0.0, 0.0, 0.0))")]
+    #[pyo3(
+        signature = (density, spacing=None, origin=Argument::default(), *, affine=None),
+        text_signature = "(density, spacing=None, origin=(0.0, 0.0, 0.0), *, affine=None)"
+    )]
     fn from_voxels(
         py: Python<'_>,
         density: &Bound<'_, PyAny>,
-        spacing: &Bound<'_, PyAny>,
+        spacing: Optional<'_, '_>,
         origin: Argument<'_>,
+        affine: Optional<'_, '_>,
     ) -> PyResult<Self> {
-        let spacing = match read::<f64>(spacing, "spacing")? {
-            one if one.is_one() => [one[0]; 3],
-            three if three.shape == [3] => [three[0], three[1], three[2]],
-            other => {
-                let message = format!(
-                    "spacing: expected one edge or shape (3,), got {}",
-                    tuple(&other.shape)
-                );
-                return Err(PyValueError::new_err(message));
-            }
-        };
-        let origin: Stack<[f64; 3]> = read_or(&origin, "origin", [0.0; 3])?;
-        if !origin.is_one() {
-            let message = format!("origin: expected shape (3,), got {}", tuple(&origin.shape));
-            return Err(PyValueError::new_err(message));
-        }
+        let frame = Frame::read(py, spacing, &origin, affine)?;
         if let Ok(array) = density.cast_exact::<PyArrayDyn<f32>>()
             && array.is_c_contiguous()
             && array.is_aligned()
         {
             let array = array.readonly();
-            return of_voxels(py, array.as_slice()?, array.shape(), spacing, origin[0]);
+            return of_voxels(py, array.as_slice()?, array.shape(), &frame);
         }
         let array = floats(density, "density")?;
-        of_voxels(py, array.as_slice()?, array.shape(), spacing, origin[0])
+        of_voxels(py, array.as_slice()?, array.shape(), &frame)
+    }
+
+    /// A body for each label of a segmented image: bones of a scan, grains of a tomogram, cells of a microscope.
+    ///
+    /// All bodies are summed in one pass. Their moments are exact for cells that are homogeneous boxes or parallelepipeds,
+    /// for any number of labels.
+    ///
+    /// Parameters
+    /// ----------
+    /// labels : array_like of int, shape (nx, ny, nz); str or os.PathLike
+    ///     The label of each cell. The label 0 is background, unless `density` names it. A path is that of an image: NIfTI or
+    ///     NRRD (extra ``image``), or NumPy's ``.npy``; see :func:`polhode.images.read_image`.
+    /// density : float, mapping or array_like
+    ///     Mass per volume: one number for all labels; ``{label: number}``, which leaves out labels that it does not name,
+    ///     and where ``"*"`` stands for all others; or an array of the shape of `labels` with the density of each cell.
+    /// spacing, origin, affine
+    ///     As of :meth:`from_voxels`; a file has its own.
+    /// length_unit : str, optional
+    ///     Unit of lengths of a file that states none. They are converted to metres.
+    ///
+    /// Returns
+    /// -------
+    /// labels : numpy.ndarray of int, shape (k,)
+    ///     Ascending.
+    /// bodies : RigidBody
+    ///     A stack of shape (k,).
+    ///
+    /// Examples
+    /// --------
+    /// >>> import numpy as np
+    /// >>> from polhode import RigidBody
+    /// >>> image = np.zeros((2, 2, 4), dtype=np.uint8)
+    /// >>> image[:, :, :2], image[:, :, 3] = 5, 9
+    /// >>> labels, bodies = RigidBody.from_labelled_voxels(image, {5: 1000.0, 9: 1900.0}, spacing=0.01)
+    /// >>> labels
+    /// array([5, 9])
+    /// >>> bodies.mass.round(9)
+    /// array([0.008 , 0.0076])
+    #[staticmethod]
+    #[pyo3(
+        signature = (labels, density, *, spacing=None, origin=None, affine=None, length_unit=None),
+        text_signature = "(labels, density, *, spacing=None, origin=(0.0, 0.0, 0.0), affine=None, length_unit=None)"
+    )]
+    fn from_labelled_voxels<'py>(
+        py: Python<'py>,
+        labels: &Bound<'py, PyAny>,
+        density: &Bound<'py, PyAny>,
+        spacing: Optional<'_, 'py>,
+        origin: Optional<'_, 'py>,
+        affine: Optional<'_, 'py>,
+        length_unit: Optional<'_, 'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        py.import("polhode.io.images")?.call_method1(
+            "bodies_of_labels",
+            (labels, density, spacing, origin, affine, length_unit),
+        )
     }
 }
 
@@ -998,34 +1135,6 @@ fn of_uncertain_particles<'py>(
         uncertainties,
         ..bodies
     })
-}
-
-/// The bodies of densities of this shape.
-fn of_voxels<T: Voxel>(
-    py: Python<'_>,
-    density: &[T],
-    shape: &[usize],
-    spacing: [f64; 3],
-    origin: [f64; 3],
-) -> PyResult<PyRigidBody> {
-    let Some((leading, &cells)) = shape.split_last_chunk() else {
-        let message = format!(
-            "density: expected shape (..., nx, ny, nz), got {}",
-            tuple(shape)
-        );
-        return Err(PyValueError::new_err(message));
-    };
-    let size: usize = cells.iter().product();
-    let grids = (0..leading.iter().product()).map(|row| Grid {
-        density: &density[row * size..(row + 1) * size],
-        shape: cells,
-        spacing,
-        origin,
-    });
-    let bodies = try_watched(py, leading.to_vec(), grids, |grid, watch| {
-        voxels(&grid, watch)
-    })?;
-    Ok(bodies.into())
 }
 
 /// The bodies under their shape, or the error with its row.

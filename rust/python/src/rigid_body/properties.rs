@@ -258,6 +258,113 @@ impl PyRigidBody {
         Ok(Self::with_uncertainty(turned, uncertainties).with_shapes(figures))
     }
 
+    /// The mirror image of the body through a plane: a right arm from a left one, the other half of a hull.
+    ///
+    /// With ``M = 1 − 2 n nᵀ``: C → p + M (C − p), I → M I M. Its principal moments stay exactly the same. What is
+    /// uncertain of the body is uncertain of its image, from the same sources.
+    ///
+    /// Parameters
+    /// ----------
+    /// normal : array_like, shape (..., 3)
+    ///     Normal of the plane, of any length: ``(0, 1, 0)`` exchanges left and right where y points to the left.
+    /// point : array_like, shape (..., 3), optional
+    ///     A point of the plane; by default the origin of the body frame.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import RigidBody
+    /// >>> left = RigidBody(2.0, [(4, -0.5, 0.25), (-0.5, 5, 0.75), (0.25, 0.75, 6)], center_of_mass=(0.1, 0.2, 0.3))
+    /// >>> right = left.mirrored((0, 1, 0))
+    /// >>> right.center_of_mass
+    /// array([ 0.1, -0.2,  0.3])
+    /// >>> right.inertia
+    /// array([[ 4.  ,  0.5 ,  0.25],
+    ///        [ 0.5 ,  5.  , -0.75],
+    ///        [ 0.25, -0.75,  6.  ]])
+    #[pyo3(signature = (normal, point=Argument::default()), text_signature = "($self, normal, point=(0.0, 0.0, 0.0))")]
+    fn mirrored(
+        &self,
+        py: Python<'_>,
+        normal: &Bound<'_, PyAny>,
+        point: Argument<'_>,
+    ) -> PyResult<Self> {
+        let normals: Stack<Vector3<f64>> = read(normal, "normal")?;
+        let points = read_or(&point, "point", Vector3::zeros())?;
+        let names = ["body", "normal", "point"];
+        let grid = Broadcast::of(names, [&self.bodies.shape, &normals.shape, &points.shape])?;
+        let images = grid.try_map(py, |[b, n, p]| {
+            self.bodies[b].mirrored(&normals[n], &points[p])
+        })?;
+        let mirror = |n: usize| {
+            let u = normals[n] / normals[n].amax();
+            let u = u / u.norm();
+            Matrix3::identity() - u * u.transpose() * 2.0
+        };
+        let is_uncertain = self.uncertainties.is_some();
+        let uncertainties = propagate_rows(py, &grid, is_uncertain, |[b, n, _]| {
+            let matrix = mirror(n);
+            let rows = std::array::from_fn(|i| std::array::from_fn(|j| matrix[(i, j)]));
+            Ok(self.row(b).1.map(|change| change.rotated(&rows)))
+        })?;
+        let figures = self.place_figures(&grid, |[_, n, p]| Placement {
+            turn: mirror(n),
+            shift: points[p] - mirror(n) * points[p],
+        });
+        Ok(Self::with_uncertainty(images, uncertainties).with_shapes(figures))
+    }
+
+    /// The part of a solid on one side of a plane: a hull below its waterline, a casting without its riser.
+    ///
+    /// It is what lies where ``n · (x − point) ≥ 0``, closed by its section in the plane, of the same density. The cut is
+    /// exact: the faces are cut along the plane, and the section adds nothing but itself.
+    ///
+    /// Parameters
+    /// ----------
+    /// normal : array_like, shape (3,)
+    ///     Normal n of the plane, of any length, toward the part that is kept.
+    /// point : array_like, shape (3,), optional
+    ///     A point of the plane; by default the origin of the body frame.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///     Without covariance.
+    ///
+    /// Raises
+    /// ------
+    /// PolhodeError
+    ///     When nothing is left, or the body is not one solid that holds its mesh: one from `from_mesh` or a mesh file of
+    ///     at most 20,000 faces. :func:`polhode.io.cut_mesh` cuts any mesh.
+    ///
+    /// Examples
+    /// --------
+    /// The half of a cube above a plane through its middle:
+    ///
+    /// >>> from polhode import RigidBody
+    /// >>> corners = [(x, y, z) for x in (0, 2) for y in (0, 2) for z in (0, 2)]
+    /// >>> faces = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1)]
+    /// >>> faces += [(2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)]
+    /// >>> upper = RigidBody.from_mesh(corners, faces, density=1.0).cut((0, 0, 1), point=(0, 0, 1))
+    /// >>> upper.mass, upper.center_of_mass
+    /// (4.0, array([1. , 1. , 1.5]))
+    #[pyo3(signature = (normal, point=Argument::default()), text_signature = "($self, normal, point=(0.0, 0.0, 0.0))")]
+    fn cut<'py>(
+        slf: &Bound<'py, Self>,
+        normal: &Bound<'py, PyAny>,
+        point: Argument<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let py = slf.py();
+        let cut_body = py.import("polhode.io.cut")?.getattr("cut_body")?;
+        match point.value() {
+            Some(point) => cut_body.call1((slf, normal, point)),
+            None => cut_body.call1((slf, normal)),
+        }
+    }
+
     /// The same shape ``length`` times as large and ``mass`` times as heavy: m → k m, C → s C, I → k s² I.
     ///
     /// Parameters

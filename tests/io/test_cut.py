@@ -1,0 +1,157 @@
+"""Solids cut by a plane, against exact clipping of tetrahedra in rationals and closed forms."""
+
+from __future__ import annotations
+
+import itertools
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from oracles.meshes import box
+from polhode import RigidBody, solids
+from polhode.errors import PolhodeError
+from polhode.io import cut_mesh
+
+
+def volume_beyond(vertices: np.ndarray, faces: np.ndarray, n: list[Fraction], p: list[Fraction]):
+    """Volume and first moment beyond a plane, in rationals: each face with a point of the plane, clipped."""
+    v = [[Fraction(float(x)) - q for x, q in zip(row, p, strict=True)] for row in vertices]
+    height = [sum(a * b for a, b in zip(n, row, strict=True)) for row in v]
+    six, first = Fraction(0), [Fraction(0)] * 3
+    for face in faces.tolist():
+        polygon = []
+        for a, b in zip(face, face[1:] + face[:1], strict=True):
+            if height[a] >= 0:
+                polygon.append(v[a])
+            if height[a] * height[b] < 0:
+                t = height[a] / (height[a] - height[b])
+                polygon.append([x + t * (y - x) for x, y in zip(v[a], v[b], strict=True)])
+        for i in range(1, len(polygon) - 1):
+            a, b, c = polygon[0], polygon[i], polygon[i + 1]
+            d = (
+                a[0] * (b[1] * c[2] - b[2] * c[1])
+                + a[1] * (b[2] * c[0] - b[0] * c[2])
+                + a[2] * (b[0] * c[1] - b[1] * c[0])
+            )
+            six += d
+            first = [f + d * (x + y + z) for f, x, y, z in zip(first, a, b, c, strict=True)]
+    return six / 6, [f / 24 + q * six / 6 for f, q in zip(first, p, strict=True)]
+
+
+def torus(n: int = 24, m: int = 10) -> tuple[np.ndarray, np.ndarray]:
+    a, b = np.meshgrid(np.arange(n), np.arange(m), indexing="ij")
+    u, v = 2 * np.pi * a / n, 2 * np.pi * b / m
+    r = 3.0 + np.cos(v)
+    vertices = np.stack([r * np.cos(u), r * np.sin(u), np.sin(v)], axis=-1).reshape(-1, 3)
+    at = lambda i, j: (i % n) * m + j % m  # noqa: E731
+    faces = [
+        t for i in range(n) for j in range(m)
+        for t in ((at(i, j), at(i + 1, j), at(i + 1, j + 1)), (at(i, j), at(i + 1, j + 1), at(i, j + 1)))
+    ]  # fmt: skip
+    return vertices, np.array(faces)
+
+
+def hollow() -> tuple[np.ndarray, np.ndarray]:
+    """A cube with a cubic cavity."""
+    outer, faces = box((4.0, 4.0, 4.0))
+    return np.concatenate([outer, outer / 2]), np.concatenate([faces, faces[:, ::-1] + len(outer)])
+
+
+SHAPES = {"box": box((3.0, 2.0, 1.0)), "torus": torus(14, 7), "hollow": hollow()}
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_against_rationals(name: str, rng: np.random.Generator) -> None:
+    vertices, faces = SHAPES[name]
+    vertices = vertices + np.array([1.0, 2.0, 3.0])
+    body = RigidBody.from_mesh(vertices, faces, density=2.0)
+    for _ in range(15):
+        normal = rng.integers(-9, 10, 3)
+        point = (vertices[rng.integers(len(vertices))] + rng.choice([0.0, 0.3]) * rng.normal(size=3)).round(3)
+        n, p = [Fraction(int(x)) for x in normal], [Fraction(float(x)) for x in point]
+        volume, first = volume_beyond(vertices, faces, n, p)
+        if not normal.any() or volume < Fraction(1, 10**6):
+            continue
+        part = body.cut(normal, point)
+        assert part.mass == pytest.approx(2.0 * float(volume), rel=0, abs=1e-13 * float(body.mass))
+        for c, f in zip(part.center_of_mass, first, strict=True):
+            assert c * part.mass == pytest.approx(2.0 * float(f), rel=0, abs=1e-12 * float(body.mass))
+        whole = part
+        if body.mass - part.mass > 1e-6:
+            whole = part + body.cut(-normal, point)
+        else:
+            assert part.mass == pytest.approx(float(body.mass), rel=1e-6)
+        assert whole.isclose(body, rtol=1e-6 if whole is part else 1e-12)
+        assert "closed" in part.provenance.checked
+
+
+def test_planes_through_corners_edges_and_faces() -> None:
+    vertices, faces = box((2.0, 2.0, 2.0))
+    body = RigidBody.from_mesh(vertices, faces, density=1.0)
+    for normal in itertools.product((-1, 0, 1), repeat=3):
+        if any(normal):
+            assert body.cut(normal).mass == pytest.approx(4.0, rel=1e-14)
+    assert body.cut((0, 0, 1), point=(0, 0, -1)).isclose(body, rtol=1e-15)
+    assert body.cut((0, 0, 1), point=(0, 0, -7)).isclose(body, rtol=1e-15)
+    for point in ((0, 0, 1), (0, 0, 7)):
+        with pytest.raises(PolhodeError, match="nothing lies beyond the plane"):
+            body.cut((0, 0, 1), point=point)
+
+
+def test_a_cap_of_a_fine_sphere_is_a_cap() -> None:
+    n = 60
+    theta, phi = np.meshgrid(
+        np.linspace(0, np.pi, n + 1), 2 * np.pi * np.arange(2 * n) / (2 * n), indexing="ij"
+    )
+    vertices = np.stack(
+        [np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=-1
+    ).round(15)
+    at = np.arange((n + 1) * 2 * n).reshape(n + 1, 2 * n)
+    a, b, c, d = at[:-1], np.roll(at, -1, 1)[:-1], at[1:], np.roll(at, -1, 1)[1:]
+    faces = np.concatenate([np.stack([a, c, d], -1).reshape(-1, 3), np.stack([a, d, b], -1).reshape(-1, 3)])
+    ball = RigidBody.from_mesh(vertices.reshape(-1, 3), faces, density=1.0)
+    height = 0.4
+    assert ball.cut((0, 0, 1), point=(0, 0, 1 - height)).mass == pytest.approx(
+        np.pi * height**2 * (3 - height) / 3, rel=3e-3
+    )
+
+
+def test_what_was_moved_is_cut_where_it_is() -> None:
+    body = RigidBody.from_mesh(*box((2.0, 2.0, 2.0)), density=3.0)
+    moved = (
+        body.translated((10, 0, 0)).rotated((0, 0, 0.6, 0.8)).scaled(length=2.0, mass=5.0).mirrored((1, 2, 3))
+    )
+    half = moved.cut((3, 2, 1), point=moved.center_of_mass)
+    assert half.mass == pytest.approx(0.5 * float(moved.mass), rel=1e-13)
+    doubtful = body.with_sigma(mass=0.1)
+    assert doubtful.cut((0, 0, 1)).covariance is None
+
+
+def test_a_mesh_of_stl_whose_corners_stand_anew() -> None:
+    vertices, faces = SHAPES["torus"]
+    anew = vertices[faces].reshape(-1, 3)
+    part = cut_mesh(anew, np.arange(len(anew)).reshape(-1, 3), (1, 2, 3), (0.1, 0.2, 0.3))
+    same = cut_mesh(vertices, faces, (1, 2, 3), (0.1, 0.2, 0.3))
+    one, other = (RigidBody.from_mesh(each.vertices, each.faces, density=1.0) for each in (part, same))
+    assert one.isclose(other, rtol=1e-14)
+
+
+def test_refused() -> None:
+    vertices, faces = box((2.0, 2.0, 2.0))
+    body = RigidBody.from_mesh(vertices, faces, density=1.0)
+    with pytest.raises(PolhodeError, match="holds the shape 'cuboid'"):
+        solids.box((1, 1, 1), mass=1.0).cut((0, 0, 1))
+    with pytest.raises(PolhodeError, match="holds no shape"):
+        RigidBody(1.0, np.eye(3)).cut((0, 0, 1))
+    with pytest.raises(PolhodeError, match="holds 2 shapes"):
+        (body + body.translated((5, 0, 0))).cut((0, 0, 1))
+    with pytest.raises(PolhodeError, match="got a stack"):
+        RigidBody.stack([body, body]).cut((0, 0, 1))
+    with pytest.raises(PolhodeError, match="zero vector"):
+        body.cut((0, 0, 0))
+    with pytest.raises(PolhodeError, match="point must be finite"):
+        body.cut((0, 0, 1), point=(0, 0, np.nan))
+    with pytest.raises(ValueError, match=r"normal: expected shape \(3,\)"):
+        body.cut((0, 1))
+    with pytest.raises(PolhodeError, match="expected numbers of vertices from 0 to 7"):
+        cut_mesh(vertices, faces + 1, (0, 0, 1))
