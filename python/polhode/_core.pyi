@@ -418,10 +418,7 @@ class RigidBody:
     def from_file(
         path: str | PathLike[str],
         *,
-        density: _Number
-        | Mapping[Any, _Number]
-        | Callable[[NDArray[Any]], ArrayLike]
-        | None = None,
+        density: _Number | Mapping[Any, _Number] | Callable[[NDArray[Any]], ArrayLike] | None = None,
         mass: _Number | None = None,
         length_unit: str | None = None,
         thickness: float | None = None,

@@ -60,7 +60,17 @@ class TestNames:
         modules = {name for name in visible if isinstance(getattr(polhode, name), types.ModuleType)}
         internal = modules - set(polhode.__all__)
         assert visible - internal == set(polhode.__all__)
-        known = {"accumulator", "animation", "cli", "draw", "ensembles", "images", "io", "molecules", "motion"}
+        known = {
+            "accumulator",
+            "animation",
+            "cli",
+            "draw",
+            "ensembles",
+            "images",
+            "io",
+            "molecules",
+            "motion",
+        }
         known |= {"plot", "principal", "results", "robots", "samples", "symbolic", "units", "view"}
         assert internal <= known
 

@@ -61,7 +61,7 @@ def test_files_have_their_affine_and_unit(tmp_path: Path, labels: np.ndarray, na
     _, expected = RigidBody.from_labelled_voxels(labels, {3: 7.0, "*": 5.0}, affine=own)
     assert found.tolist() == [1, 2, 3]
     assert bodies.isclose(expected, rtol=1e-13).all()
-    with pytest.raises(PolhodeError, match="affine: .* says itself where its voxels are; leave it out"):
+    with pytest.raises(PolhodeError, match=r"affine: .* says itself where its voxels are; leave it out"):
         RigidBody.from_labelled_voxels(path, 1.0, affine=own)
     with pytest.raises(PolhodeError, match="length_unit: is for files"):
         RigidBody.from_labelled_voxels(labels, 1.0, spacing=1.0, length_unit="mm")

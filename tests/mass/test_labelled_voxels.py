@@ -160,17 +160,17 @@ def test_densities_by_label_and_by_cell(rng: np.random.Generator) -> None:
 def test_a_box_of_cells_is_a_box() -> None:
     image = np.zeros((30, 40, 50), dtype=np.uint8)
     image[10:20, 5:35, 40:44] = 9
-    found = RigidBody.from_labelled_voxels(image, 1000.0, spacing=(0.1, 0.2, 0.3), origin=(1, 2, 3))
+    _, found = RigidBody.from_labelled_voxels(image, 1000.0, spacing=(0.1, 0.2, 0.3), origin=(1, 2, 3))
     box = solids.box((1.0, 6.0, 1.2), density=1000.0).translated((1 + 1.45, 2 + 3.9, 3 + 12.45))
-    assert found.bodies[0].isclose(box, rtol=1e-14)
-    assert found.bodies.provenance.source.tolist() == ["voxels"]
-    assert found.bodies.provenance.elements.tolist() == [1200]
+    assert found[0].isclose(box, rtol=1e-14)
+    assert found.provenance.source.tolist() == ["voxels"]
+    assert found.provenance.elements.tolist() == [1200]
 
 
 def test_bits_do_not_depend_on_threads_or_order(rng: np.random.Generator) -> None:
     image = rng.integers(0, 9, (40, 30, 20)).astype(np.int16)
-    one = RigidBody.from_labelled_voxels(image, 2.0, spacing=0.5)[1]
-    again = RigidBody.from_labelled_voxels(np.asfortranarray(image), 2.0, spacing=0.5)[1]
+    _, one = RigidBody.from_labelled_voxels(image, 2.0, spacing=0.5)
+    _, again = RigidBody.from_labelled_voxels(np.asfortranarray(image), 2.0, spacing=0.5)
     assert one.isclose(again, rtol=1e-14).all()
     assert one == RigidBody.from_labelled_voxels(image.astype(float), 2.0, spacing=0.5)[1]
 

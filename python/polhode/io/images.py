@@ -154,8 +154,9 @@ def read_image(path: str | os.PathLike[str]) -> Image:
         values = values[..., 0]
     if values.ndim != 3:
         raise FileFormatError(
-            file, f": an image of three dimensions is needed, and this one has the shape {values.shape}; "
-            "save one instant or one channel of it"
+            file,
+            f": an image of three dimensions is needed, and this one has the shape {values.shape}; "
+            "save one instant or one channel of it",
         )
     if values.dtype.kind not in "biuf":
         raise FileFormatError(
