@@ -51,7 +51,7 @@ _RANGE: Final = 1e15
 """The largest ratio of steps in time."""
 _FASTEST: Final = 1e3
 """The largest angle, in radians, by which a known angular velocity may turn a body from row to row."""
-_SMALL: Final = 0.1
+_SMALL: Final = 0.02
 """Turns from row to row, in radians, whose Magnus series needs no check by half the step."""
 _MEDIAN: Final = 2.366
 """Median of the square of three numbers of unit variance."""
