@@ -37,6 +37,7 @@ STEP = LONG(1e-30)
 SETTLED = 1e-14
 """Motions that change by less with half the steps are known; the others depend on their start that much."""
 MOST_STEPS = 512
+NEARLY_SETTLED = 1e-12
 
 Wide = Any
 Vector = list[mpf]
@@ -401,11 +402,12 @@ def main() -> None:
             steps *= 2
             now, _ = Extended(left).ends(steps)
             off = np.max(np.abs(now - before), axis=1)
-            is_known = (off < SETTLED) | (steps >= MOST_STEPS)
+            is_known = off < (SETTLED if steps < MOST_STEPS else NEARLY_SETTLED)
             for case, end in zip(compress(left, is_known), now[is_known], strict=True):
                 case["end"] = [np.format_float_scientific(x, unique=False, precision=20) for x in end]
             left, before = list(compress(left, ~is_known)), now[~is_known]
-    # Of what comes to lie flat nothing is known.
+            left = left if steps < MOST_STEPS else []
+    # Of what comes near to lying flat too little is known.
     ended = (case for case in drawn if "end" in case)
     found = [case for case in ended if np.isfinite(np.array(case["end"], dtype=float)).all()]
     text = json.dumps(found, indent=1) + "\n"

@@ -110,14 +110,14 @@ def test_the_rattleback_of_kane_and_levinson() -> None:
 
 
 def test_modes_are_those_of_a_simulation() -> None:
-    """The growth of a tapped rattleback over a second, against the growth rate."""
+    """The growth of a tapped rattleback over two seconds, against the growth rate."""
     tensor = [[2e-4, 2e-5, 0], [2e-5, 1.6e-3, 0], [0, 0, 1.7e-3]]
     celt = RigidBody(1.0, inertia=tensor, center_of_mass=(0, 0, -0.01))
     surface = rolling.ellipsoid((0.2, 0.03, 0.02))
     modes = rolling.preferred_sense(celt, surface, GRAVITY, rate=5.0)
     load, contact = loads.uniform_gravity(GRAVITY), rolling.plane(surface)
-    t = np.linspace(0, 12, 12001)
-    run = celt.simulate(t, (1e-5, 1e-5, 5.0), load=load, contact=contact, rtol=1e-13)
+    t = np.linspace(0, 2, 2001)
+    run = celt.simulate(t, (1e-6, 1e-6, 5.0), load=load, contact=contact, rtol=1e-13)
     basis = []
     for growth, frequency in zip(modes.growth_rates, modes.frequencies, strict=True):
         rate = growth + 1j * frequency

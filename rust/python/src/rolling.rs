@@ -789,7 +789,6 @@ impl Rows {
 
 /// The contact at every state of a motion: arrays by name.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "the states of a motion")]
 pub(crate) fn contact_history<'py>(
     body: &Bound<'py, PyRigidBody>,
     contact: &Bound<'py, PyContact>,
@@ -822,7 +821,6 @@ pub(crate) fn contact_history<'py>(
 
 /// What a motion keeps at every state, by name; None for what its case does not have.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "the states of a motion")]
 pub(crate) fn contact_invariants<'py>(
     body: &Bound<'py, PyRigidBody>,
     contact: &Bound<'py, PyContact>,

@@ -127,7 +127,7 @@ VALUES: dict[str, Any] = {
     "law": "normal", "seed": 7, "stream": 9, "first": 3, "count": 5, "width": 4,
     "value": [1.0, 2.0], "sigma": [0.125, 0.25], "covariance": None, "source": None,
     "contact": None, "normal": [0.25, 0.0, 1.0], "apex": 0.5, "turntable": 0.25, "lift": "hold",
-    "surface": rolling.sphere(0.5),
+    "surface": rolling.sphere(0.5), "turn": None,
 }  # fmt: skip
 """What a parameter of this name takes; numbers that float32 has too."""
 
@@ -204,6 +204,14 @@ OVERRIDES: dict[str, dict[str, Any]] = {
         "sequence": None,
     },
     "Trajectory.sensitivity": {"method": "series"},
+    "rolling_steady": {"body": TOP, "surface": rolling.sphere(0.5), "spin": None, "turn": 2.0},
+    "rolling_critical_rate": {
+        "body": RigidBody.from_principal(2.0, (1.0, 1.0, 1.5)),
+        "surface": rolling.disk(0.5),
+        "motion": "rolling",
+    },
+    "rolling_modes": {"body": TOP},
+    "rolling_tippe_top": {"body": TOP, "surface": rolling.sphere(1.5)},
     "surface_ellipsoid": {"axes": np.eye(3).tolist()},
     "surface_paraboloid": {"radii": [1.0, 0.5], "axes": np.eye(3).tolist()},
     **{

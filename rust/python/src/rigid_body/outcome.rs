@@ -202,7 +202,7 @@ impl Ensemble<'_> {
                 });
                 let rows = rows.collect();
                 let shape = self.grid.shape.clone();
-                write(py, &Stack { rows, shape })
+                write(py, &Stack { shape, rows })
             };
             let friction = extremes(|contact| contact.friction_needed)?;
             let normal = extremes(|contact| contact.normal_force)?;

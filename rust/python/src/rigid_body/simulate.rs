@@ -19,7 +19,7 @@ use crate::hints;
 use crate::interrupt::Interrupt;
 use crate::lazy_arrays::{handed_over, is_any};
 use crate::loads::PyLoad;
-use crate::rolling::read_contact;
+use crate::rolling::{PyContact, read_contact};
 use crate::stack::Stack;
 use crate::times::read_times;
 use crate::uncertain::StartArguments;
@@ -185,26 +185,9 @@ impl PyRigidBody {
         }
         let _guard = RecursionGuard::run("simulate")?;
         let pivoted = is_pivot(about)?;
-        if pivoted && velocity.is_some() {
-            return Err(PyValueError::new_err(
-                "velocity: with about=\"origin\" that point is fixed in space and has no velocity",
-            ));
-        }
-        let contact = read_contact(contact)?;
-        if contact.is_some() && velocity.is_some_and(|velocity| !velocity.is_none()) {
-            return Err(PyValueError::new_err(
-                "velocity: a body that rolls has the velocity u - omega x r of rolling; leave it out",
-            ));
-        }
-        let raises = match on_failure {
-            "raise" => true,
-            "keep" => false,
-            _ => {
-                return Err(PyValueError::new_err(format!(
-                    "on_failure: expected \"raise\" or \"keep\", got \"{on_failure}\""
-                )));
-            }
-        };
+        check_velocity(pivoted, velocity)?;
+        let contact = read_rolling(contact, velocity)?;
+        let raises = raises(on_failure)?;
         let times = read_times(py, t)?;
         let tolerance = Tolerance::new(rtol, atol.unwrap_or(0.0))
             .map_err(|error| to_py(py, &error))?
@@ -228,14 +211,11 @@ impl PyRigidBody {
             terms: acts.terms(py)?,
             states: acts.read_states(states, false)?,
         };
-        let rolling = match contact {
-            None => None,
-            Some(contact) => {
-                let is_placed = position.is_some_and(|position| !position.is_none());
-                let plane = contact.get().contact;
-                Some(Rolling::new(py, plane, &start, acts, is_placed)?)
-            }
-        };
+        let rolling = (contact.map(|contact| {
+            let is_placed = position.is_some_and(|position| !position.is_none());
+            Rolling::new(py, contact.get().contact, &start, acts, is_placed)
+        }))
+        .transpose()?;
         let events = Functions::read(events, acts, &start.terms)?;
         let of_one = most_demanding(&start.terms.rows, pivoted);
         let interrupt = Interrupt::new(progress);
@@ -252,13 +232,7 @@ impl PyRigidBody {
             acts.is_analytic().then_some(of_one),
             &|done| interrupt.poll(done),
         )
-        .map_err(|Refusal { body, error }| {
-            let error = to_py(py, &error);
-            match body {
-                Some(row) => at_row(&start.bodies.shape, row, &error, py),
-                None => error,
-            }
-        })?;
+        .map_err(|refusal| refused(py, &start.bodies.shape, &refusal))?;
         acts.check_run(times[0], times[times.len() - 1])?;
         let ensemble = Ensemble {
             start: &start,
@@ -325,6 +299,50 @@ fn options_of<'py>(
     options.set_item("progress", progress)?;
     options.set_item("max_steps", max_steps)?;
     Ok(options)
+}
+
+/// The plane that a body rolls on, which says its velocity.
+fn read_rolling<'a, 'py>(
+    contact: Given<'a, 'py>,
+    velocity: Given<'_, 'py>,
+) -> PyResult<Option<&'a Bound<'py, PyContact>>> {
+    let contact = read_contact(contact)?;
+    if contact.is_some() && velocity.is_some_and(|velocity| !velocity.is_none()) {
+        return Err(PyValueError::new_err(
+            "velocity: a body that rolls has the velocity u - omega x r of rolling; leave it out",
+        ));
+    }
+    Ok(contact)
+}
+
+/// A fixed point has no velocity.
+fn check_velocity(pivoted: bool, velocity: Given<'_, '_>) -> PyResult<()> {
+    if pivoted && velocity.is_some() {
+        return Err(PyValueError::new_err(
+            "velocity: with about=\"origin\" that point is fixed in space and has no velocity",
+        ));
+    }
+    Ok(())
+}
+
+/// Why runs are not begun, with the body at fault.
+fn refused(py: Python<'_>, shape: &[usize], Refusal { body, error }: &Refusal) -> PyErr {
+    let error = to_py(py, error);
+    match body {
+        Some(row) => at_row(shape, *row, &error, py),
+        None => error,
+    }
+}
+
+/// Whether a failure ends the run.
+fn raises(on_failure: &str) -> PyResult<bool> {
+    match on_failure {
+        "raise" => Ok(true),
+        "keep" => Ok(false),
+        _ => Err(PyValueError::new_err(format!(
+            "on_failure: expected \"raise\" or \"keep\", got \"{on_failure}\""
+        ))),
+    }
 }
 
 /// The steps that a run may take.

@@ -69,8 +69,8 @@ impl RollingSeries {
         let state = equations.state(contact, start);
         let equations = equations.in_units(1.0 / length, 1.0 / power_below(mass), 1.0 / rate);
         let mut value = state.variables();
-        for i in 4..7 {
-            value[i] /= rate;
+        for omega in &mut value[4..7] {
+            *omega /= rate;
         }
         for place in &mut value[10..] {
             *place /= length;
@@ -151,13 +151,7 @@ impl RollingSeries {
     fn longest_step(&self) -> f64 {
         let coefficients = self.series.coefficients();
         let scale = |number: usize| match number {
-            4..7 => {
-                if self.fastest > 0.0 {
-                    self.fastest
-                } else {
-                    1.0
-                }
-            }
+            4..7 if self.fastest > 0.0 => self.fastest,
             10.. => self.farthest,
             _ => 1.0,
         };
@@ -205,9 +199,8 @@ impl RollingSeries {
         }
         let [x, y, z, w, ..] = self.value;
         let normal = normal_of([x, y, z, w]);
-        for i in 0..3 {
-            (self.value[7 + i], self.rest[7 + i]) = (normal[i], 0.0);
-        }
+        self.value[7..10].copy_from_slice(&normal);
+        self.rest[7..10].fill(0.0);
     }
 
     /// Return the end of the last step: time since the start of the run.
