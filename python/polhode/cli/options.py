@@ -101,8 +101,8 @@ class BodyOptions:
     density
         Density, such as "2.7 g/cm^3", or with its standard deviation "2.70 ± 0.02 g/cm^3". A number without
         a unit is in kg/m^3 if --length-unit is given, else in the file's own unit. Each component may have
-        its own density, with or without a sigma: "body=2700, insert=7.80(5) g/cm^3", by the names of OBJ
-        groups or by numbers.
+        its own density, with or without a sigma: "body=2700, insert=7.80(5) g/cm^3", by the names in the file
+        or by numbers; "*=1000" is that of all others. Of an image: a factor of its values, or one for each.
     mass
         Mass instead of density, such as "0.3 lb", or with its standard deviation "5.0 ± 0.1 kg" (also with
         +-), "5.0(1) kg" or "5.0 kg ± 2 %". A number without a unit is in kg if --length-unit is given.
