@@ -3,7 +3,7 @@
 use numpy::PyArray1;
 use polhode::motion::attitude::components;
 use polhode::motion::loads::{CarriedMomentum, Term};
-use polhode::motion::simulate::{Direction, Events, Rule, Watched};
+use polhode::motion::simulate::{Direction, EventTrigger, Events, Rule};
 use polhode::motion::state::Phase;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -94,7 +94,7 @@ impl Functions {
                 reason = "checked above to be a count"
             )]
             last: terminal as u64,
-            watched: read_event(function, load, terms)?,
+            trigger: read_event(function, load, terms)?,
         });
         Ok(())
     }
@@ -126,12 +126,12 @@ fn read_event(
     event: &Bound<'_, PyAny>,
     load: &PyLoad,
     terms: &Stack<Vec<Term>>,
-) -> PyResult<Watched> {
+) -> PyResult<EventTrigger> {
     let Some(of) = event
         .getattr_opt("_of_wheel")?
         .filter(|given| !given.is_none())
     else {
-        return Ok(Watched::Function);
+        return Ok(EventTrigger::Function);
     };
     let (kind, name): (String, String) = of.extract()?;
     let slots = load.slots();
@@ -149,11 +149,11 @@ fn read_event(
             "events: Event.{kind} asks for the wheel {name:?}; the load carries {known}"
         )));
     };
-    let (watched, has, lack): (_, fn(&dyn CarriedMomentum) -> bool, _) = match kind.as_str() {
-        "stop" => (Watched::Stop(slot.first), has_bearing, "dry friction"),
-        "slip" => (Watched::Slip(slot.first), has_bearing, "dry friction"),
+    let (trigger, has, lack): (_, fn(&dyn CarriedMomentum) -> bool, _) = match kind.as_str() {
+        "stop" => (EventTrigger::Stop(slot.first), has_bearing, "dry friction"),
+        "slip" => (EventTrigger::Slip(slot.first), has_bearing, "dry friction"),
         _ => (
-            Watched::Limit(slot.first),
+            EventTrigger::Limit(slot.first),
             |carried| carried.has_limit(),
             "a motor with a limit",
         ),
@@ -172,7 +172,7 @@ fn read_event(
             "events: Event.{kind} asks for a wheel with {lack}, which {name:?} is not"
         )));
     }
-    Ok(watched)
+    Ok(trigger)
 }
 
 fn has_bearing(carried: &dyn CarriedMomentum) -> bool {

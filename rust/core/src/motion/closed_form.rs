@@ -180,7 +180,7 @@ impl<M: ChooseFormula> Kernel for At<'_, M> {
 
     #[inline(always)]
     fn run<L: Lane>(self) -> State {
-        let [x, y, z, w, p, q, r] = self.motion.choose(Now(L::new(self.time))).map(L::get);
+        let [x, y, z, w, p, q, r] = self.motion.choose(AtTime(L::new(self.time))).map(L::get);
         State {
             attitude: UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)),
             omega: Vector3::new(p, q, r),
@@ -188,9 +188,9 @@ impl<M: ChooseFormula> Kernel for At<'_, M> {
     }
 }
 
-struct Now<L>(L);
+struct AtTime<L>(L);
 
-impl<L: Lane> UseFormula for Now<L> {
+impl<L: Lane> UseFormula for AtTime<L> {
     type Output = [L; 7];
 
     #[inline(always)]

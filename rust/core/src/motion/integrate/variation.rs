@@ -14,7 +14,7 @@ use super::taylor::solve_variational;
 use crate::error::{Error, MotionFault};
 use crate::motion::loads::Term;
 use crate::motion::loads::variables::{
-    ATTITUDE, Block, CENTER, LOAD, MASS, MOMENTS, PRODUCTS, Varied, WIDTH,
+    ATTITUDE, Block, CENTER, LOAD, MASS, MOMENTS, PRODUCTS, VariationJet, WIDTH,
 };
 use crate::motion::problem::{Task, check_times};
 
@@ -113,7 +113,7 @@ pub fn variations(
             first: index * WIDTH,
         };
         let mut watch = |part| watch((index as f64 + part) / blocks as f64);
-        let mut record = |k: usize, state: &[Varied; 7], own: &[Varied]| {
+        let mut record = |k: usize, state: &[VariationJet; 7], own: &[VariationJet]| {
             for (column, slopes) in (block.first..all).zip(columns(state)) {
                 if k > 0 {
                     found[k].set(column, &slopes);
@@ -250,7 +250,7 @@ impl Variation {
 }
 
 /// Compute the derivatives of (δ, ω) by the variables of a block: `δ = 2 vec(q⁻¹∘dq)`.
-fn columns(state: &[Varied; 7]) -> [Vector6<f64>; WIDTH] {
+fn columns(state: &[VariationJet; 7]) -> [Vector6<f64>; WIDTH] {
     let [.., x, y, z, w] = state;
     let at = Quaternion::new(w.value, x.value, y.value, z.value);
     let twice = 2.0 / at.norm_squared();

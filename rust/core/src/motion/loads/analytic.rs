@@ -2,7 +2,7 @@
 
 use super::body_at_point::BodyAtPoint;
 use super::carried_momentum::CarriedMomentum;
-use super::carried_momentum::Now;
+use super::carried_momentum::LawContext;
 use super::laws::Term;
 use super::load::Load;
 use super::stiction::Bearing;
@@ -155,7 +155,7 @@ impl Load for Analytic<'_> {
             if let Some(carried) = term.carried() {
                 if index == state && carried.count() > 0 {
                     let side = (term.switch(&self.body, t, phase)).map_or(1.0, |it| it.side);
-                    let now = Now {
+                    let now = LawContext {
                         body: &self.body,
                         t,
                         middle: self.middle,
@@ -194,7 +194,7 @@ impl Load for Analytic<'_> {
                 let mine = states.split_off(..carried.count()).unwrap_or_default();
                 let unsettled =
                     || (term.switch(&self.body, t, phase)).map_or(1.0, |switch| switch.side);
-                let now = Now {
+                let now = LawContext {
                     body: &self.body,
                     t,
                     middle: self.middle,

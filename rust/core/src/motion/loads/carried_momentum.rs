@@ -48,16 +48,16 @@ pub trait CarriedMomentum {
     }
 
     /// By how much more than its limit its motor is asked for: `(τ/limit)² − 1`; less than zero of one without.
-    fn over_limit(&self, now: &Now<'_>) -> f64 {
+    fn over_limit(&self, now: &LawContext<'_>) -> f64 {
         let _ = now;
         -1.0
     }
 
     /// The torque about the reference point that stands beside that tensor.
-    fn torque(&self, now: &Now<'_>, state: &[f64]) -> Vector3<f64>;
+    fn torque(&self, now: &LawContext<'_>, state: &[f64]) -> Vector3<f64>;
 
     /// The rates of its states, into `rates`.
-    fn rates(&self, now: &Now<'_>, state: &[f64], rates: &mut [f64]);
+    fn rates(&self, now: &LawContext<'_>, state: &[f64], rates: &mut [f64]);
 
     /// Its momentum beside I ω.
     fn momentum(&self, state: &[f64], omega: &Vector3<f64>) -> Vector3<f64>;
@@ -68,7 +68,7 @@ pub trait CarriedMomentum {
 
 /// When, on what and in which state a law acts within a run.
 #[derive(Clone, Copy, Debug)]
-pub struct Now<'a> {
+pub struct LawContext<'a> {
     /// What it acts on.
     pub body: &'a BodyAtPoint,
     /// The time.

@@ -92,7 +92,7 @@ pub use self::orbit_model::OrbitModel;
 pub use self::piecewise_signal::PiecewiseSignal;
 pub(crate) use self::principal_frame::{LawNumber, PrincipalFrame};
 pub use self::schedule::Windows;
-pub(crate) use self::series_terms::{Forcing, OnOrbit, When};
+pub(crate) use self::series_terms::{Forcing, OrbitState, StepTime};
 pub(crate) use self::series_terms::{FormulaStep, TorqueFormula};
 pub(crate) use self::series_terms::{InternalState, SeriesStructure, SeriesTerms};
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::body_at_point::BodyAtPoint;
-use super::variables::{Block, CENTER, Fixed, MASS, ParameterColumns, Variables, Varied};
+use super::variables::{Block, CENTER, Fixed, MASS, ParameterColumns, Variables, VariationJet};
 use crate::motion::attitude::components;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::number::Real;
@@ -47,7 +47,7 @@ impl LawNumber for DoubleDouble {
     }
 }
 
-impl LawNumber for Varied {
+impl LawNumber for VariationJet {
     type Variables = Block;
 
     fn quaternion(rotation: &UnitQuaternion<f64>) -> [Self; 4] {

@@ -321,14 +321,14 @@ pub(crate) struct Forcing<X> {
     /// Torques in N: coefficients of a cubic.
     pub in_space: [Vector3<X>; 4],
     /// One for each gravity gradient that acts.
-    pub orbits: Vec<OnOrbit<X>>,
+    pub orbits: Vec<OrbitState<X>>,
     /// Whether these are known already and not asked for.
     pub has_orbits: bool,
 }
 
 /// A state on an orbit, lengths over the distance r₀ of this time, times in the unit of rates.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct OnOrbit<X> {
+pub(crate) struct OrbitState<X> {
     /// From the attractor, in N: a unit vector.
     pub position: Vector3<X>,
     /// In N.
@@ -360,7 +360,7 @@ impl<X: Real> Forcing<X> {
     }
 }
 
-impl<X: Real> OnOrbit<X> {
+impl<X: Real> OrbitState<X> {
     /// That of a term that does not act.
     #[must_use]
     pub(crate) fn none() -> Self {
@@ -375,7 +375,7 @@ impl<X: Real> OnOrbit<X> {
 
 /// A time at which a step begins.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct When<X> {
+pub(crate) struct StepTime<X> {
     /// Since the start of the motion, and when that was.
     pub elapsed: X,
     /// The start of the motion.
@@ -394,7 +394,7 @@ pub(crate) trait CubicTorque<X: LawNumber>: Debug {
     fn frame(&self) -> Frame;
 
     /// The coefficients of the cubic around a time, in the body's axes or in N, in units of the unit of rates.
-    fn cubic(&self, axes: &PrincipalFrame<'_, X>, when: &When<X>) -> [Vector3<X>; 4];
+    fn cubic(&self, axes: &PrincipalFrame<'_, X>, when: &StepTime<X>) -> [Vector3<X>; 4];
 
     /// About the square of the fastest rate that it makes in a segment with the time `middle` in it; `over_moment` is one over the
     /// least moment of inertia.
@@ -407,7 +407,7 @@ pub(crate) trait CubicTorque<X: LawNumber>: Debug {
 /// A gravity gradient, whose torque `r×I r` has no component along an axis without a moment.
 pub(crate) trait OrbitTorque<X: LawNumber>: Debug {
     /// Where the body is at a time.
-    fn on_orbit(&self, axes: &PrincipalFrame<'_, X>, when: &When<X>) -> OnOrbit<X>;
+    fn on_orbit(&self, axes: &PrincipalFrame<'_, X>, when: &StepTime<X>) -> OrbitState<X>;
 
     /// About the square of the fastest rate that it makes.
     fn square_of_rate(&self, body: &BodyAtPoint) -> f64;

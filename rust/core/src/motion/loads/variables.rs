@@ -29,7 +29,7 @@ pub(in crate::motion) const LOAD: usize = 16;
 pub(in crate::motion) const WIDTH: usize = 8;
 
 /// A number with its derivatives by the variables of a [`Block`].
-pub(in crate::motion) type Varied = Jet<WIDTH>;
+pub(in crate::motion) type VariationJet = Jet<WIDTH>;
 
 /// Which variables are varied.
 pub(crate) trait Variables<X: Real>: Copy + Debug + Send + Sync {
@@ -95,18 +95,18 @@ pub(crate) struct Block {
     pub first: usize,
 }
 
-impl Variables<Varied> for Block {
-    fn number(self, value: f64, column: usize) -> Varied {
+impl Variables<VariationJet> for Block {
+    fn number(self, value: f64, column: usize) -> VariationJet {
         match column.checked_sub(self.first) {
-            Some(index) if index < WIDTH => Varied::variable(value, index),
-            _ => Varied::constant(value),
+            Some(index) if index < WIDTH => VariationJet::variable(value, index),
+            _ => VariationJet::constant(value),
         }
     }
 
-    fn vary_attitude(self, q: [Varied; 4], column: usize) -> [Varied; 4] {
-        let half = Varied::constant(0.5);
+    fn vary_attitude(self, q: [VariationJet; 4], column: usize) -> [VariationJet; 4] {
+        let half = VariationJet::constant(0.5);
         let [x, y, z] = [0, 1, 2].map(|i| self.number(0.0, column + i) * half);
-        product(q, [x, y, z, Varied::constant(1.0)])
+        product(q, [x, y, z, VariationJet::constant(1.0)])
     }
 
     fn varies(self, columns: Range<usize>) -> bool {
@@ -127,7 +127,7 @@ impl Variables<Varied> for Block {
         orbit: &Orbit,
         elapsed: f64,
         [mu, position, velocity]: [usize; 3],
-    ) -> (Vector3<Varied>, Vector3<Varied>) {
+    ) -> (Vector3<VariationJet>, Vector3<VariationJet>) {
         let number = |value, n| {
             let column = match n {
                 0 => mu,

@@ -11,5 +11,7 @@ mod outcome;
 mod task;
 
 pub use self::limits::{MOST_STEPS, check_scales, check_times};
-pub use self::outcome::{ContactExtremes, Crossing, Direction, Effort, End, Rule, Run, Watched};
+pub use self::outcome::{
+    ContactExtremes, Crossing, Direction, Effort, End, EventTrigger, Rule, Run,
+};
 pub use self::task::{Method, ReferencePoint, TIGHTEST, TIGHTEST_TWOFOLD, Task, Tolerance};

@@ -123,7 +123,7 @@ pub enum Direction {
 
 /// What is looked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Watched {
+pub enum EventTrigger {
     /// The passages of a function through zero.
     #[default]
     Function,
@@ -143,7 +143,7 @@ pub struct Rule {
     /// The run ends at the passage of this number; 0 for never.
     pub last: u64,
     /// Of what.
-    pub watched: Watched,
+    pub trigger: EventTrigger,
 }
 
 /// A passage through zero.

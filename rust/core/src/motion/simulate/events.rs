@@ -6,7 +6,7 @@ use super::roots_in_step::{Look, MOST_LOOKS, RootSearch, sign};
 use super::stepper::Dense;
 use crate::error::{Error, MotionFault};
 use crate::motion::loads::LawSwitch;
-use crate::motion::problem::{Crossing, Direction, Rule, Watched};
+use crate::motion::problem::{Crossing, Direction, EventTrigger, Rule};
 use crate::motion::state::Phase;
 
 /// Functions whose passages through zero are events.
@@ -89,10 +89,10 @@ impl<'a, E: From<Error>> EventDetector<'a, E> {
     ) -> Result<Self, E> {
         let rules = events.rules().to_vec();
         let values = (0..rules.len())
-            .map(|event| match rules[event].watched {
-                Watched::Function => events.value(event, t, phase),
-                Watched::Limit(state) => Ok(over_limit(state)),
-                Watched::Stop(_) | Watched::Slip(_) => Ok(f64::NAN),
+            .map(|event| match rules[event].trigger {
+                EventTrigger::Function => events.value(event, t, phase),
+                EventTrigger::Limit(state) => Ok(over_limit(state)),
+                EventTrigger::Stop(_) | EventTrigger::Slip(_) => Ok(f64::NAN),
             })
             .collect::<Result<Vec<_>, E>>()?;
         Ok(Self {
@@ -165,14 +165,14 @@ impl<'a, E: From<Error>> EventDetector<'a, E> {
         let (mut found, mut to) = (Vec::new(), to);
         for event in 0..self.rules.len() {
             let (events, rule) = (&mut *self.events, self.rules[event]);
-            let watched = rule.watched;
-            if matches!(watched, Watched::Stop(_) | Watched::Slip(_)) {
+            let trigger = rule.trigger;
+            if matches!(trigger, EventTrigger::Stop(_) | EventTrigger::Slip(_)) {
                 continue; // told by the load
             }
             let turn = stepper.turn(to - from);
             let mut search = RootSearch {
-                function: &mut |stepper, at, phase| match watched {
-                    Watched::Limit(state) => Ok(stepper.over_limit(state, at, phase)),
+                function: &mut |stepper, at, phase| match trigger {
+                    EventTrigger::Limit(state) => Ok(stepper.over_limit(state, at, phase)),
                     _ => events.value(event, start + at, phase),
                 },
                 event: Some(event),
@@ -255,14 +255,14 @@ impl<'a, E: From<Error>> EventDetector<'a, E> {
 
     /// A change of the law of the load, at this time and state; whether the run is to end there.
     pub(super) fn note(&mut self, change: &LawSwitch, time: f64, phase: &Phase) -> bool {
-        let watched = match change {
-            LawSwitch::Stop(bearing) => Watched::Stop(bearing.index()),
-            LawSwitch::Slip(bearing) => Watched::Slip(bearing.index()),
+        let trigger = match change {
+            LawSwitch::Stop(bearing) => EventTrigger::Stop(bearing.index()),
+            LawSwitch::Slip(bearing) => EventTrigger::Slip(bearing.index()),
             LawSwitch::Sign(_) => return false,
         };
         let mut is_last = false;
         for event in 0..self.rules.len() {
-            if self.rules[event].watched == watched {
+            if self.rules[event].trigger == trigger {
                 is_last |= self.count(event, time, phase);
             }
         }

@@ -23,7 +23,7 @@
 //! use polhode::motion::loads::{Callback, CarriedMomentum, BodyAtPoint, Term};
 //! use polhode::motion::simulate::{
 //!     Crossing, Direction, End, Events, ReferencePoint, MOST_STEPS, Method, Phase, Rule, Run, State, TIGHTEST, TIGHTEST_TWOFOLD, Task,
-//!     Tolerance, Watched, check_scales, simulate,
+//!     Tolerance, EventTrigger, check_scales, simulate,
 //! };
 //! use polhode::nalgebra::{UnitQuaternion, Vector3};
 //!
@@ -34,7 +34,7 @@
 //!     type Error = polhode::Error;
 //!
 //!     fn rules(&self) -> &[Rule] {
-//!         &[Rule { direction: Direction::Rising, last: 2, watched: Watched::Function }]
+//!         &[Rule { direction: Direction::Rising, last: 2, trigger: EventTrigger::Function }]
 //!     }
 //!
 //!     fn value(&mut self, _: usize, _: f64, phase: &Phase) -> Result<f64, Self::Error> {
@@ -92,7 +92,8 @@ pub use self::events::{Events, NoEvents};
 pub use self::plan::{Ask, Plan, Refusal, gravity_alone, most_demanding};
 pub use self::runs::{Batch, CallbackPolicy, Member, roll, simulate, simulate_many};
 pub use super::problem::{
-    ContactExtremes, Crossing, Direction, Effort, End, MOST_STEPS, Method, ReferencePoint, Rule,
-    Run, TIGHTEST, TIGHTEST_TWOFOLD, Task, Tolerance, Watched, check_scales, check_times,
+    ContactExtremes, Crossing, Direction, Effort, End, EventTrigger, MOST_STEPS, Method,
+    ReferencePoint, Rule, Run, TIGHTEST, TIGHTEST_TWOFOLD, Task, Tolerance, check_scales,
+    check_times,
 };
 pub use super::state::{Phase, State};

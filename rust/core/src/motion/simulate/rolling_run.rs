@@ -10,7 +10,9 @@ use super::stepper::Dense;
 use crate::error::{Error, MotionFault};
 use crate::motion::integrate::rolling::RollingSeries;
 use crate::motion::problem::limits::check_steps;
-use crate::motion::problem::{ContactExtremes, Crossing, Direction, End, Rule, Run, Task, Watched};
+use crate::motion::problem::{
+    ContactExtremes, Crossing, Direction, End, EventTrigger, Rule, Run, Task,
+};
 use crate::motion::rolling::force::{Instant, instant, normal_in_body};
 use crate::motion::rolling::{Contact, LiftOff};
 use crate::motion::state::Phase;
@@ -178,7 +180,7 @@ impl<'a, E> WithContact<'a, E> {
         let falling = |last| Rule {
             direction: Direction::Falling,
             last,
-            watched: Watched::Function,
+            trigger: EventTrigger::Function,
         };
         let ends = u64::from(rolling.contact.lift == LiftOff::Stop);
         rules.extend([falling(ends), falling(1)]);

@@ -72,7 +72,7 @@ impl<E> Run<E> {
                 carry = stepper.carry();
                 drop(stepper);
                 match ended {
-                    Ok(Reached::End) => {
+                    Ok(SpanEnd::End) => {
                         // To the bit, where a start and a length of time would round.
                         self.time = span.to;
                         match flip.take() {
@@ -87,7 +87,7 @@ impl<E> Run<E> {
                             None => break,
                         }
                     }
-                    Ok(Reached::Flip { change, time }) => {
+                    Ok(SpanEnd::Flip { change, time }) => {
                         from = self.time;
                         if from == time {
                             // Here and now. A law that changes back each time holds the body where it changes.
@@ -112,7 +112,7 @@ impl<E> Run<E> {
                             flips_at_once = 0;
                         }
                     }
-                    Ok(Reached::Over(end)) => {
+                    Ok(SpanEnd::Over(end)) => {
                         self.crossings = detector.crossings;
                         return Ok(end);
                     }
@@ -154,7 +154,7 @@ impl<E> Run<E> {
         may_flip: bool,
         detector: &mut EventDetector<'_, E>,
         watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
-    ) -> Result<Reached<E>, E>
+    ) -> Result<SpanEnd<E>, E>
     where
         E: From<Error>,
     {
@@ -169,14 +169,14 @@ impl<E> Run<E> {
         loop {
             let before = stepper.elapsed();
             if before == length {
-                return Ok(Reached::End);
+                return Ok(SpanEnd::End);
             }
             stepper.advance()?;
             let flip = law_switches::find_first(&changes, stepper, from, before, &self.phase)?;
             if let Some((change, place)) = flip {
                 // The step is made again, to end there.
                 let time = from + place;
-                return Ok(Reached::Flip { change, time });
+                return Ok(SpanEnd::Flip { change, time });
             }
             let reached = stepper.elapsed();
             let steps = self.effort.steps + stepper.effort().steps;
@@ -222,14 +222,14 @@ impl<E> Run<E> {
                 Ok(ControlFlow::Continue(()))
             })?;
             if let ControlFlow::Break(end) = found {
-                return Ok(Reached::Over(end));
+                return Ok(SpanEnd::Over(end));
             }
         }
     }
 }
 
 /// What a span came to.
-enum Reached<E> {
+enum SpanEnd<E> {
     /// Its end.
     End,
     /// A step within which the law of the load changes: by what, and when.

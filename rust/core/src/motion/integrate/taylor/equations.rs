@@ -12,11 +12,11 @@ use crate::motion::attitude::{components, from_axes};
 use crate::motion::euler_equations::EulerEquations;
 use crate::motion::kinematics::Frame;
 use crate::motion::loads::variables::{
-    ATTITUDE, Block, Fixed, MASS, MOMENTS, PRODUCTS, RATES, Variables, Varied, WIDTH,
+    ATTITUDE, Block, Fixed, MASS, MOMENTS, PRODUCTS, RATES, Variables, VariationJet, WIDTH,
 };
 use crate::motion::loads::{
     BodyAtPoint, Forcing, InternalState, LawNumber, ParameterColumns, PrincipalFrame,
-    SeriesStructure, SeriesTerms, Term, TorqueFormula, When,
+    SeriesStructure, SeriesTerms, StepTime, Term, TorqueFormula,
 };
 use crate::motion::problem::Task;
 use crate::motion::problem::limits::check_steps;
@@ -413,7 +413,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
 
     /// Add the terms that depend on time alone, at `now`.
     pub(super) fn force(&self, forcing: &mut Forcing<X>, now: (f64, f64)) {
-        let when = When {
+        let when = StepTime {
             elapsed: X::pair(now.0, now.1) / X::from(self.unit),
             start: self.task.times[0],
             time: self.time(now),
@@ -801,7 +801,7 @@ impl Precision for DoubleDouble {
 }
 
 /// The tensor of a body with a zero moment has no derivatives: such a body has neighbours on one side only.
-impl Precision for Varied {
+impl Precision for VariationJet {
     const CARRIES_ORBITS: bool = false;
     const REST_SPEED: f64 = 1e-8;
     const REST_SPEED_BESIDE_TORQUES: f64 = 1e-10;
@@ -856,10 +856,10 @@ impl Precision for Varied {
     }
 }
 
-impl PrincipalInertia<Varied> {
+impl PrincipalInertia<VariationJet> {
     /// Add the derivatives of a tensor in these axes.
-    fn add(&mut self, tensor: &Matrix3<Varied>) {
-        let slopes = |x: Varied| Varied { value: 0.0, ..x };
+    fn add(&mut self, tensor: &Matrix3<VariationJet>) {
+        let slopes = |x: VariationJet| VariationJet { value: 0.0, ..x };
         for n in 0..3 {
             self.moments[n] += slopes(tensor[(n, n)]);
         }

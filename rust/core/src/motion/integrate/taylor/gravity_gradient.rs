@@ -9,7 +9,7 @@ use super::equations::LinearTerms;
 use super::equations::quaternion_of_matrix;
 use super::orbit_series::OrbitSeries;
 use super::series::{MAX_COUNT, Series};
-use crate::motion::loads::OnOrbit;
+use crate::motion::loads::OrbitState;
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
 use crate::numerics::number::{Number, Real};
@@ -69,7 +69,7 @@ impl<L: Number, const R: usize> GravityGradientSeries<Batch<L, R>> {
     }
 
     /// Set the state of the orbit of one row at the start of a step.
-    pub(super) fn set(&mut self, row: usize, at: &OnOrbit<L::Real>) {
+    pub(super) fn set(&mut self, row: usize, at: &OrbitState<L::Real>) {
         let (n, v) = (at.position, at.velocity);
         let swept = n.cross(&v);
         let around = swept.dot(&swept).root();

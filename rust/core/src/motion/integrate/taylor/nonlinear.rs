@@ -10,7 +10,7 @@ use super::equations::Precision;
 use super::gravity_gradient::GravityGradientSeries;
 use super::orbit_cache::{OrbitSeriesCache, round_step_end};
 use super::series::{MAX_COUNT, Series};
-use crate::motion::loads::{Forcing, FormulaStep, OnOrbit, SeriesStructure, TorqueFormula};
+use crate::motion::loads::{Forcing, FormulaStep, OrbitState, SeriesStructure, TorqueFormula};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
 use crate::numerics::number::{Number, Real};
@@ -116,7 +116,7 @@ impl<L: Number<Real: Precision>, const R: usize> NonlinearTerms<Batch<L, R>> {
         if !forcing.has_orbits {
             let mut orbits = forcing.orbits.iter();
             for gradient in &mut self.gradients {
-                gradient.set(row, orbits.next().unwrap_or(&OnOrbit::none()));
+                gradient.set(row, orbits.next().unwrap_or(&OrbitState::none()));
             }
         }
     }

@@ -15,7 +15,7 @@ use super::single::SingleMotionSeries;
 use super::step::{Observer, Step};
 use super::variational::{ORDER, VariationalSeries};
 use crate::error::{Error, MotionFault};
-use crate::motion::loads::variables::{Block, Fixed, Varied};
+use crate::motion::loads::variables::{Block, Fixed, VariationJet};
 use crate::motion::loads::{SeriesStructure, Term};
 use crate::motion::problem::{End, Run, Task, check_times};
 use crate::numerics::dispatch::{Kernel, dispatch};
@@ -259,7 +259,7 @@ pub(in crate::motion::integrate) fn solve_variational(
     task: &Task<'_>,
     terms: &[Term],
     block: Block,
-    sink: SampleSink<'_, Varied>,
+    sink: SampleSink<'_, VariationJet>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<(), Error> {
     let mut run = Run::at_start(task, End::Stopped);
@@ -271,12 +271,12 @@ pub(in crate::motion::integrate) fn solve_variational(
         return Ok(());
     }
     let mut next = 1;
-    let mut sink = |k: usize, state: &[Varied; 7], own: &[Varied]| {
+    let mut sink = |k: usize, state: &[VariationJet; 7], own: &[VariationJet]| {
         next = k + 1;
         sink(k, state, own);
     };
     // The path of the body is not part of the motion here.
-    let parts = parts::<Varied>(terms, &task.body_at_point, block, false);
+    let parts = parts::<VariationJet>(terms, &task.body_at_point, block, false);
     let settings = Settings::of_derivatives(ORDER, parts);
     let job = Job {
         equations,
@@ -308,11 +308,11 @@ pub(in crate::motion::integrate) fn solve_variational(
 #[inline(never)]
 fn drive_directions<const B: usize>(
     settings: Settings,
-    jobs: &mut dyn Iterator<Item = Job<'_, Varied>>,
+    jobs: &mut dyn Iterator<Item = Job<'_, VariationJet>>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
     cache: &mut OrbitSeriesCache,
 ) -> ControlFlow<()> {
-    drive::<Varied, VariationalSeries<B>, B, 1>(settings, jobs, watch, None, cache)
+    drive::<VariationJet, VariationalSeries<B>, B, 1>(settings, jobs, watch, None, cache)
 }
 
 fn choose_settings(task: &Task<'_>, parts: SeriesStructure) -> Settings {

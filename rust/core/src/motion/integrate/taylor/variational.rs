@@ -5,7 +5,7 @@
 
 use super::batch::Batch;
 use super::series::{AnyNumber, Coefficient, Coefficients};
-use crate::motion::loads::variables::{Varied, WIDTH};
+use crate::motion::loads::variables::{VariationJet, WIDTH};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
 
@@ -19,12 +19,12 @@ pub(super) struct Slopes(pub(super) [f64; WIDTH]);
 
 /// The coefficients of one number of the motion.
 #[derive(Clone, Debug)]
-pub(super) struct VariedCoefficients {
+pub(super) struct JetCoefficients {
     pub(super) values: [f64; ORDER + 1],
     pub(super) slopes: [Slopes; ORDER + 1],
 }
 
-impl VariedCoefficients {
+impl JetCoefficients {
     /// Return coefficients that are all zero.
     pub(super) fn new() -> Self {
         Self {
@@ -35,42 +35,42 @@ impl VariedCoefficients {
 
     /// Set the coefficient of order `k`.
     #[inline(always)]
-    pub(super) fn set(&mut self, k: usize, number: &Varied) {
+    pub(super) fn set(&mut self, k: usize, number: &VariationJet) {
         self.values[k] = number.value;
         self.slopes[k].0 = number.slopes;
     }
 
     /// Return the coefficient of order `k`.
     #[inline(always)]
-    pub(super) fn get(&self, k: usize) -> Varied {
-        Varied {
+    pub(super) fn get(&self, k: usize) -> VariationJet {
+        VariationJet {
             value: self.values[k],
             slopes: self.slopes[k].0,
         }
     }
 }
 
-type One = Batch<Varied, 1>;
+type One = Batch<VariationJet, 1>;
 
 /// The series of one motion with derivatives: of ω, of (x, y, z, w), and of each direction.
 pub(super) struct VariationalSeries<const B: usize> {
-    w: [VariedCoefficients; 3],
-    q: [VariedCoefficients; 4],
-    g: [[VariedCoefficients; 3]; B],
+    w: [JetCoefficients; 3],
+    q: [JetCoefficients; 4],
+    g: [[JetCoefficients; 3]; B],
     /// Of ω, and of the attitude.
     radii: [ConvergenceRadius; 2],
 }
 
 /// The sums of products: ω₂ω₃, ω₃ω₁, ω₁ω₂; q∘ω and γ×ω.
 pub(super) struct Products<const B: usize> {
-    spins: [Varied; 3],
-    turned: [Varied; 4],
-    crossed: [[Varied; 3]; B],
+    spins: [VariationJet; 3],
+    turned: [VariationJet; 4],
+    crossed: [[VariationJet; 3]; B],
 }
 
 impl<const B: usize> Coefficients<One, B> for VariationalSeries<B> {
     fn new() -> Self {
-        let row = |_| VariedCoefficients::new();
+        let row = |_| JetCoefficients::new();
         Self {
             w: std::array::from_fn(row),
             q: std::array::from_fn(row),
@@ -100,7 +100,7 @@ impl<const B: usize> Coefficients<One, B> for VariationalSeries<B> {
     #[inline(always)]
     fn get(&self, k: usize) -> Coefficient<One, B> {
         let ([a, b, c], [x, y, z, s]) = (&self.w, &self.q);
-        let at = |row: &VariedCoefficients| Batch([row.get(k)]);
+        let at = |row: &JetCoefficients| Batch([row.get(k)]);
         let mut g = [[Batch::new(0.0); 3]; B];
         for (g, [a, b, c]) in g.iter_mut().zip(&self.g) {
             *g = [at(a), at(b), at(c)];
@@ -182,7 +182,7 @@ impl<const B: usize> Kernel for SumsOfProducts<'_, B> {
                 product::<L, 3>(k, [(1.0, s, r), (1.0, x, q), (-1.0, y, p)]),
                 product::<L, 3>(k, [(-1.0, x, p), (-1.0, y, q), (-1.0, z, r)]),
             ],
-            crossed: [[Varied::constant(0.0); 3]; B],
+            crossed: [[VariationJet::constant(0.0); 3]; B],
         };
         for b in 0..B {
             let [i, j, l] = &g[b];
@@ -200,9 +200,9 @@ impl<const B: usize> Kernel for SumsOfProducts<'_, B> {
 #[inline(always)]
 fn product<L: Lane, const N: usize>(
     k: usize,
-    products: [(f64, &VariedCoefficients, &VariedCoefficients); N],
-) -> Varied {
-    let mut sum = Varied::constant(0.0);
+    products: [(f64, &JetCoefficients, &JetCoefficients); N],
+) -> VariationJet {
+    let mut sum = VariationJet::constant(0.0);
     for (sign, a, b) in products {
         let mut value = L::new(0.0);
         let mut slopes = [L::new(0.0); WIDTH];
@@ -248,7 +248,7 @@ impl ConvergenceRadius {
     ///
     /// Terms are compared with the largest size so far or within the step. The latter depends on the step, hence the iteration.
     /// Source: Jorba & Zou, Experimental Mathematics 14 (2005) 99.
-    pub(super) fn longest_step(&mut self, rows: &[VariedCoefficients]) -> f64 {
+    pub(super) fn longest_step(&mut self, rows: &[JetCoefficients]) -> f64 {
         self.longest_step_of(&|k| sizes(rows, k))
     }
 
@@ -290,7 +290,7 @@ impl ConvergenceRadius {
 }
 
 /// Compute the sums of magnitudes of the coefficients of order `k`: of the values, and of each derivative.
-fn sizes(rows: &[VariedCoefficients], k: usize) -> [f64; WIDTH + 1] {
+fn sizes(rows: &[JetCoefficients], k: usize) -> [f64; WIDTH + 1] {
     let mut sizes = [0.0; WIDTH + 1];
     for number in rows.iter().map(|row| row.get(k)) {
         let (values, slopes) = sizes.split_at_mut(1);

@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Matrix3x4, UnitQuaternion, Vector3, Vector4};
 use crate::error::{Error, all_finite};
 use crate::motion::loads::attitude_target::AttitudeTarget;
 use crate::motion::loads::body_at_point::BodyAtPoint;
-use crate::motion::loads::carried_momentum::Now;
+use crate::motion::loads::carried_momentum::LawContext;
 use crate::motion::loads::law::{ConservedMomentum, Law, Traits};
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
 use crate::motion::loads::series_terms::SeriesTerms;
@@ -72,7 +72,7 @@ impl Feedback {
 
     /// The torque that it asks for, with the sign of w that it is taken for.
     #[inline]
-    pub(super) fn torque_on(&self, now: &Now<'_>) -> Vector3<f64> {
+    pub(super) fn torque_on(&self, now: &LawContext<'_>) -> Vector3<f64> {
         let (error, omega) = attitude_error(&self.target, now.body.start, now.t, now.phase);
         self.torque(now.side, &error, &omega)
     }

@@ -10,7 +10,7 @@ use crate::motion::loads::law::{ConservedMomentum, Law, Traits};
 use crate::motion::loads::orbit_model::OrbitModel;
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
 use crate::motion::loads::series_terms::SeriesTerms;
-use crate::motion::loads::series_terms::{OnOrbit, OrbitTorque, When};
+use crate::motion::loads::series_terms::{OrbitState, OrbitTorque, StepTime};
 use crate::motion::loads::variables::Parameter;
 use crate::motion::loads::variables::Variables;
 use crate::motion::loads::wrench::Wrench;
@@ -196,10 +196,10 @@ impl Law for GravityGradient {
 }
 
 impl<X: LawNumber> OrbitTorque<X> for GravityGradient {
-    fn on_orbit(&self, axes: &PrincipalFrame<'_, X>, when: &When<X>) -> OnOrbit<X> {
+    fn on_orbit(&self, axes: &PrincipalFrame<'_, X>, when: &StepTime<X>) -> OrbitState<X> {
         // Others have no series.
         let Some((orbit, epoch)) = self.orbit.as_kepler() else {
-            return OnOrbit::none();
+            return OrbitState::none();
         };
         let elapsed = when.time - epoch.unwrap_or(axes.body.start);
         let columns = ["mu", "position", "velocity"].map(|name| axes.parameters.of(name).start);
@@ -208,7 +208,7 @@ impl<X: LawNumber> OrbitTorque<X> for GravityGradient {
         let cube = distance * distance * distance * unit * unit;
         let mu = axes.number(self.mu(), "mu");
         let more = (mu - X::from(self.mu())) * X::from(3.0 * self.strength); // zero, but its derivatives are not
-        OnOrbit {
+        OrbitState {
             position: r / distance,
             velocity: v / (distance * unit),
             pull: mu / cube,

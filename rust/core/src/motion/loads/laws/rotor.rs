@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use crate::error::{Error, all_finite};
 use crate::motion::loads::body_at_point::BodyAtPoint;
 use crate::motion::loads::carried_momentum::CarriedMomentum;
-use crate::motion::loads::carried_momentum::Now;
+use crate::motion::loads::carried_momentum::LawContext;
 use crate::motion::loads::law::{ConservedMomentum, Law, Traits};
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
 use crate::motion::loads::series_terms::SeriesTerms;
@@ -132,11 +132,11 @@ impl CarriedMomentum for Rotor {
         None
     }
 
-    fn torque(&self, now: &Now<'_>, _: &[f64]) -> Vector3<f64> {
+    fn torque(&self, now: &LawContext<'_>, _: &[f64]) -> Vector3<f64> {
         self.momentum.cross(&now.phase.omega)
     }
 
-    fn rates(&self, _: &Now<'_>, _: &[f64], _: &mut [f64]) {}
+    fn rates(&self, _: &LawContext<'_>, _: &[f64], _: &mut [f64]) {}
 
     fn momentum(&self, _: &[f64], _: &Vector3<f64>) -> Vector3<f64> {
         self.momentum

@@ -11,7 +11,7 @@ use crate::motion::loads::body_at_point::BodyAtPoint;
 use crate::motion::loads::law::{ConservedMomentum, Law, Traits};
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame, exact};
 use crate::motion::loads::series_terms::SeriesTerms;
-use crate::motion::loads::series_terms::{CubicTorque, When};
+use crate::motion::loads::series_terms::{CubicTorque, StepTime};
 use crate::motion::loads::spline::{Spline, pieces};
 use crate::motion::loads::variables::Parameter;
 use crate::motion::loads::variables::Variables;
@@ -217,7 +217,7 @@ impl<X: LawNumber> CubicTorque<X> for Sampled {
         self.frame
     }
 
-    fn cubic(&self, axes: &PrincipalFrame<'_, X>, when: &When<X>) -> [Vector3<X>; 4] {
+    fn cubic(&self, axes: &PrincipalFrame<'_, X>, when: &StepTime<X>) -> [Vector3<X>; 4] {
         let (from, [c0, c1, c2, c3]) = self.varied_piece(axes, when.middle);
         let x = when.elapsed + X::pair(when.start, -from);
         let (two, three) = (X::from(2.0), X::from(3.0));
@@ -269,7 +269,7 @@ mod tests {
 
     use super::*;
     use crate::motion::loads::ParameterColumns;
-    use crate::motion::loads::variables::{Block, Varied};
+    use crate::motion::loads::variables::{Block, VariationJet};
 
     #[test]
     fn cubics_come_back_as_they_are() {
@@ -311,7 +311,10 @@ mod tests {
             values[k] = Vector3::new(1.0, 0.0, 0.0);
             Sampled::new(&knots, &values, Frame::Body).expect("ascending")
         };
-        let (columns, q_bp) = (Matrix3::identity(), [0.0, 0.0, 0.0, 1.0].map(Varied::from));
+        let (columns, q_bp) = (
+            Matrix3::identity(),
+            [0.0, 0.0, 0.0, 1.0].map(VariationJet::from),
+        );
         let body = BodyAtPoint {
             mass: 1.0,
             inertia: Matrix3::identity(),

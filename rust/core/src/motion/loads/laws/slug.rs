@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use crate::error::{Error, MotionFault, finite};
 use crate::motion::loads::body_at_point::BodyAtPoint;
 use crate::motion::loads::carried_momentum::CarriedMomentum;
-use crate::motion::loads::carried_momentum::Now;
+use crate::motion::loads::carried_momentum::LawContext;
 use crate::motion::loads::law::{ConservedMomentum, Law, Traits};
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
 use crate::motion::loads::series_terms::{InternalState, SeriesTerms};
@@ -161,11 +161,11 @@ impl CarriedMomentum for Slug {
         None
     }
 
-    fn torque(&self, now: &Now<'_>, state: &[f64]) -> Vector3<f64> {
+    fn torque(&self, now: &LawContext<'_>, state: &[f64]) -> Vector3<f64> {
         self.drag(&now.phase.omega, state)
     }
 
-    fn rates(&self, now: &Now<'_>, state: &[f64], rates: &mut [f64]) {
+    fn rates(&self, now: &LawContext<'_>, state: &[f64], rates: &mut [f64]) {
         let (sigma, omega) = (Vector3::from_column_slice(state), &now.phase.omega);
         let rate = -self.drag(omega, state) / self.inertia - omega.cross(&sigma);
         rates.copy_from_slice(rate.as_slice());

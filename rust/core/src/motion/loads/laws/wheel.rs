@@ -6,7 +6,7 @@ use super::feedback::Feedback;
 use super::slug::{not_negative, positive};
 use crate::error::{Error, MotionFault, finite};
 use crate::motion::loads::body_at_point::BodyAtPoint;
-use crate::motion::loads::carried_momentum::{CarriedMomentum, Now};
+use crate::motion::loads::carried_momentum::{CarriedMomentum, LawContext};
 use crate::motion::loads::law::{ConservedMomentum, Law, Traits};
 use crate::motion::loads::piecewise_signal::PiecewiseSignal;
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame, exact};
@@ -114,7 +114,7 @@ impl Wheel {
     }
 
     /// The rate of the state: ḣ, or JΩ̇ where the speed is given.
-    fn rate_of_state(&self, now: &Now<'_>, state: &[f64]) -> f64 {
+    fn rate_of_state(&self, now: &LawContext<'_>, state: &[f64]) -> f64 {
         let motor = match &self.drive {
             Drive::Speed(speed) => return self.inertia * speed.line(now.middle)[1],
             Drive::Torque(torque) => torque.value(now.middle),
@@ -125,7 +125,7 @@ impl Wheel {
     }
 
     /// What a feedback asks of the motor.
-    fn demanded_torque(&self, law: &Feedback, now: &Now<'_>) -> f64 {
+    fn demanded_torque(&self, law: &Feedback, now: &LawContext<'_>) -> f64 {
         -(self.unit).dot(&law.torque_on(now))
     }
 
@@ -202,7 +202,7 @@ impl Law for Wheel {
     /// At a start; of a wheel at rest without what its bearing holds, which follows from all loads on the body.
     fn wrench(&self, body: &BodyAtPoint, t: f64, phase: &Phase) -> Wrench {
         let state = self.begin(t, &phase.omega);
-        let now = Now {
+        let now = LawContext {
             body,
             t,
             middle: t,
@@ -360,7 +360,7 @@ impl CarriedMomentum for Wheel {
         matches!(self.drive, Drive::Limited(..))
     }
 
-    fn over_limit(&self, now: &Now<'_>) -> f64 {
+    fn over_limit(&self, now: &LawContext<'_>) -> f64 {
         let Drive::Limited(law, limit) = &self.drive else {
             return -1.0;
         };
@@ -369,12 +369,12 @@ impl CarriedMomentum for Wheel {
         (share - 1.0) * (share + 1.0)
     }
 
-    fn torque(&self, now: &Now<'_>, state: &[f64]) -> Vector3<f64> {
+    fn torque(&self, now: &LawContext<'_>, state: &[f64]) -> Vector3<f64> {
         let rate = self.rate_of_state(now, state);
         self.unit.cross(&now.phase.omega) * state[0] - self.unit * rate
     }
 
-    fn rates(&self, now: &Now<'_>, state: &[f64], rates: &mut [f64]) {
+    fn rates(&self, now: &LawContext<'_>, state: &[f64], rates: &mut [f64]) {
         rates[0] = self.rate_of_state(now, state);
     }
 
