@@ -193,7 +193,7 @@ fn axis_of_revolution(body: &RigidBody, surface: &Surface) -> Result<Vector3<f64
 /// let disk = solids::cylinder(0.5, 0.0, Amount::Mass(1.0))?;
 /// let surface = Surface::disk(0.5, Vector3::z(), Vector3::zeros())?;
 /// let gravity = Vector3::new(0.0, 0.0, -9.81);
-/// let found = &steady(&disk, &surface, 1.5, &gravity, Rate::Turn(0.5))?[0];
+/// let found = &steady(&disk, &surface, 1.5, &gravity, Rate::Turn(0.3))?[0];
 /// assert!(found.radius > 1.0 && found.squared_rate < 0.0);
 /// # Ok::<(), polhode::Error>(())
 /// ```
