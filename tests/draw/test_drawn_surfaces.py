@@ -226,8 +226,8 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
 
 @needs_browser
 @pytest.mark.parametrize("kind", KINDS)
-def test_forty_random_motions(browser: Browser, kind: str) -> None:
-    many = [motion(kind, k) for k in range(40)]
+def test_random_motions(browser: Browser, kind: str) -> None:
+    many = [motion(kind, k) for k in range(15)]
     pages = [shown(one) for one in many]
     for one, page in zip(many, pages, strict=True):
         check_data(one, page)
@@ -240,7 +240,7 @@ def test_forty_random_motions(browser: Browser, kind: str) -> None:
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_thousand_random_motions(browser: Browser, kind: str) -> None:
     pages = []
-    for k in range(40, 1040):
+    for k in range(15, 1040):
         one = motion(kind, k)
         pages.append(shown(one))
         check_data(one, pages[-1])
@@ -433,7 +433,7 @@ def test_plots_of_three_random_motions(kind: str) -> None:
 @pytest.mark.timeout(3600)
 @pytest.mark.parametrize("kind", PLOTTED)
 def test_plots_of_a_thousand_random_motions(kind: str) -> None:
-    for k in range(40, 1040):
+    for k in range(15, 1040):
         one = motion(kind, k)
         if one.end is not None:
             check_plots(one)
