@@ -87,7 +87,6 @@ _OF_MODULES: Final = {
         "omega": "use angular_velocity(angles, rates)",
     },
     "polhode.kinematics": {
-        "angular_velocity": "euler_angles.angular_velocity(angles, rates) is that of Euler angles",
         "point_velocity": "use RigidBody.point_velocity(point, omega)",
         "velocity": "use RigidBody.point_velocity(point, omega)",
     },

@@ -163,6 +163,7 @@ def steady(
     gravity: ArrayLike = _DOWN,
     turn: float | None = None,
     spin: float | None = None,
+    degrees: bool = False,
 ) -> tuple[Steady, ...]:
     """Compute the steady circles of a body of revolution on a level plane.
 
@@ -173,11 +174,14 @@ def steady(
     surface : Surface
         A surface of revolution.
     inclination : float
-        Angle from the axis of the body to the normal of the plane, between 0 and pi.
+        Angle from the axis of the body to the normal of the plane, between 0 and pi; in radians, or in
+        degrees if `degrees` is True.
     gravity : array_like, shape (3,)
         The plane is normal to it.
     turn, spin : float
         Rate about the normal, or rate about the axis of the body; exactly one of them.
+    degrees : bool
+        Whether `inclination` is in degrees.
 
     Returns
     -------
@@ -200,6 +204,8 @@ def steady(
     >>> rolling.steady(coin, rolling.disk(0.012), inclination=1.2, turn=8.0)
     (<Steady: turn=8, spin=...stable>,)
     """
+    if degrees:
+        inclination = np.deg2rad(inclination)
     found = []
     for omega, quaternion, *numbers, squared in rolling_steady(
         body, surface, inclination, gravity, turn, spin

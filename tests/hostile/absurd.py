@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from documented import arrays, takes_arrays_alone
-from polhode import RigidBody, _core, loads, orbits, regions
+from polhode import RigidBody, _core, loads, orbits, regions, rolling
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -34,6 +34,7 @@ LOAD = _core.constant_torque(V)
 GYROSTAT = BODY.gyrostat(V)
 LOADS = _core.constant_torque(np.ones((SIDE, 1, 3)))
 REGION = regions.ball(1.0)
+CONTACT = rolling.plane(rolling.sphere(0.5))
 
 #: Homogeneous shapes and their lengths.
 SHAPES: dict[str, dict[str, Any]] = {
@@ -80,6 +81,7 @@ ROWS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     "RigidBody.principal_about": (BODY.principal_about, {"about": V}),
     "RigidBody.translated": (BODY.translated, {"displacement": V}),
     "RigidBody.rotated": (BODY.rotated, {"rotation": Q}),
+    "RigidBody.mirrored": (BODY.mirrored, {"normal": V, "point": V}),
     "RigidBody.scaled": (BODY.scaled, {"length": 1.0, "mass": 1.0}),
     "RigidBody.with_sigma": (BODY.with_sigma, {"center_of_mass": V, "inertia": T}),
     "RigidBody.kinetic_energy": (BODY.kinetic_energy, {"omega": V, "velocity": V, "about": V}),
@@ -286,6 +288,25 @@ OTHERS: dict[str, Callable[[], object]] = {
     "RigidBody.from_labelled_particles": lambda: RigidBody.from_labelled_particles(
         np.ones(3), np.eye(3), np.array([0, 1, ABSURD])
     ),
+    "RigidBody.from_balls": lambda: RigidBody.from_balls(
+        np.broadcast_to(1.0, (ABSURD, 3)), np.broadcast_to(1.0, ABSURD), density=1.0
+    ),
+    "RigidBody.from_labelled_voxels": lambda: RigidBody.from_labelled_voxels(
+        np.broadcast_to(1, (ABSURD, 1, 1)), 1.0, spacing=1.0
+    ),
+    "labelled_voxels": lambda: _core.labelled_voxels(
+        np.broadcast_to(1, (ABSURD, 1, 1)), 1.0, None, None, lambda *_: np.ones(1)
+    ),
+    **{
+        name: partial(
+            getattr(_core, name),
+            BODY,
+            CONTACT,
+            _core.uniform_gravity(WEIGHT),
+            *(np.broadcast_to(x, (ABSURD, len(x))) for x in (V, Q, V, V)),
+        )
+        for name in ("contact_history", "contact_invariants")
+    },
     "MassAccumulator.add": lambda: _core.MassAccumulator().add(
         np.broadcast_to(1.0, ABSURD), np.broadcast_to(1.0, (ABSURD, 3))
     ),

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from polhode import euler_angles, orbits, rods, solids, tops
+from polhode import euler_angles, orbits, rods, rolling, solids, tops
 from polhode.results import NutationDamping
 from public_objects import OBJECTS
 
@@ -24,6 +24,7 @@ HAVE = {
     "polhode.results.NutationDamping.angle",
     "polhode.results.NutationDamping.time",
     "polhode.rods.arc",
+    "polhode.rolling.steady",
     "polhode.tops.least_spin",
     "polhode.tops.steady_precession",
 }
@@ -109,6 +110,14 @@ def test_arcs() -> None:
     assert rods.arc(1.0, 360.0, density=1.0, degrees=True).mass == 2 * math.pi
     with pytest.raises(ValueError, match="from 0 to 2π"):
         rods.arc(1.0, 360.1, mass=1.0, degrees=True)
+
+
+def test_steady_rolling() -> None:
+    coin, edge = solids.cylinder(0.012, 0.0, mass=0.006), rolling.disk(0.012)
+    (found,) = rolling.steady(coin, edge, inclination=70.0, turn=8.0, degrees=True)
+    (want,) = rolling.steady(coin, edge, inclination=np.deg2rad(70.0), turn=8.0)
+    assert found.spin == want.spin
+    same(found.omega, want.omega)
 
 
 def test_orbits() -> None:

@@ -105,7 +105,7 @@ class Budget:
         """Return how many of a kind may still be made."""
         return self.most(kind) - self._spent[kind]
 
-    def spend(self, kind: str, count: int = 1, where: str = "") -> None:
+    def spend(self, kind: str, count: int = 1, *where: str) -> None:
         """Count what is about to be made.
 
         Parameters
@@ -114,8 +114,8 @@ class Budget:
             Of :data:`LIMITS`.
         count : int
             How many; negative where what was counted is not made after all.
-        where : str
-            Place in the file, for the error; empty or with a colon and a blank at its end.
+        *where : str
+            Pieces of the place, for the error; the name of the file by default.
 
         Raises
         ------
@@ -127,7 +127,7 @@ class Budget:
             return
         _, per_byte, way_out = LIMITS[kind]
         of = f", the most for {self._size} {self._unit}" if per_byte else ""
-        raise LimitError(self.name, f": {where}there are more than {most} {kind}{of}; {way_out}")
+        raise LimitError(*(where or (self.name,)), f": there are more than {most} {kind}{of}; {way_out}")
 
 
 MOST_TEXT: Final = 1 << 30

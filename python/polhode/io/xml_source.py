@@ -192,7 +192,7 @@ def parse_xml(
                 name, f": line {line}: elements are nested more than {_DEEPEST} deep; check the file"
             )
         made += 1
-        spent.spend("elements", where=f"line {line}: ")
+        spent.spend("elements", 1, name, f": line {line}")
         match = _START_TAG.match(source, at)
         inside = match.end() if match else at
         element = Element(tag, attributes, line, at, inside, file=file, depth=depth)

@@ -452,10 +452,7 @@ def _at_the_end(curve: _Curve, row: int, half: int, noise: float) -> tuple[Float
     off = ((other - ours) ** 2).sum()
     if len(wide) == len(weights):  # there are no more rows to compare with
         off = (ours * ours).sum()
-    plain = float(_size(off, noise, (weights**2).sum(), (change**2).sum()))
-    finer = float(_size(off, noise, (wide**2).sum(), (change**2).sum()))
-    # Errors fall slowly with the order there: the change is a fair size of what the wider window leaves.
-    return (other, finer) if finer < 1.5 * plain else (ours, plain)
+    return ours, float(_size(off, noise, (weights**2).sum(), (change**2).sum()))
 
 
 # Smoothing -------------------------------------------------------------------------------------------

@@ -97,7 +97,7 @@ class Sources:
         FileFormatError
             If it is not XML that may be read, or is one too many.
         """
-        self.budget.spend("files", where=f"{at.where}: {address}")
+        self.budget.spend("files", 1, f"{at.where}: {address}")
         try:
             source = read_source(path, self.budget.remaining("included bytes"))
         except OSError as error:
@@ -130,7 +130,7 @@ class Sources:
         FileFormatError
             If there are too many.
         """
-        self.budget.spend("links", where=at.where)
+        self.budget.spend("links", 1, at.where)
         return self.prefix(prefix + own)
 
     def prefix(self, text: str) -> str:

@@ -5,7 +5,7 @@ use polhode::Error;
 use polhode::mass::RigidBody;
 use polhode::motion::attitude::components;
 use polhode::motion::loads::Term;
-use polhode::motion::rolling::invariants::{Kept, kept};
+use polhode::motion::rolling::invariants::{self, ContactInvariants};
 use polhode::motion::rolling::steady::{Rate, Upright, critical_rate, modes, steady, tippe_top};
 use polhode::motion::rolling::{Contact, LiftOff, Surface, force};
 use polhode::motion::simulate::gravity_alone;
@@ -832,9 +832,9 @@ pub(crate) fn contact_invariants<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let py = body.py();
     let rows = Rows::read(body, contact, load, [omega, quaternion, position, velocity])?;
-    let found: Stack<Kept> = rows.map(py, kept)?;
+    let found: Stack<ContactInvariants> = rows.map(py, invariants::contact_invariants)?;
     let arrays = PyDict::new(py);
-    let put = |name: &str, of: fn(&Kept) -> Option<f64>| -> PyResult<()> {
+    let put = |name: &str, of: fn(&ContactInvariants) -> Option<f64>| -> PyResult<()> {
         if found.rows.iter().all(|kept| of(kept).is_none()) {
             return arrays.set_item(name, py.None());
         }

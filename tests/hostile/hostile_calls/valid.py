@@ -149,6 +149,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
         "spacing": 0.5,
         "origin": None,
         "affine": None,
+        "length_unit": None,
     },
     "RigidBody.cut": {"self": [MESHED], "normal": [0.0, 0.0, 1.0], "point": [0.0, 0.0, 0.1]},
     "RigidBody.from_principal": {"axes": QUATERNION},

@@ -1,6 +1,6 @@
 //! What the plane does to a body that rolls on it: force, friction needed, power.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 
 use super::contact::Contact;
 use super::equations::Equations;
@@ -34,7 +34,7 @@ pub struct Instant {
 ///
 /// ```
 /// use polhode::mass::{Amount, solids};
-/// use polhode::motion::rolling::{Contact, LiftOff, Surface, force::instant};
+/// use polhode::motion::rolling::{Contact, LiftOff, Surface, force::{Instant, instant}};
 /// use polhode::nalgebra::{UnitQuaternion, Vector3};
 ///
 /// let body = solids::sphere(0.5, Amount::Mass(2.0))?;
@@ -43,7 +43,7 @@ pub struct Instant {
 /// let start = contact.start(&body, Vector3::new(0.0, 3.0, 0.0), UnitQuaternion::identity(), None)?;
 /// assert!((start.velocity - Vector3::new(1.5, 0.0, 0.0)).norm() < 1e-15);
 ///
-/// let found = instant(&body, &contact, &Vector3::new(0.0, 0.0, -9.81), &start);
+/// let found: Instant = instant(&body, &contact, &Vector3::new(0.0, 0.0, -9.81), &start);
 /// assert!((found.force - Vector3::new(0.0, 0.0, 2.0 * 9.81)).norm() < 1e-14);
 /// assert_eq!(found.friction_needed, 0.0);
 /// # Ok::<(), polhode::Error>(())
@@ -85,10 +85,4 @@ pub fn instant(
         power: force.dot(&plane),
         residual: [height / size, slip.norm() / speed],
     }
-}
-
-/// Return the normal of the plane in body axes.
-#[must_use]
-pub fn normal_in_body(contact: &Contact, attitude: &UnitQuaternion<f64>) -> Vector3<f64> {
-    attitude.inverse() * *contact.normal
 }

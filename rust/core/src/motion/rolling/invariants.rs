@@ -12,7 +12,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// The quantities that a motion keeps; none where the case does not have them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Kept {
+pub struct ContactInvariants {
     /// Jellett's integral `−(I ω)·r`: a sphere of revolution on a level plane at rest, with any friction.
     pub jellett: Option<f64>,
     /// Routh's integral `ω₃ √(I_t I_s + m r·I r)`: the same, rolling.
@@ -27,14 +27,14 @@ pub struct Kept {
 ///
 /// ```
 /// use polhode::mass::{Amount, solids};
-/// use polhode::motion::rolling::{Contact, LiftOff, Surface, invariants::kept};
+/// use polhode::motion::rolling::{Contact, LiftOff, Surface, invariants::{ContactInvariants, contact_invariants}};
 /// use polhode::nalgebra::{UnitQuaternion, Vector3};
 ///
 /// let body = solids::sphere(0.5, Amount::Mass(2.0))?;
 /// let ball = Surface::sphere(0.5, Vector3::zeros())?;
 /// let contact = Contact::rolling(ball, Vector3::z(), Vector3::zeros(), 0.0, LiftOff::Stop)?;
 /// let start = contact.start(&body, Vector3::new(0.0, 3.0, 1.0), UnitQuaternion::identity(), None)?;
-/// let found = kept(&body, &contact, &Vector3::new(0.0, 0.0, -9.81), &start);
+/// let found: ContactInvariants = contact_invariants(&body, &contact, &Vector3::new(0.0, 0.0, -9.81), &start);
 /// // A ball keeps (I + m a²) ω across the normal, I ω along it: I = 0.2 and I + m a² = 0.7.
 /// assert!((found.chaplygin.unwrap() - Vector3::new(0.0, 2.1, 0.2)).norm() < 1e-15);
 /// // −I ω·r = I ω₃ a.
@@ -42,13 +42,18 @@ pub struct Kept {
 /// # Ok::<(), polhode::Error>(())
 /// ```
 #[must_use]
-pub fn kept(body: &RigidBody, contact: &Contact, gravity: &Vector3<f64>, phase: &Phase) -> Kept {
+pub fn contact_invariants(
+    body: &RigidBody,
+    contact: &Contact,
+    gravity: &Vector3<f64>,
+    phase: &Phase,
+) -> ContactInvariants {
     let is_level = contact.normal.cross(gravity).norm() <= ROUNDING * gravity.norm();
     let Some(radius) = contact.surface.sphere_radius() else {
-        return Kept::default();
+        return ContactInvariants::default();
     };
     if !is_level || contact.turntable != 0.0 {
-        return Kept::default();
+        return ContactInvariants::default();
     }
     let center = contact.surface.center() - body.center_of_mass();
     let arm = contact.point_in_body(&phase.attitude) - body.center_of_mass();
@@ -66,9 +71,9 @@ pub fn kept(body: &RigidBody, contact: &Contact, gravity: &Vector3<f64>, phase: 
         Some(center.normalize())
     };
     let Some(axis) = axis else {
-        return Kept {
+        return ContactInvariants {
             chaplygin,
-            ..Kept::default()
+            ..ContactInvariants::default()
         };
     };
     let along = axis.dot(&(inertia * axis));
@@ -76,13 +81,13 @@ pub fn kept(body: &RigidBody, contact: &Contact, gravity: &Vector3<f64>, phase: 
     let tensor =
         nalgebra::Matrix3::identity() * across + axis * axis.transpose() * (along - across);
     if (tensor - inertia).abs().max() > ROUNDING * inertia.trace() {
-        return Kept {
+        return ContactInvariants {
             chaplygin,
-            ..Kept::default()
+            ..ContactInvariants::default()
         };
     }
     let squared = across * along + mass * arm.dot(&(inertia * arm));
-    Kept {
+    ContactInvariants {
         jellett: Some(-spin.dot(&arm)),
         routh: Some(axis.dot(&phase.omega) * squared.sqrt()),
         chaplygin,

@@ -13,6 +13,26 @@
 //! | what stays constant | [`invariants`] |
 //! | steady motions, critical rates, rattleback, tippe top | [`mod@steady`] |
 //!
+//! # Examples
+//!
+//! ```
+//! use polhode::mass::{Amount, solids};
+//! use polhode::motion::rolling::{Contact, LiftOff, Surface};
+//! use polhode::nalgebra::{UnitQuaternion, Vector3};
+//!
+//! // A bowl touches with its apex while it stands upright.
+//! let bowl = Surface::paraboloid([0.2, 0.2], 0.1, None)?;
+//! let up = Vector3::z();
+//! let contact = Contact::rolling(bowl, up, Vector3::zeros(), 0.0, LiftOff::Stop)?;
+//! assert_eq!(contact.plane_axes().column(2), up);
+//! assert_eq!(contact.point_in_body(&UnitQuaternion::identity()), Vector3::new(0.0, 0.0, -0.1));
+//! // When it tilts, the contact moves away from the normal by the radius of curvature.
+//! assert_eq!(bowl.contact_rate(&up, &Vector3::x()), Vector3::new(-0.2, 0.0, 0.0));
+//! assert_eq!(bowl.size(), 0.2);
+//! assert_eq!((bowl.disk_radius(), bowl.sphere_radius()), (None, None));
+//! # Ok::<(), polhode::Error>(())
+//! ```
+//!
 //! Source: Routh, Advanced Rigid Dynamics (1884), §§ 244–255; Borisov & Mamaev, Regular and Chaotic Dynamics 7 (2002) 177.
 
 pub mod contact;

@@ -186,14 +186,14 @@ fn axis_of_revolution(body: &RigidBody, surface: &Surface) -> Result<Vector3<f64
 ///
 /// ```
 /// use polhode::mass::{Amount, solids};
-/// use polhode::motion::rolling::{Surface, steady::{Rate, steady}};
+/// use polhode::motion::rolling::{Surface, steady::{Rate, Steady, steady}};
 /// use polhode::nalgebra::Vector3;
 ///
 /// // A disk that rolls slowly round a wide circle leans little.
 /// let disk = solids::cylinder(0.5, 0.0, Amount::Mass(1.0))?;
 /// let surface = Surface::disk(0.5, Vector3::z(), Vector3::zeros())?;
 /// let gravity = Vector3::new(0.0, 0.0, -9.81);
-/// let found = &steady(&disk, &surface, 1.5, &gravity, Rate::Turn(0.3))?[0];
+/// let found: Steady = steady(&disk, &surface, 1.5, &gravity, Rate::Turn(0.3))?[0];
 /// assert!(found.radius > 1.0 && found.squared_rate < 0.0);
 /// # Ok::<(), polhode::Error>(())
 /// ```
@@ -349,14 +349,14 @@ pub fn critical_rate(
 ///
 /// ```
 /// use polhode::RigidBody;
-/// use polhode::motion::rolling::{Surface, steady::modes};
+/// use polhode::motion::rolling::{Surface, steady::{Modes, modes}};
 /// use polhode::nalgebra::{Matrix3, Vector3};
 ///
 /// // Kane and Levinson's rattleback: its principal axes are turned against those of its surface.
 /// let tensor = Matrix3::new(2e-4, 2e-5, 0.0, 2e-5, 1.6e-3, 0.0, 0.0, 0.0, 1.7e-3);
 /// let body = RigidBody::new(1.0, &tensor, &Vector3::new(0.0, 0.0, -0.01), 0.0)?;
 /// let surface = Surface::ellipsoid([0.2, 0.03, 0.02], Vector3::zeros(), None)?;
-/// let found = modes(&body, &surface, &Vector3::new(0.0, 0.0, -9.81), 5.0)?;
+/// let found: Modes = modes(&body, &surface, &Vector3::new(0.0, 0.0, -9.81), 5.0)?;
 /// let other = modes(&body, &surface, &Vector3::new(0.0, 0.0, -9.81), -5.0)?;
 /// assert!(found.growth_rates[0] * other.growth_rates[0] < 0.0);
 /// # Ok::<(), polhode::Error>(())
@@ -417,7 +417,7 @@ pub struct TippeTop {
 ///
 /// ```
 /// use polhode::RigidBody;
-/// use polhode::motion::rolling::{Surface, steady::tippe_top};
+/// use polhode::motion::rolling::{Surface, steady::{TippeTop, tippe_top}};
 /// use polhode::nalgebra::{Matrix3, Vector3};
 ///
 /// // C is 3 mm below the centre of a ball of 2 cm.
@@ -425,7 +425,8 @@ pub struct TippeTop {
 /// let body = RigidBody::from_principal(0.006, &moments, &Matrix3::identity(), &center, 0.0)?;
 /// let surface = Surface::sphere(0.02, Vector3::zeros())?;
 /// let gravity = Vector3::new(0.0, 0.0, -9.81);
-/// assert_eq!(tippe_top(&body, &surface, 200.0, &gravity)?.cos_theta, -1.0); // it inverts
+/// let fast: TippeTop = tippe_top(&body, &surface, 200.0, &gravity)?;
+/// assert_eq!(fast.cos_theta, -1.0); // it inverts
 /// assert_eq!(tippe_top(&body, &surface, 1.0, &gravity)?.cos_theta, 1.0); // it stays upright
 /// # Ok::<(), polhode::Error>(())
 /// ```

@@ -317,7 +317,20 @@ pub(super) fn closed_top(body: &RigidBody) -> Result<PivotedTop, Error> {
     })
 }
 
-/// The acceleration of free fall, of a load that is uniform gravity alone or nothing at all.
+/// Return the acceleration of free fall, of a load that is uniform gravity alone or nothing at all.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::motion::loads::{Term, UniformGravity};
+/// use polhode::motion::simulate::gravity_alone;
+/// use polhode::nalgebra::Vector3;
+///
+/// let g = Vector3::new(0.0, 0.0, -9.81);
+/// let weight: Term = UniformGravity::new(&g)?.into();
+/// assert_eq!(gravity_alone(&[weight]), Some(g));
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[must_use]
 pub fn gravity_alone(terms: &[Term]) -> Option<Vector3<f64>> {
     terms

@@ -13,7 +13,7 @@ use crate::motion::problem::limits::check_steps;
 use crate::motion::problem::{
     ContactExtremes, Crossing, Direction, End, EventTrigger, Rule, Run, Task,
 };
-use crate::motion::rolling::force::{Instant, instant, normal_in_body};
+use crate::motion::rolling::force::{Instant, instant};
 use crate::motion::rolling::{Contact, LiftOff};
 use crate::motion::state::Phase;
 
@@ -31,7 +31,7 @@ impl Rolling<'_> {
     }
 
     fn margin(&self, phase: &Phase) -> f64 {
-        let normal = normal_in_body(self.contact, &phase.attitude);
+        let normal = phase.attitude.inverse() * *self.contact.normal;
         self.contact.surface.margin(&normal)
     }
 }

@@ -63,7 +63,7 @@ pub fn simulate<L: Load>(
 /// use std::ops::ControlFlow;
 /// use polhode::mass::{Amount, solids};
 /// use polhode::motion::rolling::{Contact, LiftOff, Surface};
-/// use polhode::motion::simulate::{End, Method, NoEvents, Run, Task, Tolerance, roll};
+/// use polhode::motion::simulate::{ContactExtremes, End, Method, NoEvents, Run, Task, Tolerance, roll};
 /// use polhode::nalgebra::{UnitQuaternion, Vector3};
 ///
 /// let ball = solids::sphere(0.5, Amount::Mass(2.0))?;
@@ -79,7 +79,8 @@ pub fn simulate<L: Load>(
 /// assert_eq!(run.end, End::Complete);
 /// // A ball rolls down with 5/7 g sin α.
 /// assert!((run.phase.velocity.norm() - 5.0 / 7.0 * 9.81 * 0.6 * 2.0).abs() < 1e-11);
-/// assert!((run.contact.unwrap().normal_force[0] - 2.0 * 9.81 * 0.8).abs() < 1e-12);
+/// let extremes: ContactExtremes = run.contact.unwrap();
+/// assert!((extremes.normal_force[0] - 2.0 * 9.81 * 0.8).abs() < 1e-12);
 /// # Ok::<(), polhode::Error>(())
 /// ```
 pub fn roll<E: From<Error>>(
