@@ -294,9 +294,6 @@ OTHERS: dict[str, Callable[[], object]] = {
     "RigidBody.from_labelled_voxels": lambda: RigidBody.from_labelled_voxels(
         np.broadcast_to(1, (ABSURD, 1, 1)), 1.0, spacing=1.0
     ),
-    "labelled_voxels": lambda: _core.labelled_voxels(
-        np.broadcast_to(1, (ABSURD, 1, 1)), 1.0, None, None, lambda *_: np.ones(1)
-    ),
     **{
         name: partial(
             getattr(_core, name),

@@ -396,7 +396,10 @@ def bodies_of_labels(
         )
     if own.flags.f_contiguous and not own.flags.c_contiguous and not is_image:  # as nibabel reads it
         own, spacing, origin, affine = _turned_round(own, spacing, origin, affine)
-    own = np.ascontiguousarray(own)
+    try:
+        own = np.ascontiguousarray(own)
+    except MemoryError as error:
+        raise MemoryError(f"labels: {error}; take a part of the image") from None
     ranges: dict[int, NDArray[np.uint64]] = {}
 
     def choose(names: NDArray[np.int64], _: NDArray[np.uint64], of: NDArray[np.uint64]) -> Floats | None:

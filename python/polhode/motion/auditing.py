@@ -15,6 +15,7 @@ import numpy as np
 
 from polhode import _core
 from polhode._format import one_line
+from polhode._hints import check_kind
 from polhode.errors import PolhodeError
 from polhode.motion.rates import angular_acceleration, angular_velocity, cross, integral, noise_of
 
@@ -263,10 +264,7 @@ def audit(
     >>> [finding.kind for finding in found.findings], found.agrees
     (['diagonal tensor'], False)
     """
-    if not hasattr(trajectory, "quaternion"):
-        raise TypeError(
-            f"trajectory: expected a Trajectory, as from_samples makes, got {type(trajectory).__name__}"
-        )
+    check_kind(trajectory, "trajectory", "Trajectory")
     body = trajectory.body
     if body.shape:
         raise ValueError(
@@ -420,6 +418,7 @@ def _angle_between(a: Floats, b: Floats) -> Floats:
 
 def _order(trajectory: Trajectory, finer: Trajectory, ratio: float | None) -> float:
     """Compute the order of the method from how far two records are from the exact motion."""
+    check_kind(finer, "finer", "Trajectory")
     steps = [float(np.median(np.diff(run.t))) for run in (trajectory, finer)]
     shrink = steps[0] / steps[1] if ratio is None else float(ratio)
     if not shrink > 1.0 + 1e-6:

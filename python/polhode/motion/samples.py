@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from polhode._hints import check_kind
 from polhode.errors import PolhodeError
 from polhode.motion.rates import (
     angular_acceleration,
@@ -38,6 +39,9 @@ def read_samples(
     """Return what a trajectory holds, by the names of its attributes."""
     if about not in ("center_of_mass", "origin"):
         raise ValueError(f"about: {about!r} is not 'center_of_mass' or 'origin'")
+    check_kind(body, "body", "RigidBody")
+    if load is not None:
+        check_kind(load, "load", "Load")
     if body.shape:
         raise ValueError(
             f"body: a record is the motion of one body, got a stack of shape {body.shape}; take one: body[0]"
