@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from polhode.errors import PolhodeError
 from polhode.io import cut_mesh
 
 
-def volume_beyond(vertices: np.ndarray, faces: np.ndarray, n: list[Fraction], p: list[Fraction]):
+def volume_beyond(vertices: np.ndarray, faces: np.ndarray, n: list[Fraction], p: list[Fraction]) -> Any:
     """Volume and first moment beyond a plane, in rationals: each face with a point of the plane, clipped."""
     v = [[Fraction(float(x)) - q for x, q in zip(row, p, strict=True)] for row in vertices]
     height = [sum(a * b for a, b in zip(n, row, strict=True)) for row in v]
@@ -43,7 +44,10 @@ def torus(n: int = 24, m: int = 10) -> tuple[np.ndarray, np.ndarray]:
     u, v = 2 * np.pi * a / n, 2 * np.pi * b / m
     r = 3.0 + np.cos(v)
     vertices = np.stack([r * np.cos(u), r * np.sin(u), np.sin(v)], axis=-1).reshape(-1, 3)
-    at = lambda i, j: (i % n) * m + j % m  # noqa: E731
+
+    def at(i: int, j: int) -> int:
+        return (i % n) * m + j % m
+
     faces = [
         t for i in range(n) for j in range(m)
         for t in ((at(i, j), at(i + 1, j), at(i + 1, j + 1)), (at(i, j), at(i + 1, j + 1), at(i, j + 1)))

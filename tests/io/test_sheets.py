@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -71,7 +72,8 @@ def test_the_same_in_an_assembly_and_on_the_command_line(sheet: Path) -> None:
 
 
 def test_refused(sheet: Path, tmp_path: Path) -> None:
-    for name, value in (("closure", "caps"), ("union", True), ("repair", True), ("orient", True)):
+    asked: dict[str, Any] = {"closure": "caps", "union": True, "repair": True, "orient": True}
+    for name, value in asked.items():
         with pytest.raises(PolhodeError, match=f"{name}: thickness.* makes a sheet"):
             RigidBody.from_file(sheet, density=1.0, thickness=0.1, **{name: value})
     with pytest.raises(PolhodeError, match="thickness must be positive and finite"):

@@ -29,7 +29,7 @@ def exact_body(
     own = [[sum(e[i] * e[j] for e in edges) / 12 for j in range(3)] for i in range(3)]
     for cell in np.argwhere(density):
         m = Fraction(float(density[tuple(cell)])) * volume
-        x = [sum(a[i][k] * int(cell[k]) for k in range(3)) + a[i][3] for i in range(3)]
+        x: list[Any] = [sum(a[i][k] * int(cell[k]) for k in range(3)) + a[i][3] for i in range(3)]
         mass += m
         for i in range(3):
             first[i] += m * x[i]

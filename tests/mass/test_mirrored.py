@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import pytest
@@ -69,10 +70,14 @@ def test_what_is_uncertain_is_so_in_the_image(rng: np.random.Generator) -> None:
         unit[i, j] = unit[j, i] = 1.0
         turned = m @ unit @ m
         change[4:, 4 + column] = [turned[k] for k in at]
+    assert body.covariance is not None
+    assert image.covariance is not None
     expected = change @ body.covariance @ change.T
     assert np.abs(image.covariance - expected).max() <= 1e-13 * np.abs(expected).max()
     # Both halves come from one source: what is odd in the mirrored axis is zero without doubt.
     whole = body + body.mirrored((0, 1, 0))
+    assert whole.sigma is not None
+    assert body.sigma is not None
     assert float(whole.sigma.center_of_mass[1]) <= 1e-15
     assert float(whole.sigma.mass) == pytest.approx(2.0 * float(body.sigma.mass))
 
@@ -125,7 +130,7 @@ def test_random_parts_of_assemblies_against_a_sum_by_hand(rng: np.random.Generat
         )
 
 
-def test_an_assembly_mirrored_whole(tmp_path) -> None:
+def test_an_assembly_mirrored_whole(tmp_path: Any) -> None:
     (tmp_path / "arm.toml").write_text(
         'name = "arm"\n[[part]]\nname = "a"\nsolid = "wedge"\nsize = [3, 2, 1]\ndensity = 2\n'
         "position = [1, 2, 3]\n"

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import itertools
+from typing import Any
 
 import mpmath as mp
 import numpy as np
 
 __all__ = ["sampled_union", "union_by_slices"]
 
-_INTEGRALS = {  # of the angle t, its cosine and its sine
+_INTEGRALS: dict[Any, Any] = {  # of the angle t, its cosine and its sine
     (0, 0): lambda t, *_: t,
     (1, 0): lambda *of: of[2],
     (0, 1): lambda *of: -of[1],
@@ -25,18 +26,18 @@ _INTEGRALS = {  # of the angle t, its cosine and its sine
 _MONOMIALS = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
 
 
-def _times(a, b):
-    product = {}
+def _times(a: Any, b: Any) -> Any:
+    product: dict[Any, Any] = {}
     for ((i, j), x), ((k, m), y) in itertools.product(a.items(), b.items()):
         product[i + k, j + m] = product.get((i + k, j + m), 0) + x * y
     return product
 
 
-def _disks(disks):
+def _disks(disks: Any) -> Any:
     """Integrals of 1, y, z, y², y z, z² over the union of disks (y, z, r): ∫ f dA = ∮ f (p·n) ds/(k + 2)."""
     sums = [mp.mpf(0)] * 6
     for i, (y, z, r) in enumerate(disks):
-        covered = []
+        covered: list[tuple[Any, Any]] | None = []
         for k, (v, w, q) in enumerate(disks):
             if k == i:
                 continue
@@ -51,6 +52,7 @@ def _disks(disks):
             middle = mp.atan2(w - z, v - y)
             half = mp.acos((d * d + r * r - q * q) / (2 * d * r))
             start = (middle - half) % (2 * mp.pi)
+            assert covered is not None
             covered.append((start, start + 2 * half))
         if covered is None:
             continue
@@ -65,7 +67,7 @@ def _disks(disks):
             free.append((at, 2 * mp.pi))
         of_y, of_z = {(0, 0): y, (1, 0): r}, {(0, 0): z, (0, 1): r}
         normal = {(0, 0): r * r, (1, 0): y * r, (0, 1): z * r}
-        table = {}
+        table: dict[Any, Any] = {}
         for a, b in free:
             ends = [(t, mp.cos(t), mp.sin(t)) for t in (a, b)]
             for key, integral in _INTEGRALS.items():
@@ -78,7 +80,7 @@ def _disks(disks):
     return sums
 
 
-def _kinks(balls):
+def _kinks(balls: Any) -> Any:
     """Where slices change their kind: ends of spheres and of their circles, points of three spheres."""
     found = []
     for (x, _, _), r in balls:
@@ -112,11 +114,11 @@ def _kinks(balls):
     return sorted(found)
 
 
-def _dot(a, b):
+def _dot(a: Any, b: Any) -> Any:
     return sum(u * v for u, v in zip(a, b, strict=True))
 
 
-def union_by_slices(centers, radii, nodes=48, digits=40):
+def union_by_slices(centers: Any, radii: Any, nodes: Any = 48, digits: Any = 40) -> Any:
     """Volume, first moments (3) and second moments (xx, yy, zz, xy, xz, yz) of a union of balls."""
     with mp.workdps(digits):
         balls = [
@@ -141,10 +143,10 @@ def union_by_slices(centers, radii, nodes=48, digits=40):
         return sums
 
 
-_RULES = {}
+_RULES: dict[Any, Any] = {}
 
 
-def _rule(n, digits):
+def _rule(n: Any, digits: Any) -> Any:
     """Nodes and weights of Gauss and Legendre on (0, 1)."""
     if (n, digits) not in _RULES:
         rule = []
@@ -161,7 +163,7 @@ def _rule(n, digits):
     return _RULES[n, digits]
 
 
-def sampled_union(centers, radii, n, rng):
+def sampled_union(centers: Any, radii: Any, n: Any, rng: Any) -> Any:
     """Volume and first moments by Monte Carlo, with their standard errors."""
     volumes = 4 / 3 * np.pi * radii**3
     total = volumes.sum()

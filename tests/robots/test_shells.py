@@ -34,6 +34,7 @@ def test_a_shell_is_that_of_mujoco(name: str, weight: str) -> None:
     model = mujoco.MjModel.from_xml_string(text)
     assert verdict.verdict == "inferred"
     assert verdict.mass == pytest.approx(model.body_mass[1], rel=1e-12)
+    assert verdict.moments is not None
     assert np.allclose(verdict.moments, np.sort(model.body_inertia[1]), rtol=1e-9)
 
 
