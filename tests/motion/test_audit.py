@@ -282,7 +282,8 @@ def test_what_is_refused() -> None:
         audited(BODY, Record(T, exact.quaternion, 1e9 * exact.omega))
     with pytest.raises(PolhodeError, match=r"trajectory: steps of .* are beyond what is computed"):
         audited(BODY, Record(1e150 * T, exact.quaternion, 1e-150 * exact.omega))
+    nothing: Any = None
     with pytest.raises(TypeError, match=r"trajectory: expected Trajectory, got NoneType"):
-        polhode.audit(None)  # type: ignore[arg-type]
+        polhode.audit(nothing)
     with pytest.raises(ValueError, match="rtol: expected a number between 0 and 1"):
         polhode.audit(exact, rtol=2.0)

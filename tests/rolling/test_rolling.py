@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from polhode import RigidBody, loads, rolling, solids
+from polhode import Event, RigidBody, loads, rolling, solids
 from polhode.errors import ContactError, PolhodeError
 
 G = loads.uniform_gravity((0, 0, -9.81))
@@ -244,9 +244,12 @@ def test_events_of_functions_are_found() -> None:
     def at_one(_: float, *state: Any) -> float:
         return float(state[2][0] - 1.0)
 
-    at_one.terminal = True  # type: ignore[attr-defined]
     found: Any = ball.simulate(
-        [0, 10], (0, 2.0, 0), load=G, contact=rolling.plane(rolling.sphere(0.5)), events=at_one
+        [0, 10],
+        (0, 2.0, 0),
+        load=G,
+        contact=rolling.plane(rolling.sphere(0.5)),
+        events=Event(at_one, terminal=True),
     )
     assert found.status == "event"
     assert found.events.event.tolist() == [0]
@@ -329,10 +332,11 @@ def test_other_arguments_that_are_refused() -> None:
         simulate(velocity=(0, 0, 0))
     with pytest.raises(ValueError, match="contact: expected a contact"):
         simulate(contact=rolling.sphere(0.5))
+    plane: Any = rolling.plane
     with pytest.raises(ValueError, match="surface: expected a surface"):
-        rolling.plane(0.5)  # type: ignore[arg-type]
+        plane(0.5)
     with pytest.raises(ValueError, match='lift: expected "stop" or "hold"'):
-        rolling.plane(rolling.sphere(1), lift="jump")  # type: ignore[arg-type]
+        plane(rolling.sphere(1), lift="jump")
     with pytest.raises(PolhodeError, match="radius must be a positive length"):
         rolling.sphere(0.0)
     with pytest.raises(ValueError, match="normal: expected vectors that have a direction"):

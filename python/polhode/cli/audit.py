@@ -8,7 +8,7 @@ import numpy as np
 
 from polhode import RigidBody, Trajectory
 from polhode._optional import require
-from polhode.cli.files import as_file, label
+from polhode.cli.files import as_file, check_suffixes, label
 from polhode.cli.layout import Column, Field, Report, Table
 from polhode.cli.loading import LoadedBody
 from polhode.cli.whole import any_body, check_moments_alone
@@ -37,11 +37,7 @@ _COLUMNS: Final = (
 
 def audit_report(file: Path, options: AuditOptions, body: BodyOptions) -> tuple[Report, Audit]:
     """Report on the record in a file; give the audit too."""
-    for path in options.save:
-        if path.suffix.lower() not in _PICTURES:
-            raise PolhodeError(
-                f"--save: {path.name!r} has a suffix that is not written; use one of {', '.join(_PICTURES)}"
-            )
+    check_suffixes(options.save, _PICTURES)
     if options.ratio is not None and options.finer is None:
         raise PolhodeError("--ratio: it compares the steps of two records; give the second one with --finer")
     loaded = _body(options, body)

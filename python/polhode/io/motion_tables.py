@@ -94,9 +94,9 @@ def read_motion_table(
     if len(rows) == 1:
         raise FileFormatError(f"{told}: it holds no rows below the names of its columns")
     found = {
-        "t": _named(told, names, [time] if time else (), tuple((one,) for one in _TIMES), "--time"),
-        "attitude": _named(told, names, attitude, _QUATERNIONS, "--attitude"),
-        "omega": _named(told, names, omega, _OMEGAS, "--omega", needed=False),
+        "t": _find_columns(told, names, [time] if time else (), tuple((one,) for one in _TIMES), "--time"),
+        "attitude": _find_columns(told, names, attitude, _QUATERNIONS, "--attitude"),
+        "omega": _find_columns(told, names, omega, _OMEGAS, "--omega", needed=False),
     }
     if len(found["attitude"]) not in (3, 4, 9):
         raise PolhodeError(
@@ -121,7 +121,7 @@ def _plain(name: str) -> str:
     return re.sub(r"[^a-z0-9]", "", re.sub(r"[\[(].*", "", name.lower()))
 
 
-def _named(
+def _find_columns(
     told: str,
     names: list[str],
     given: Sequence[str],
