@@ -43,9 +43,9 @@ __all__ = [
     "has_own_tensor",
     "is_without_mass",
     "judge",
+    "judge_without_mass",
+    "link_roles",
     "replacement",
-    "standings",
-    "without_mass",
 ]
 
 Word = Literal[
@@ -142,7 +142,9 @@ def judge(
     with np.errstate(all="ignore"):
         read = [geometry.read(link) for link in robot.links]
         pairs = list(zip(robot.links, read, strict=True))
-        stand = standings(robot, [_has_mass(*pair) for pair in pairs], [_has_spread(*pair) for pair in pairs])
+        roles = link_roles(
+            robot, [_has_mass(*pair) for pair in pairs], [_has_spread(*pair) for pair in pairs]
+        )
         judging = _VerdictData(
             geometry,
             robot.format,
@@ -151,8 +153,8 @@ def judge(
             not any(each.unread for each in read),
         )
         found = [
-            judging.link(link, each, standing)._replace(file=link.file)
-            for link, each, standing in zip(robot.links, read, stand, strict=True)
+            judging.link(link, each, role)._replace(file=link.file)
+            for link, each, role in zip(robot.links, read, roles, strict=True)
         ]
         for place, note in twin_notes(robot.links):
             found[place] = found[place]._replace(notes=(*found[place].notes, note))
@@ -251,7 +253,7 @@ class _VerdictData(NamedTuple):
     reach: float
     is_all: bool
 
-    def link(self, link: Link, geometry: Geometry, standing: LinkRole) -> Verdict:
+    def link(self, link: Link, geometry: Geometry, role: LinkRole) -> Verdict:
         """Judge a link."""
         notes, declared = geometry.notes, link.inertial
         if link.is_static:
@@ -259,12 +261,12 @@ class _VerdictData(NamedTuple):
             return Verdict(link.name, link.line, "none", "nothing moves it: its model is static", notes=told)
         if link.problem:
             return Verdict(link.name, link.line, "unreadable", link.problem)
-        if link.defaults and not standing.moves:
+        if link.defaults and not role.moves:
             return Verdict(
                 link.name, link.line, "none", "nothing moves it: it is tied to the world", notes=notes
             )
         if not _has_mass(link, geometry):
-            empty = without_mass(self.format, link, standing)
+            empty = judge_without_mass(self.format, link, role)
             told = (*notes, empty.note) if empty.note else notes
             return Verdict(link.name, link.line, empty.word, empty.reason, notes=told if link.shapes else ())
         if declared is None:
@@ -284,9 +286,9 @@ class _VerdictData(NamedTuple):
             factor = _farthest(moments, own.principal_moments)
         better, inside = None, None
         is_point = _is_point(declared) and (own is None or not declared.inertia.any())
-        if is_point and standing.weld and self.format != "SDF":  # libsdformat refuses it all the same
+        if is_point and role.weld and self.format != "SDF":  # libsdformat refuses it all the same
             word: Word = "good"
-            reason = f"a point mass, tied to {standing.weld}"
+            reason = f"a point mass, tied to {role.weld}"
             notes = (*notes, f"line {link.line}: {link.name} is {reason}: simulators join the two")
         else:
             word, reason = self._law(link, declared, geometry, own, factor)
@@ -544,7 +546,7 @@ class _Group:
         self.below: list[_Group] = []
 
 
-def standings(robot: Robot, has_mass: Sequence[bool], has_spread: Sequence[bool]) -> list[LinkRole]:
+def link_roles(robot: Robot, has_mass: Sequence[bool], has_spread: Sequence[bool]) -> list[LinkRole]:
     """For each link: find whether it can move, and which links below it have mass.
 
     Parameters
@@ -609,8 +611,8 @@ def standings(robot: Robot, has_mass: Sequence[bool], has_spread: Sequence[bool]
         weld = next((robot.links[k].name for k in group.spread[:2] if k != i), "")
         if group is ground:
             weld = weld or "the world"
-        standing = LinkRole(moves, group.joint or "", group.carrier, weld, carries_mass, stands_for, is_root)
-        told.append(standing)
+        role = LinkRole(moves, group.joint or "", group.carrier, weld, carries_mass, stands_for, is_root)
+        told.append(role)
     return told
 
 
@@ -640,29 +642,29 @@ class MasslessVerdict(NamedTuple):
     note: str = ""
 
 
-def without_mass(robot_format: str, link: Link, standing: LinkRole) -> MasslessVerdict:
+def judge_without_mass(robot_format: str, link: Link, role: LinkRole) -> MasslessVerdict:
     """Judge a link without mass.
 
     A mass matrix is singular where a joint moves what has no mass and carries none. MuJoCo refuses every body
     that joints move without mass, what it carries not counted; nothing else does.
     """
-    if standing.carrier:
-        return MasslessVerdict("none", f"tied to {standing.carrier}, which has mass")
-    if not standing.moves:
+    if role.carrier:
+        return MasslessVerdict("none", f"tied to {role.carrier}, which has mass")
+    if not role.moves:
         note = ""
-        if standing.is_root and link.shapes:
+        if role.is_root and link.shapes:
             note = (
                 f"line {link.line}: {link.name} is the root, with shapes and without mass: Pinocchio and "
                 "MuJoCo hold it still, Drake and Gazebo let it fall unless it is tied to the world"
             )
         return MasslessVerdict("none", "no joint moves it", note)
-    if not standing.joint and not link.shapes and link.inertial is None:
+    if not role.joint and not link.shapes and link.inertial is None:
         return MasslessVerdict("none", "nothing is tied to it")
-    mover = f"joint {standing.joint} moves it" if standing.joint else "nothing holds it"
-    if not standing.stands_for:
+    mover = f"joint {role.joint} moves it" if role.joint else "nothing holds it"
+    if not role.stands_for:
         return MasslessVerdict("none", f"{mover} with what it is tied to, which is told there")
     shaped = "it has shape but no mass" if link.shapes else "no mass is tied to it"
-    if not standing.carries_mass:
+    if not role.carries_mass:
         return MasslessVerdict("missing", f"{mover}, and {shaped}: the mass matrix is singular there")
     if robot_format == "MJCF":
         return MasslessVerdict("missing", f"{mover}, and {shaped}: MuJoCo refuses it, whatever it carries")
