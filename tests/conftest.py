@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cad_files import read_here
 from hypothesis import HealthCheck, settings
 from molecule_files import write_molecules
 from places import ROOT
@@ -95,6 +96,12 @@ def has_union(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -
     else:
         monkeypatch.setattr("polhode.io.components.has_union", lambda: False)
     return bool(request.param)
+
+
+@pytest.fixture
+def occt_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    """OCCT reads files in this process."""
+    monkeypatch.setattr("polhode.io.cad_process.read_cad_apart", read_here)
 
 
 @pytest.fixture

@@ -224,7 +224,7 @@ class TestSaved:
         if name.endswith("zarr"):
             pytest.importorskip("zarr")
         words = [
-            *MOMENTS, *SPIN, "--wheel", "z, 0.5", "--end", "400", "--n", "3000", "--chunk", "100",
+            *MOMENTS, *SPIN, "--wheel", "z, 0.5", "--end", "400", "--n", "1500", "--chunk", "100",
             "--save", str(tmp_path / name),
         ]  # fmt: skip
         begun = tmp_path / (f"{name}.parts" if name.endswith("npz") else f"{name}/status")
@@ -240,9 +240,9 @@ class TestSaved:
         code, _, err = run("ensemble", *words, "--seed", "4", "--resume")
         assert code == 2
         assert "holds another ensemble: seed is 0 there and 4 here" in err
-        assert told(*words, "--resume")["status"] == [{"status": "complete", "members": 3000}]
+        assert told(*words, "--resume")["status"] == [{"status": "complete", "members": 1500}]
         want = ensemble(
-            BODY, [0, 400], OMEGA, load=loads.rotor((0, 0, 0.5)), n=3000, seed=0, chunk=100
+            BODY, [0, 400], OMEGA, load=loads.rotor((0, 0, 0.5)), n=1500, seed=0, chunk=100
         ).compute()
         if name.endswith("npz"):
             self.same(tmp_path / name, want)
@@ -253,7 +253,7 @@ class TestSaved:
             group: Any = zarr.open_group(tmp_path / name, mode="r")
             assert group["omega"][:].tobytes() == want.omega.to_numpy().tobytes()
         # Nothing is missing now, and this is told too.
-        assert told(*words, "--resume")["status"] == [{"status": "complete", "members": 3000}]
+        assert told(*words, "--resume")["status"] == [{"status": "complete", "members": 1500}]
 
     def test_a_file_that_is_no_ensemble_is_kept(self, tmp_path: Path) -> None:
         path = tmp_path / "other.npz"

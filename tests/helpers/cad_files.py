@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from polhode.io.cad_files import (
+    CadFile,
+    Pair,
+    near_pairs,
+    overlaps_told,
+    read_with_shapes,
+    volume_shared,
+)
 
-__all__ = ["SOLIDS", "Known", "write_assembly", "write_step"]
+__all__ = ["SOLIDS", "Known", "read_here", "write_assembly", "write_step"]
 
 Triple = tuple[float, float, float]
 
@@ -41,6 +49,16 @@ class Known:
 
 def occt(module: str) -> Any:
     return pytest.importorskip(f"OCP.{module}")
+
+
+def read_here(path: Path, _packed: int | None = None) -> CadFile:
+    """Read a file in this process instead of one of its own, which takes seconds to start."""
+    cad, shapes = read_with_shapes(path)
+    pairs = [
+        Pair(i, k, volume_shared(shapes[i], shapes[k], cad.parts[k].moments.volume))
+        for i, k in near_pairs(cad.parts)
+    ]
+    return replace(cad, overlaps=overlaps_told(cad, pairs, ""))
 
 
 def primitive(name: str, *sizes: float) -> Callable[[], Any]:

@@ -40,10 +40,16 @@ READERS: dict[str, Callable[[Path], object]] = {
 }
 NEEDED = {"VTK": "pyvista", "CAD": "OCP", "meshes": "trimesh"}
 SLOW = {
-    "COLLADA: packed elements", "COLLADA: a packed text of zeros", "robots: MJCF: bodies", "3MF: items",
-    "3MF: packed vertices", "3MF: settings", "assemblies: round parts that overlap",
-    "assemblies: a file again",
-    "3MF: packed elements", "3MF: nested", "3MF: negative volumes", "ledgers: shared sources in a chain",
+    "3MF: a mesh of many items", "3MF: components of components", "3MF: items", "3MF: negative volumes",
+    "3MF: nested", "3MF: one long token", "3MF: packed elements", "3MF: packed vertices", "3MF: settings",
+    "COLLADA: a node of many children", "COLLADA: a node shown again and again",
+    "COLLADA: a packed text of zeros", "COLLADA: geometries of nodes", "COLLADA: packed elements",
+    "VTK: XML: pieces", "assemblies: a file again", "assemblies: copies", "assemblies: parts",
+    "assemblies: round parts that overlap", "glTF: a chain of nodes", "glTF: meshes of many primitives",
+    "ledgers: shared sources in a chain", "meshes: OBJ: packed lines", "meshes: OFF: a large polygon",
+    "meshes: OFF: packed words", "meshes: PLY: a large polygon", "meshes: STL: packed facets",
+    "robots: MJCF: bodies", "robots: SDF: a large model again", "robots: URDF: a chain",
+    "robots: URDF: a mesh in many scales", "robots: URDF: links",
 }  # fmt: skip
 """Cases of some seconds, with the mark `long`."""
 

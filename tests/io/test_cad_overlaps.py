@@ -72,6 +72,7 @@ def told(path: Path) -> tuple[str, ...]:
     return cad.overlaps
 
 
+@pytest.mark.usefixtures("occt_here")
 @pytest.mark.parametrize("name", SHARED)
 def test_what_two_solids_share(name: str, tmp_path: Path) -> None:
     one, other, volume = SHARED[name]
@@ -87,6 +88,7 @@ def test_what_two_solids_share(name: str, tmp_path: Path) -> None:
     assert ("lies within" in line) == (name in ("box and sphere in it", "one box twice"))
 
 
+@pytest.mark.usefixtures("occt_here")
 @pytest.mark.parametrize("name", APART)
 def test_solids_that_share_nothing(name: str, tmp_path: Path) -> None:
     path = both(*APART[name], tmp_path / "two.step")
@@ -135,6 +137,7 @@ def test_whoever_reads_it_tells_it(tmp_path: Path, monkeypatch: pytest.MonkeyPat
             read(path, density=2700.0)
 
 
+@pytest.mark.usefixtures("occt_here")
 def test_a_link_tells_it(tmp_path: Path) -> None:
     both(*SHARED["box and cylinder"][:2], tmp_path / "two.step")
     text = urdf(link("a", 1.0, (1.0, 1.0, 1.0), '<mesh filename="two.step"/>'))
@@ -165,6 +168,7 @@ def test_components_of_a_mesh_are_told_beside_a_motion(tmp_path: Path, has_union
         assert ("union = true counts what components share once" in out) == is_told
 
 
+@pytest.mark.usefixtures("occt_here")
 def test_parts_of_an_assembly_that_are_apart(tmp_path: Path) -> None:
     assert told(write_assembly(tmp_path / "apart.step", {})) == ()
 

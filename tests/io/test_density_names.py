@@ -181,6 +181,7 @@ def test_two_hundred_random_assemblies(rng: np.random.Generator, tmp_path: Path)
         assert made.body.isclose(by_hand(densities).translated(position), rtol=1e-12)
 
 
+@pytest.mark.usefixtures("occt_here")
 def test_solids_of_cad(tmp_path: Path) -> None:
     pytest.importorskip("OCP")
     path = tmp_path / "a.step"

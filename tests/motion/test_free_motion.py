@@ -68,7 +68,9 @@ def errors_of(trajectory: Any, exact: Any) -> tuple[float, float]:
     return max(angles), max(rates)
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize(
+    "case", [pytest.param(case, marks=[pytest.mark.long] * (case == "needle")) for case in CASES]
+)
 def test_every_mode_against_the_series(case: str) -> None:
     moments, omega = CASES[case]
     speed = np.linalg.norm(np.array(moments) * omega) / moments[1]

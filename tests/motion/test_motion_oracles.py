@@ -21,8 +21,10 @@ FREE = load_table(free_cases.NAME)
 TOPS = load_table(top_cases.NAME)
 
 
-def named(cases: tuple[MotionCase, ...]) -> pytest.MarkDecorator:
-    return pytest.mark.parametrize("case", cases, ids=lambda case: case.name)
+def named(cases: tuple[MotionCase, ...], *, long: tuple[str, ...] = ()) -> pytest.MarkDecorator:
+    """Cases by their names, those of `long` with this mark."""
+    params = [pytest.param(one, id=one.name, marks=[pytest.mark.long] * (one.name in long)) for one in cases]
+    return pytest.mark.parametrize("case", params)
 
 
 def tensor(case: MotionCase) -> np.ndarray:
@@ -54,7 +56,7 @@ def by_dop853(case: MotionCase, t: float) -> State:
     return State(y[:3], y[3:])
 
 
-@named(FREE + TOPS)
+@named(FREE + TOPS, long=("thin: needle, spinning",))
 def test_scipy_agrees(case: MotionCase) -> None:
     got, want = by_dop853(case, case.times[0]), case.expected[0]
     rate = 2 * np.pi / case.times[0]

@@ -124,7 +124,7 @@ def assert_dop853(case: MotionCase, rtol: float) -> None:
 
 
 @SMOOTH
-@pytest.mark.parametrize("rtol", [1e-8, 1e-11])
+@pytest.mark.parametrize("rtol", [1e-8, pytest.param(1e-11, marks=pytest.mark.long)])
 def test_dop853_is_no_worse_than_that_of_scipy(case: MotionCase, rtol: float) -> None:
     """At ten rotations; SciPy's tolerance is absolute besides relative to each component."""
     last = max(i for i, t in enumerate(case.times) if t * np.linalg.norm(case.omega) < 21 * np.pi)

@@ -16,6 +16,7 @@ import mpmath
 import numpy as np
 from mpmath import mp, mpf
 
+from oracles import load_cases
 from oracles.motion_cases import MotionCase, State, apart, generate, unit_floats
 from oracles.returning import free_states
 
@@ -161,7 +162,7 @@ def solve(case: MotionCase, digits: int = 80, share: float = 1.0) -> list[State]
 
 
 def proven(case: MotionCase) -> MotionCase:
-    """The case with its states, if two computations agree."""
+    """The case with its states, if two computations agree, and its condition numbers at the first two times."""
     extra = 60 if case.kind == "separatrix" else 40 if "near the" in case.kind or "1e-1" in case.name else 0
     # On the separatrix and near a sphere only what is left without the whole steady part settles or is slow.
     share = (
@@ -171,7 +172,8 @@ def proven(case: MotionCase) -> MotionCase:
     difference = max(apart(a, b) for a, b in zip(once, again, strict=True))
     if difference > mpf(10) ** -42:
         raise ArithmeticError(f"{case.name}: two computations differ by {mpmath.nstr(difference, 3)}")
-    return case._replace(expected=tuple(again))
+    kappa = load_cases.condition_numbers(case._replace(times=case.times[:2]))
+    return case._replace(expected=tuple(again), kappa=kappa)
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ from oracles.returning import unit
 from oracles.rotation import Rotation, Term, conjugate, exponential, times
 from oracles.taylor import steps
 
-__all__ = ["NAME", "cases", "condition", "growth", "solve"]
+__all__ = ["NAME", "cases", "condition", "condition_numbers", "growth", "solve"]
 
 NAME = "simulate"
 ATTITUDE = unit_floats(0.3, -0.2, 0.4, 0.7)
@@ -200,6 +200,15 @@ def condition(case: MotionCase, digits: int = 16) -> list[float]:
     return [float(x) for x in np.linalg.norm(variations(case, digits), 2, axis=(1, 2))]
 
 
+def condition_numbers(case: MotionCase) -> tuple[float, ...]:
+    """Return the condition numbers at the times of a case, as its table holds them."""
+    for digits in (16, 32, 64):
+        kappa = condition(case, digits)
+        if max(kappa) <= UNSTABLE * 10 ** (digits // 2 - 8):  # neighbours stay neighbours
+            break
+    return tuple(float(f"{x:.3e}") for x in kappa)
+
+
 def growth(case: MotionCase, digits: int) -> float:
     """The largest ‖∂(attitude, ω/|ω₀|)(t)/∂(attitude, ω/|ω₀|)(s)‖₂ over the times s, t the last of them."""
     *before, last = variations(case, digits)
@@ -237,15 +246,13 @@ def _difference(a: State, b: State, rate: Any, small: Any) -> list[float]:
 
 def proven(case: MotionCase) -> MotionCase:
     """The case with its states, if two computations agree, and its condition numbers."""
-    kappa = condition(case)
-    if max(kappa) > UNSTABLE:  # neighbours must stay neighbours
-        kappa = condition(case, 32)
+    kappa = condition_numbers(case)
     eaten = max(0, math.ceil(math.log10(max(kappa) / UNSTABLE)))
     once, again = solve(case, 42 + eaten), solve(case, 48 + eaten)
     difference = max(apart(a, b) for a, b in zip(once, again, strict=True))
     if difference > mpf(10) ** -41:
         raise ArithmeticError(f"{case.name}: two computations differ by {mpmath.nstr(difference, 3)}")
-    return case._replace(expected=tuple(again), kappa=tuple(float(f"{x:.3e}") for x in kappa))
+    return case._replace(expected=tuple(again), kappa=kappa)
 
 
 if __name__ == "__main__":

@@ -71,7 +71,8 @@ class MotionCase(NamedTuple):
     about : str
         "center_of_mass", or "origin" where that point is held.
     kappa : tuple of float
-        For each time ‖∂(attitude, ω/|ω₀|)(t)/∂(attitude, ω/|ω₀|)(0)‖₂; empty where nobody asked.
+        For each time ‖∂(attitude, ω/|ω₀|)(t)/∂(attitude, ω/|ω₀|)(0)‖₂; of free bodies and tops for the first
+        two times; of a body with a moment of zero none.
     gravity : tuple of float
         Of a heavy top, in space; else empty.
     position, velocity : tuple of float

@@ -15,6 +15,7 @@ from typing import Any
 import mpmath
 from mpmath import mp, mpf
 
+from oracles import load_cases
 from oracles.motion_cases import MotionCase, State, apart, generate, unit_floats
 from oracles.returning import free_states, top_states
 
@@ -142,13 +143,20 @@ def solve(case: MotionCase, digits: int = 80) -> list[State]:
 
 
 def proven(case: MotionCase) -> MotionCase:
-    """The case with its states, if two computations agree."""
+    """The case with its states, if two computations agree, and its condition numbers at the first two times.
+
+    A body without matter off an axis has none.
+    """
     extra = 60 if case.name in SETTLING else 40 if "unstable" in case.kind or "plane" in case.name else 0
     once, again = solve(case, 80 + extra), solve(case, 105 + extra)
     difference = max(apart(a, b) for a, b in zip(once, again, strict=True))
     if difference > mpf(10) ** -42:
         raise ArithmeticError(f"{case.name}: two computations differ by {mpmath.nstr(difference, 3)}")
-    return case._replace(expected=tuple(again))
+    if 0.0 in case.body["moments"]:  # a turn about this axis has no inertia
+        return case._replace(expected=tuple(again))
+    weight = ({"kind": "uniform_gravity", "gravity": case.gravity},) if any(case.gravity) else ()
+    kappa = load_cases.condition_numbers(case._replace(times=case.times[:2], load=weight))
+    return case._replace(expected=tuple(again), kappa=kappa)
 
 
 if __name__ == "__main__":

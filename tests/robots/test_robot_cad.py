@@ -19,6 +19,7 @@ def judged(folder: Path, inertia: float | tuple[float, float, float], scale: str
     return verdict
 
 
+@pytest.mark.usefixtures("occt_here")
 @pytest.mark.parametrize(("scale", "factor"), [("1 1 1", 1.0), ("2 2 2", 2.0)])
 def test_a_ball_of_step(scale: str, factor: float, tmp_path: Path) -> None:
     """A ball of radius 50 mm, whatever unit the file has, and one that is scaled."""
@@ -31,6 +32,7 @@ def test_a_ball_of_step(scale: str, factor: float, tmp_path: Path) -> None:
     assert judged(tmp_path, 10.0 * expected, scale).verdict == "suspect"
 
 
+@pytest.mark.usefixtures("occt_here")
 def test_a_scale_that_bends(tmp_path: Path) -> None:
     write_step(primitive("Sphere", 50.0)(), tmp_path / "ball.step")
     verdict = judged(tmp_path, 0.003, "1 1 2")

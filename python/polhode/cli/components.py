@@ -9,7 +9,6 @@ from polhode import Uncertain
 from polhode._format import with_sigma
 from polhode.cli.layout import Cell, Column, Table
 from polhode.errors import PolhodeError
-from polhode.io.cad_files import solids_of
 from polhode.io.components import (
     MOST_FACES,
     MOST_PARTS,
@@ -108,6 +107,8 @@ def weigh(
             raise PolhodeError(f"--{name}: components of several densities are not joined; leave it out")
     given = densities_of(options.density or "", options.length_unit)
     if loaded.cad is not None:
+        from polhode.io.cad_files import solids_of
+
         body, solids = solids_of(loaded.cad, given)
         return solid._replace(body=body, parts=solids)
     parts = named_parts(loaded, scale, weld)

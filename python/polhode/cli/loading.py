@@ -15,7 +15,6 @@ from polhode.io.content import is_molecule
 from polhode.io.formats import check_arguments, load, molecule_isotopes
 from polhode.io.mesh import weld_within
 from polhode.io.mesh_solid import MeshSolid, solid_of
-from polhode.molecules.bonding import crossings_of
 from polhode.units import METRES, amount, has_unit, metres_per, quantity
 
 if TYPE_CHECKING:
@@ -328,6 +327,8 @@ def loaded_molecule(
     """Make the body of a molecule's nuclides at their places, which are in angstrom."""
     crossings, crossed = None, list[str]()
     if molecule.cell is not None:
+        from polhode.molecules.bonding import crossings_of
+
         crossings, crossed = crossings_of(atoms, molecule.positions, molecule.cell)
     return LoadedBody(
         body=at.body(atoms, masses),

@@ -21,7 +21,6 @@ from polhode.cli.tables import (
 )
 from polhode.cli.whole import any_body, whole_report
 from polhode.errors import PolhodeError
-from polhode.interop.programs import to_text
 from polhode.io.mesh_solid import MeshSolid
 from polhode.units import metres_per, quantity, split_vector
 
@@ -62,6 +61,8 @@ def for_program(
     file: Path | None, options: BodyOptions, extra: ReportOptions, form: str | None
 ) -> tuple[str, list[str]]:
     """Write the mass properties of the body in a file for the program of --as; what has to be noted too."""
+    from polhode.interop.programs import to_text
+
     check_alone(extra, form)
     loaded = any_body(file, options, with_components=True)
     if loaded.mass_unit != "kg" or loaded.length != "m":

@@ -19,7 +19,6 @@ from polhode import _core
 from polhode._format import Argument
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.io.budget import Budget, check_ordinary, naming, status_of, whole_of
-from polhode.io.cad_geometry import check_occt
 from polhode.io.content import EXPECTED_CONTENT, MOLECULE_SUFFIXES, Content, is_molecule, open_file, unread
 from polhode.io.images import is_image
 from polhode.io.mesh import Mesh, check_faces, weld, weld_within
@@ -240,6 +239,8 @@ def load(path: str | os.PathLike[str], *, index_base: int = 1) -> FileContent:
         base = Argument("index_base")
         raise PolhodeError(base, f": {file} is not v/f text (.obj, .tab, .txt); leave ", base, " out")
     if suffix in CAD_SUFFIXES:
+        from polhode.io.cad_geometry import check_occt
+
         check_occt(f"{file}: reading CAD files (STEP, IGES)")  # told of any such name
     if file.suffix.lower() == ".gz" and suffix not in EXPECTED_CONTENT:
         check_ordinary(file)
