@@ -96,8 +96,8 @@ def test_ten_rotations_in_doubles(case: MotionCase) -> None:
 @pytest.mark.parametrize("n", [0, 1])
 @named(CASES)
 def test_condition_numbers_are_those_of_differences(case: MotionCase, n: int) -> None:
-    """Where neighbours stay neighbours in doubles."""
-    if case.kappa and case.kappa[n] < TORN:
+    """Where neighbours stay neighbours in doubles all the way."""
+    if case.kappa and case.kappa[n] < TORN and case.name not in GROWTH:
         assert condition(case, n) == pytest.approx(case.kappa[n], rel=0.01)
 
 

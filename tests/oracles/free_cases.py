@@ -162,7 +162,7 @@ def solve(case: MotionCase, digits: int = 80, share: float = 1.0) -> list[State]
 
 
 def proven(case: MotionCase) -> MotionCase:
-    """The case with its states, if two computations agree, and its condition numbers at the first two times."""
+    """The case with its states, if two computations agree, and its first two condition numbers."""
     extra = 60 if case.kind == "separatrix" else 40 if "near the" in case.kind or "1e-1" in case.name else 0
     # On the separatrix and near a sphere only what is left without the whole steady part settles or is slow.
     share = (
@@ -172,8 +172,21 @@ def proven(case: MotionCase) -> MotionCase:
     difference = max(apart(a, b) for a, b in zip(once, again, strict=True))
     if difference > mpf(10) ** -42:
         raise ArithmeticError(f"{case.name}: two computations differ by {mpmath.nstr(difference, 3)}")
-    kappa = load_cases.condition_numbers(case._replace(times=case.times[:2]))
-    return case._replace(expected=tuple(again), kappa=kappa)
+    return case._replace(expected=tuple(again), kappa=condition_numbers(case))
+
+
+def condition_numbers(case: MotionCase) -> tuple[float, ...]:
+    """Return the condition numbers at the first two times; rates and moments have a size of about 1 in it."""
+    key = "moments" if "moments" in case.body else "inertia"
+    size = math.frexp(np.abs(case.body[key]).max())[1]
+    rate = math.frexp(max(map(abs, case.omega)))[1]
+    return load_cases.condition_numbers(
+        case._replace(
+            body=case.body | {key: np.ldexp(case.body[key], -size).tolist()},
+            omega=tuple(math.ldexp(x, -rate) for x in case.omega),
+            times=tuple(math.ldexp(t, rate) for t in case.times[:2]),
+        )
+    )
 
 
 if __name__ == "__main__":
