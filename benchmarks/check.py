@@ -65,7 +65,7 @@ def main() -> None:
             of_cpu(file)  # what is imported late is
             rows: dict[str, list[float]] = {"process": [], "its imports alone": [], "CPU after imports": []}
             for _ in range(options.rounds):
-                rows["process"].append(seconds("-m", "polhode.cli", "check", str(file)))
+                rows["process"].append(seconds("-m", "polhode", "check", str(file)))
                 rows["its imports alone"].append(seconds("-c", IMPORTS))
                 rows["CPU after imports"].append(of_cpu(file))
             print(f"{file.name}: median, least and most of {options.rounds} rounds")

@@ -47,7 +47,7 @@ def rows() -> Iterator[Row]:
     yield Row(
         name="polhode --help",
         peer=HELP_NEEDS,
-        ours=lambda: run("-m", "polhode.cli", "--help"),
+        ours=lambda: run("-m", "polhode", "--help"),
         theirs=lambda: run("-c", HELP_NEEDS),
         compare=same,
         at_most=1.2,
@@ -55,7 +55,7 @@ def rows() -> Iterator[Row]:
     with tempfile.TemporaryDirectory() as folder:
         part = Path(folder, "part.stl")
         write_stl(part, *torus(100, 50))
-        report = ("-m", "polhode.cli", "report", str(part), "--length-unit", "mm", "--density", "2700")
+        report = ("-m", "polhode", "report", str(part), "--length-unit", "mm", "--density", "2700")
         yield Row(
             name="polhode report, 10 000 triangles",
             peer="the bare imports",

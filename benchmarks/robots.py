@@ -158,7 +158,7 @@ def print_processes(paths: list[Path]) -> None:
         for _ in range(2):
             start, before = time.perf_counter(), os.times()
             done = subprocess.run(
-                [sys.executable, "-m", "polhode.cli", "check", path],
+                [sys.executable, "-m", "polhode", "check", path],
                 capture_output=True,
                 check=False,
                 env=env,

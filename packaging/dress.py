@@ -68,6 +68,8 @@ def dressed(sources: Path) -> None:
     )
     text = text.replace('"LICENSE-APACHE"]', f'"LICENSE-APACHE", "{THIRD_PARTY}"]')
     text = text.replace(SOME, f"include = [\n{everything(sources)}]")
+    own = str(manifest()["license"])
+    text = text.replace(f'\nlicense = "{own}"', f'\nlicense = "{expression(own, linked())}"')
     project.write_text(text, "utf-8")
 
 
@@ -77,28 +79,34 @@ def everything(sources: Path) -> str:
     return "".join(f'    {{ path = "{name}", format = "sdist" }},\n' for name in names)
 
 
+def linked() -> list[dict[str, Any]]:
+    """The crates that are compiled into the extension on some system, by name and version."""
+    calm = {**os.environ, "CARGO_TERM_COLOR": "never"}
+    tree = ["cargo", "tree", "--locked", "--package", "polhode-python", "--edges", "normal,no-proc-macro"]
+    tree += ["--target", "all", "--prefix", "none", "--format", "{p}"]
+    told = subprocess.check_output(tree, cwd=ROOT, env=calm, text=True)
+    within = {tuple(line.split()[:2]) for line in told.splitlines()}
+    metadata = ["cargo", "metadata", "--locked", "--format-version", "1"]
+    packages = json.loads(subprocess.check_output(metadata, cwd=ROOT, env=calm))["packages"]
+    crates = [each for each in packages if each["source"] and (each["name"], f"v{each['version']}") in within]
+    return sorted(crates, key=lambda crate: (crate["name"], crate["version"]))
+
+
+def expression(own: str, crates: list[dict[str, Any]]) -> str:
+    """The licence of the package together with those of crates that leave no choice of its own."""
+    choices = {tuple(sorted(re.split(r" OR |/", crate["license"]))) for crate in crates}
+    others = sorted(" OR ".join(choice) for choice in choices if not set(own.split(" OR ")) <= set(choice))
+    return " AND ".join([f"({own})", *(f"({other})" if " OR " in other else other for other in others)])
+
+
 def third_party() -> str:
     """The licences of the crates that are compiled into the extension."""
-    command = ["cargo", "metadata", "--locked", "--format-version", "1"]
-    told = json.loads(
-        subprocess.check_output(command, cwd=ROOT, env={**os.environ, "CARGO_TERM_COLOR": "never"})
-    )
-    packages = {package["id"]: package for package in told["packages"]}
-    nodes = {node["id"]: node for node in told["resolve"]["nodes"]}
-    within: set[str] = set()
-    ahead = [key for key, package in packages.items() if package["name"] == "polhode-python"]
-    while ahead:
-        key = ahead.pop()
-        within.add(key)
-        needs = (d for d in nodes[key]["deps"] if any(kind["kind"] is None for kind in d["dep_kinds"]))
-        ahead += [need["pkg"] for need in needs if need["pkg"] not in within]
-    crates = [packages[key] for key in within if packages[key]["source"]]
     parts = [
         "The extension of polhode contains, besides its own code, the standard library of Rust\n"
         "(MIT OR Apache-2.0) and parts of these crates, on any system.\nTheir licences follow, each once.\n"
     ]
     texts: dict[str, list[str]] = {}
-    for crate in sorted(crates, key=lambda crate: (crate["name"], crate["version"])):
+    for crate in linked():
         name = f"{crate['name']} {crate['version']} ({crate['license']})"
         files = sorted(
             file
@@ -111,3 +119,7 @@ def third_party() -> str:
     rule = "=" * 80
     parts += [f"\n{rule}\n" + "\n".join(names) + f"\n{rule}\n\n{text}" for text, names in texts.items()]
     return "\n".join(parts) + "\n"
+
+
+if __name__ == "__main__":  # for a channel whose sources are a checkout
+    (ROOT / THIRD_PARTY).write_text(third_party(), "utf-8")

@@ -12,6 +12,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
+import polhode
 import pytest
 from command_line import one_line, run, write_obj
 from mesh_files import obj
@@ -308,6 +309,8 @@ def test_without_the_extra_one_line_says_how_to_install_it(
             out, err = capsys.readouterr()
             assert out == ""
             assert err == 'polhode: the command line needs its extra: pip install "polhode[cli]"\n'
+            assert main(["--version"]) == 0
+            assert capsys.readouterr() == (f"polhode {polhode.__version__}\n", "")
 
 
 def test_interruption_isone_line(slab: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -320,7 +323,7 @@ def test_interruption_isone_line(slab: Path, monkeypatch: pytest.MonkeyPatch) ->
 
 def test_names_beyond_the_encoding_of_the_terminal(slab: Path, tmp_path: Path) -> None:
     path = slab.rename(tmp_path / "Körper.obj")
-    command = [sys.executable, "-m", "polhode.cli", "report", str(path)]
+    command = [sys.executable, "-m", "polhode", "report", str(path)]
     result = subprocess.run(
         command, capture_output=True, check=True, timeout=60, env=os.environ | {"PYTHONIOENCODING": "ascii"}
     )
@@ -328,7 +331,7 @@ def test_names_beyond_the_encoding_of_the_terminal(slab: Path, tmp_path: Path) -
 
 
 def test_a_reader_that_leaves_is_no_error(slab: Path) -> None:
-    program = f"{sys.executable} -m polhode.cli report {slab} --format json | head -c 1"
+    program = f"{sys.executable} -m polhode report {slab} --format json | head -c 1"
     result = subprocess.run(program, shell=True, capture_output=True, check=True, timeout=60)
     assert result.stdout == b"{"
     assert result.stderr == b""

@@ -94,7 +94,7 @@ def test_what_is_wrong_is_told_all_the_same(monkeypatch: pytest.MonkeyPatch) -> 
 
 def test_what_is_left_over_when_the_process_ends() -> None:
     """Python flushes standard output once more, which may tell nothing new."""
-    command = [sys.executable, "-m", "polhode.cli", "report", "part.obj"]
+    command = [sys.executable, "-m", "polhode", "report", "part.obj"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         assert process.stdout is not None
         assert process.stderr is not None
@@ -112,7 +112,7 @@ def test_what_is_left_over_when_the_process_ends() -> None:
 
 
 def test_standard_input_that_never_ends() -> None:
-    command = [sys.executable, "-m", "polhode.cli", "report", "-"]
+    command = [sys.executable, "-m", "polhode", "report", "-"]
     with Path("/dev/zero").open("rb") as endless:
         done = subprocess.run(command, check=False, stdin=endless, capture_output=True, text=True, timeout=60)
     assert done.returncode == 2

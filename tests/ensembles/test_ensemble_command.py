@@ -228,7 +228,7 @@ class TestSaved:
             "--save", str(tmp_path / name),
         ]  # fmt: skip
         begun = tmp_path / (f"{name}.parts" if name.endswith("npz") else f"{name}/status")
-        process = subprocess.Popen([sys.executable, "-m", "polhode.cli", "ensemble", *words])
+        process = subprocess.Popen([sys.executable, "-m", "polhode", "ensemble", *words])
         deadline = time.monotonic() + 60.0
         while time.monotonic() < deadline and len(list(begun.glob("[0-9c]*"))) < 2:
             time.sleep(0.005)

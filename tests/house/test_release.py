@@ -177,8 +177,24 @@ class TestLicences:
         text = script("dress")["third_party"]()
         for crate in ("nalgebra", "pyo3", "numpy", "thiserror"):
             assert re.search(rf"^- {crate} [\d.]+", text, re.MULTILINE)
-        for other in ("proptest", "serde", "polhode 0", "/root/", "/home/"):
+        for other in ("proptest", "serde", "glam", "num-bigint", "syn ", "polhode 0", "/root/", "/home/"):
             assert other not in text
+
+    def test_the_expression_names_what_leaves_no_choice(self, script: Any) -> None:
+        dress = script("dress")
+        expression, own = dress["expression"], dress["manifest"]()["license"]
+        crates = [
+            "Apache-2.0/MIT",
+            "Zlib OR Apache-2.0 OR MIT",
+            "BSD-2-Clause",
+            "ISC OR Zlib",
+            "BSD-2-Clause",
+        ]
+        told = expression(own, [{"license": each} for each in crates])
+        assert told == "(MIT OR Apache-2.0) AND BSD-2-Clause AND (ISC OR Zlib)"
+        recipe = (PACKAGING / "conda" / "recipe.yaml").read_text("utf-8")
+        assert f"\n  license: {expression(own, dress['linked']())}\n" in recipe
+        assert "packaging/dress.py  # writes LICENSE-THIRD-PARTY\n" in recipe
 
     def test_lints_and_workflow_look_at_the_licences_of_both_lockfiles(self) -> None:
         makefile = (ROOT / "Makefile").read_text("utf-8")
@@ -256,6 +272,7 @@ class TestStrangers:
     def test_what_dressing_replaces_is_there(self, script: Any) -> None:
         text = (ROOT / "pyproject.toml").read_text("utf-8")
         assert text.count("[project.scripts]") == 1
+        assert text.count('\nlicense = "') == 1
         if (ROOT / "PKG-INFO").exists():  # the sources of a release are dressed already
             assert text.count('"LICENSE-APACHE", "LICENSE-THIRD-PARTY"]') == text.count("[project.urls]") == 1
         else:

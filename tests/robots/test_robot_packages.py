@@ -155,7 +155,7 @@ def test_a_reader_that_leaves_is_no_error(tmp_path: Path) -> None:
     write_obj(tmp_path / "cube.obj", *cube(1.0))
     (tmp_path / "r.urdf").write_text(urdf(*(link(f"link{i}", 5.0, 0.1 + 1e-3 * i) for i in range(2000))))
     for arguments in (["report", tmp_path / "cube.obj", "--density", "1"], ["check", tmp_path / "r.urdf"]):
-        command = [sys.executable, "-m", "polhode.cli", *map(str, arguments)]
+        command = [sys.executable, "-m", "polhode", *map(str, arguments)]
         with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
             assert process.stdout is not None
             assert process.stderr is not None

@@ -1,4 +1,4 @@
-"""``python -m polhode.cli``."""
+"""``python -m polhode``."""
 
 from __future__ import annotations
 
