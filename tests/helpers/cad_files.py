@@ -267,7 +267,10 @@ def write_step(shape: Any, path: Path, unit: str = "MM") -> Path:
 def write_assembly(
     path: Path, densities: dict[str, float], names: tuple[str, ...] = ("block", "ball")
 ) -> Path:
-    """Write a block, and two balls at other places, as an assembly with names and materials (g/cm^3)."""
+    """Write a block, and two balls at other places, as an assembly with names and materials (g/cm^3).
+
+    The suffix of `path` says the format; IGES has no materials.
+    """
     silence()
     tools, text = occt("XCAFDoc"), occt("TCollection")
     document = occt("TDocStd").TDocStd_Document(text.TCollection_ExtendedString("test"))
@@ -300,6 +303,15 @@ def write_assembly(
     ):
         shapes.AddComponent(whole, labels[label], location(place(*where)))
     shapes.UpdateAssemblies()
+    if path.suffix == ".igs":
+        iges = occt("IGESControl")
+        iges.IGESControl_Controller.Init_s()
+        occt("Interface").Interface_Static.SetIVal_s("write.iges.brep.mode", 1)
+        writer = occt("IGESCAFControl").IGESCAFControl_Writer()
+        writer.SetNameMode(True)
+        assert writer.Transfer(document)
+        assert writer.Write(str(path))
+        return path
     writer = occt("STEPCAFControl").STEPCAFControl_Writer()
     writer.SetMaterialMode(True)
     writer.SetNameMode(True)

@@ -139,6 +139,44 @@ def test_every_format_with_names(form: str, tmp_path: Path) -> None:
         RigidBody.from_file(path, density={"plate": 1.0}, length_unit=unit)
 
 
+def base_materials(path: Path, by_triangle: bool) -> Path:
+    """A 3MF file whose objects, or triangles, have base materials; the last has another property."""
+    bases = "".join(f'<base name="{name}" displaycolor="#808080FF"/>' for name in ("steel", " PLA  blue"))
+    more = f'<basematerials id="7">{bases}</basematerials>'
+    choices = {"steel": ("7", "0"), "PLA blue": ("7", "1"), "": ("9", "0")}
+    for number, (vertices, faces), name in zip((2, 3, 4), MESHES, ("PLA blue", "steel", ""), strict=True):
+        group, place = choices[name]
+        own = f'pid="{group}" pindex="{place}"' if not by_triangle else 'pid="7" pindex="0"'
+        word = f'pid="{group}" p1="{place}"' if by_triangle else ""
+        points = "".join(f'<vertex x="{x!r}" y="{y!r}" z="{z!r}"/>' for x, y, z in vertices.tolist())
+        plates = "".join('<triangle v1="{}" v2="{}" v3="{}" {}/>'.format(*face, word) for face in faces)
+        more += (
+            f'<object id="{number}" type="model" name="o{number}" {own}><mesh><vertices>{points}</vertices>'
+        )
+        more += f"<triangles>{plates}</triangles></mesh></object>"
+    data = three_mf(*MESHES[0], build="".join(f'<item objectid="{k}"/>' for k in (2, 3, 4)), more=more)
+    (path / "m.3mf").write_bytes(data)
+    return path / "m.3mf"
+
+
+@pytest.mark.parametrize("by_triangle", [False, True])
+def test_base_materials_of_3mf(tmp_path: Path, by_triangle: bool) -> None:
+    path = base_materials(tmp_path, by_triangle)
+    for given, densities in (
+        ({"steel": 7.8, "PLA blue": 1.2, "*": 1.0}, [1.2, 7.8, 1.0]),
+        ({"steel": 7.8, "o2": 5.0, "*": 1.0}, [5.0, 7.8, 1.0]),
+        ({"PLA blue": 1.2, "o3": 3.0, "o4": 4.0}, [1.2, 3.0, 4.0]),
+    ):
+        assert RigidBody.from_file(path, density=given).isclose(by_hand(densities), rtol=1e-13)
+    code, out, err = run("report", path, "--density", "steel=7.8, PLA blue=1.2, *=1", "--format", "json")
+    assert code == 0, err
+    assert json.loads(out)["mass"] == pytest.approx(float(by_hand([1.2, 7.8, 1.0]).mass), rel=1e-12)
+    with pytest.raises(
+        PolhodeError, match=r"no component 'brass'; give one density for each of .*PLA blue.*steel"
+    ):
+        RigidBody.from_file(path, density={"brass": 1.0})
+
+
 def test_the_command_line_and_assemblies(tmp_path: Path) -> None:
     path = FORMATS["o"](tmp_path)
     expected = by_hand([2700.0, 7800.0, 7800.0])
@@ -197,6 +235,19 @@ def test_solids_of_cad(tmp_path: Path) -> None:
     code, _, err = run("report", path, "--density", "ball=3, block=2")
     assert code == 0, err
     with pytest.raises(PolhodeError, match="no component 'lid'"):
+        RigidBody.from_file(path, density={"lid": 3.0})
+
+
+def test_solids_of_iges(tmp_path: Path) -> None:
+    pytest.importorskip("OCP")
+    path = tmp_path / "a.igs"
+    write_assembly(path, {})
+    whole = RigidBody.from_file(path, density=1.0)
+    block = RigidBody.from_file(path, density={"block": 1.0, "*": 1e-12})
+    balls = RigidBody.from_file(path, density={"ball": 3.0, "block": 1e-12})
+    assert 1e9 * float(block.mass) == pytest.approx(2 * 6000.0, rel=1e-9)
+    assert float(block.mass) + float(balls.mass) / 3.0 == pytest.approx(float(whole.mass), rel=1e-9)
+    with pytest.raises(PolhodeError, match=r"no component 'lid'; give one density for each of .*block.*ball"):
         RigidBody.from_file(path, density={"lid": 3.0})
 
 
