@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-__all__ = ["SOLIDS", "Known", "write_assembly", "write_step"]
+__all__ = ["SOLIDS", "Known", "write_assembly", "write_iges", "write_step"]
 
 Triple = tuple[float, float, float]
 
@@ -267,10 +267,7 @@ def write_step(shape: Any, path: Path, unit: str = "MM") -> Path:
 def write_assembly(
     path: Path, densities: dict[str, float], names: tuple[str, ...] = ("block", "ball")
 ) -> Path:
-    """Write a block, and two balls at other places, as an assembly with names and materials (g/cm^3).
-
-    The suffix of `path` says the format; IGES has no materials.
-    """
+    """Write a block, and two balls at other places, as an assembly with names and materials (g/cm^3)."""
     silence()
     tools, text = occt("XCAFDoc"), occt("TCollection")
     document = occt("TDocStd").TDocStd_Document(text.TCollection_ExtendedString("test"))
@@ -303,20 +300,30 @@ def write_assembly(
     ):
         shapes.AddComponent(whole, labels[label], location(place(*where)))
     shapes.UpdateAssemblies()
-    if path.suffix == ".igs":
-        iges = occt("IGESControl")
-        iges.IGESControl_Controller.Init_s()
-        occt("Interface").Interface_Static.SetIVal_s("write.iges.brep.mode", 1)
-        writer = occt("IGESCAFControl").IGESCAFControl_Writer()
-        writer.SetNameMode(True)
-        assert writer.Transfer(document)
-        assert writer.Write(str(path))
-        return path
     writer = occt("STEPCAFControl").STEPCAFControl_Writer()
     writer.SetMaterialMode(True)
     writer.SetNameMode(True)
     writer.Transfer(document)
     assert writer.Write(str(path)) == occt("IFSelect").IFSelect_ReturnStatus.IFSelect_RetDone
+    return path
+
+
+def write_iges(path: Path, named: list[tuple[str, Any]]) -> Path:
+    """Write solids side by side, each with its name."""
+    silence()
+    tools, text = occt("XCAFDoc"), occt("TCollection")
+    document = occt("TDocStd").TDocStd_Document(text.TCollection_ExtendedString("test"))
+    shapes = tools.XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+    tools.XCAFDoc_DocumentTool.SetLengthUnit_s(document, 0.001)
+    for name, solid in named:
+        label = shapes.AddShape(solid, False)
+        occt("TDataStd").TDataStd_Name.Set_s(label, text.TCollection_ExtendedString(name))
+    occt("IGESControl").IGESControl_Controller.Init_s()
+    occt("Interface").Interface_Static.SetIVal_s("write.iges.brep.mode", 1)
+    writer = occt("IGESCAFControl").IGESCAFControl_Writer()
+    writer.SetNameMode(True)
+    assert writer.Transfer(document)
+    assert writer.Write(str(path))
     return path
 
 

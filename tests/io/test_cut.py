@@ -180,7 +180,7 @@ def test_the_same_in_an_assembly_and_on_the_command_line(hull: Path) -> None:
     assert code == 0, err
     told = json.loads(out)  # a mass is that of the whole
     assert told["mass"] == pytest.approx(2.5, rel=1e-12)
-    assert told["mass_sigma"] == pytest.approx(0.05, rel=1e-12)
+    assert told["sigma"]["mass"] == pytest.approx(0.05, rel=1e-12)
 
 
 def test_a_section_with_a_hole_and_one_that_is_not_convex(tmp_path: Path) -> None:
@@ -197,9 +197,20 @@ def test_what_is_mended_or_large_is_cut(tmp_path: Path) -> None:
     path = write_obj(tmp_path / "open.obj", vertices, faces[:-1])
     part = {"name": "a", "file": "open.obj", "density": 3, "length_unit": "m", "cut": {"normal": [1, 0, 0]}}
     half = solids.box((1.0, 2.0, 2.0), density=3.0).translated((0.5, 0, 0))
-    for key, value in (("closure", "caps"), ("repair", True)):
-        made = assembly.read({"name": "a", "part": [part | {key: value}]}, folder=path.parent)
-        assert made.body.isclose(half, rtol=1e-13)
+    made = assembly.read({"name": "a", "part": [part | {"repair": True}]}, folder=path.parent)
+    assert made.body.isclose(half, rtol=1e-13)
+    for key, value in (("closure", "caps"), ("orient", True), ("union", True)):
+        own = part | {"file": "open.obj" if key == "closure" else "whole.obj"}
+        write_obj(tmp_path / "whole.obj", vertices, faces)
+        with pytest.raises(
+            PolhodeError, match=rf"{key}: a mesh is cut as its file .* repair = true mends it"
+        ):
+            assembly.read({"name": "a", "part": [own | {key: value}]}, folder=path.parent)
+    write_obj(tmp_path / "turned.obj", vertices, faces[:, ::-1])
+    made = assembly.read(
+        {"name": "a", "part": [part | {"file": "turned.obj", "repair": True}]}, folder=path.parent
+    )
+    assert made.body.isclose(half, rtol=1e-13)
     write_obj(tmp_path / "ball.obj", *icosphere(5))  # more faces than a body holds
     whole = RigidBody.from_file(tmp_path / "ball.obj", density=3.0)
     made = assembly.read({"name": "a", "part": [part | {"file": "ball.obj"}]}, folder=path.parent)

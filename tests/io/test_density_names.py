@@ -6,19 +6,16 @@ import base64
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+import numpy as np
 import pytest
 from boxes import at
-from cad_files import write_assembly
+from cad_files import moved, primitive, write_assembly, write_iges
 from command_line import run
 from mesh_files import ascii_stl, three_mf
 from polhode import RigidBody, assembly, solids
 from polhode.errors import PolhodeError
 from polhode.io.components import assign
-
-if TYPE_CHECKING:
-    import numpy as np
 
 SIDES = [(1.0, 1.0, 1.0), (1.0, 0.5, 0.75), (0.25, 0.5, 1.0)]
 PLACES = [(0.0, 0.0, 0.0), (3.0, 0.5, 0.25), (0.0, 5.0, 0.0)]
@@ -240,14 +237,18 @@ def test_solids_of_cad(tmp_path: Path) -> None:
 
 def test_solids_of_iges(tmp_path: Path) -> None:
     pytest.importorskip("OCP")
-    path = tmp_path / "a.igs"
-    write_assembly(path, {})
-    whole = RigidBody.from_file(path, density=1.0)
-    block = RigidBody.from_file(path, density={"block": 1.0, "*": 1e-12})
-    balls = RigidBody.from_file(path, density={"ball": 3.0, "block": 1e-12})
-    assert 1e9 * float(block.mass) == pytest.approx(2 * 6000.0, rel=1e-9)
-    assert float(block.mass) + float(balls.mass) / 3.0 == pytest.approx(float(whole.mass), rel=1e-9)
-    with pytest.raises(PolhodeError, match=r"no component 'lid'; give one density for each of .*block.*ball"):
+    box = primitive("Box", 10.0, 20.0, 30.0)
+    cans = [moved(primitive("Cylinder", 5.0, 8.0), x, 0.0, 0.0) for x in (50.0, 90.0)]
+    path = write_iges(tmp_path / "a.igs", [("block", box()), *(("can", can()) for can in cans)])
+    volumes = [6e-6] + [np.pi * 25.0 * 8.0 * 1e-9] * 2
+    for given, densities in (
+        ({"block": 2.0, "can": 3.0}, [2.0, 3.0, 3.0]),
+        ({"can": 3.0, "*": 1.0}, [1.0, 3.0, 3.0]),
+        ({"can#2": 4.0, "1": 2.0, "*": 1.0}, [2.0, 1.0, 4.0]),
+    ):
+        mass = sum(rho * volume for rho, volume in zip(densities, volumes, strict=True))
+        assert float(RigidBody.from_file(path, density=given).mass) == pytest.approx(mass, rel=1e-8)
+    with pytest.raises(PolhodeError, match=r"no component 'lid'; give one density for each of block, can"):
         RigidBody.from_file(path, density={"lid": 3.0})
 
 

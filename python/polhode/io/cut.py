@@ -12,6 +12,7 @@ from polhode._format import Argument
 from polhode.errors import PolhodeError
 from polhode.io.mesh import Mesh, weld_within
 from polhode.io.mesh_solid import naming_file
+from polhode.io.repair import repair_mesh, spanned_volume
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -195,20 +196,30 @@ def cut_solid(
     scale, weld
         See :func:`polhode.io.mesh_solid.solid_of`.
     mended : mapping
-        Options that change its faces, of which the file has not the mesh.
+        The options that mend it, of which `repair` alone goes with a cut.
     """
     if loaded.cad is not None:
         raise PolhodeError(
             Argument("cut"),
             f": {os.fspath(loaded.path)} holds solids, not a mesh; leave it out, or export a mesh",
         )
-    if any(mended.values()):
-        vertices, faces = _mesh_of(solid.body)
+    name = next((name for name, value in mended.items() if value and name != "repair"), None)
+    if name is not None:
+        raise PolhodeError(
+            Argument(name),
+            ": a mesh is cut as its file has it, or as ",
+            Argument("repair", True),
+            " mends it; leave it out",
+        )
+    if mended.get("repair"):
+        mesh, _, _, _ = repair_mesh(loaded.mesh, weld)
+        if spanned_volume(mesh) < 0.0:
+            mesh = mesh._replace(faces=mesh.faces[:, ::-1])
     else:
         mesh = weld_within(loaded.mesh, weld) if weld != 0.0 else loaded.mesh
-        vertices, faces = mesh.vertices * scale, mesh.faces
     with naming_file(loaded.path):
-        parts = _cut(vertices, faces, *plane)
+        _core.RigidBody._from_mesh(mesh.vertices, mesh.faces, density=1.0)  # which faces outward
+        parts = _cut(mesh.vertices * scale, mesh.faces, *plane)
     left = parts.mesh()
     body, volume = _core.RigidBody._from_mesh(left.vertices, left.faces, density=1.0)
     if mass is None:

@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
 use super::cut_ball::{Cutter, Moments};
 use super::neighbours::{Ball, Neighbours};
