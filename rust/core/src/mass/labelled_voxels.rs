@@ -47,6 +47,16 @@ const MOST_LABELS: usize = 1 << 20;
 const MOST_CELLS: usize = 1 << 20;
 
 /// A number that labels may be stored as.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::labelled_voxels::Label;
+///
+/// assert_eq!(7_u8.whole(), Ok(7));
+/// assert_eq!(3.0_f64.whole(), Ok(3));
+/// assert_eq!(0.5_f64.whole(), Err(0.5));
+/// ```
 pub trait Label: Copy + PartialEq + Sync {
     /// The label as a whole number.
     ///

@@ -12,7 +12,7 @@ pub(super) struct Ball {
 }
 
 /// Balls of a leaf.
-const LEAF: usize = 6;
+const LEAF: usize = 8;
 
 /// Balls in a tree of boxes.
 pub(super) struct Neighbours {
