@@ -46,6 +46,7 @@ def test_what_a_hollow_ellipsoid_is() -> None:
     text = f'<mujoco><worldbody><body name="b"><joint type="hinge"/>{text}</body></worldbody></mujoco>'
     (verdict,) = robots.check(parse(text.format("0.3 0.3 0.3").encode()))
     assert verdict.moments is not None
+    assert verdict.mass is not None
     assert verdict.mass == pytest.approx(1000.0 * 4.0 * np.pi * 0.09, rel=1e-12)
     assert np.allclose(verdict.moments, 2.0 / 3.0 * verdict.mass * 0.09, rtol=1e-5)
     assert any("hollow ellipsoid is counted as MuJoCo does" in note for note in verdict.notes)
