@@ -19,7 +19,7 @@ from polhode.io.cad_files import (
     volume_shared,
 )
 
-__all__ = ["SOLIDS", "Known", "read_here", "write_assembly", "write_step"]
+__all__ = ["SOLIDS", "Known", "read_here", "write_assembly", "write_iges", "write_step"]
 
 Triple = tuple[float, float, float]
 
@@ -323,6 +323,25 @@ def write_assembly(
     writer.SetNameMode(True)
     writer.Transfer(document)
     assert writer.Write(str(path)) == occt("IFSelect").IFSelect_ReturnStatus.IFSelect_RetDone
+    return path
+
+
+def write_iges(path: Path, named: list[tuple[str, Any]]) -> Path:
+    """Write solids side by side, each with its name."""
+    silence()
+    tools, text = occt("XCAFDoc"), occt("TCollection")
+    document = occt("TDocStd").TDocStd_Document(text.TCollection_ExtendedString("test"))
+    shapes = tools.XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+    tools.XCAFDoc_DocumentTool.SetLengthUnit_s(document, 0.001)
+    for name, solid in named:
+        label = shapes.AddShape(solid, False)
+        occt("TDataStd").TDataStd_Name.Set_s(label, text.TCollection_ExtendedString(name))
+    occt("IGESControl").IGESControl_Controller.Init_s()
+    occt("Interface").Interface_Static.SetIVal_s("write.iges.brep.mode", 1)
+    writer = occt("IGESCAFControl").IGESCAFControl_Writer()
+    writer.SetNameMode(True)
+    assert writer.Transfer(document)
+    assert writer.Write(str(path))
     return path
 
 

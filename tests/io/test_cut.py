@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import itertools
+import json
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from oracles.meshes import box
-from polhode import RigidBody, solids
+from command_line import run, write_obj
+from oracles.meshes import box, icosphere
+from polhode import RigidBody, assembly, solids
 from polhode.errors import PolhodeError
 from polhode.io import cut_mesh
 
@@ -138,6 +141,104 @@ def test_a_mesh_of_stl_whose_corners_stand_anew() -> None:
     same = cut_mesh(vertices, faces, (1, 2, 3), (0.1, 0.2, 0.3))
     one, other = (RigidBody.from_mesh(each.vertices, each.faces, density=1.0) for each in (part, same))
     assert one.isclose(other, rtol=1e-14)
+
+
+PONTOON = {"name": "hull", "file": "hull.obj", "length_unit": "mm", "density": "1.025 g/cm^3"}
+BELOW = solids.box((4.0, 2.0, 0.3), density=1025.0).translated((0.0, 0.0, -0.35))
+
+
+@pytest.fixture
+def hull(tmp_path: Path) -> Path:
+    """A box of 4 by 2 by 1 m, in millimetres."""
+    return write_obj(tmp_path / "hull.obj", *box((4000.0, 2000.0, 1000.0)))
+
+
+def test_the_same_in_an_assembly_and_on_the_command_line(hull: Path) -> None:
+    body = RigidBody.from_file(hull, density=1025.0, length_unit="mm").cut((0, 0, -1), (0, 0, -0.2))
+    assert body.isclose(BELOW, rtol=1e-13)
+    for cut in (
+        {"normal": [0, 0, -2], "point": [0, 0, -200]},
+        {"normal": "0 0 -1", "point": "0 0 -20 cm"},
+        {"normal": [0, 0, -1], "point": [1, "2 m", "-0.2 m"]},
+    ):
+        made = assembly.read({"name": "a", "part": [PONTOON | {"cut": cut}]}, folder=hull.parent)
+        assert made.body.isclose(BELOW, rtol=1e-13)
+    moved = PONTOON | {"cut": {"normal": [0, 0, -1]}, "position": ["1 m", 0, 0], "mirror": [0, 0, 1]}
+    made = assembly.read({"name": "a", "part": [moved]}, folder=hull.parent)
+    upper = solids.box((4.0, 2.0, 0.5), density=1025.0).translated((1.0, 0.0, 0.25))
+    assert made.body.isclose(upper, rtol=1e-13)  # cut in its own axes, then mirrored
+    for words in (("0 0 -1", "--cut-point", "0 0 -200"), ("0", "0", "-1", "--cut-point", "0, 0, -0.2 m")):
+        arguments = ("--length-unit", "mm", "--density", "1.025 g/cm^3", "--cut", *words, "--format", "json")
+        code, out, err = run("report", hull, *arguments)
+        assert code == 0, err
+        told = json.loads(out)
+        assert told["mass"] == pytest.approx(float(BELOW.mass), rel=1e-12)
+        assert told["volume"] == pytest.approx(2.4, rel=1e-12)
+        assert told["area"] == pytest.approx(2 * (4 * 2 + 4 * 0.3 + 2 * 0.3), rel=1e-12)
+        assert any("is cut by a plane" in note for note in told["notes"])
+    code, out, err = run("report", hull, "--mass", "5 ± 0.1", "--cut", "0 0 -1", "--format", "json")
+    assert code == 0, err
+    told = json.loads(out)  # a mass is that of the whole
+    assert told["mass"] == pytest.approx(2.5, rel=1e-12)
+    assert told["sigma"]["mass"] == pytest.approx(0.05, rel=1e-12)
+
+
+def test_a_section_with_a_hole_and_one_that_is_not_convex(tmp_path: Path) -> None:
+    path = write_obj(tmp_path / "hollow.obj", *hollow())
+    code, out, err = run("report", path, "--density", "1", "--cut", "0", "0", "1", "--format", "json")
+    assert code == 0, err
+    told = json.loads(out)
+    assert told["volume"] == pytest.approx(32.0 - 4.0, rel=1e-13)
+    assert told["area"] == pytest.approx(48.0 + 12.0 + 12.0, rel=1e-13)  # outside, cavity, section
+
+
+def test_what_is_mended_or_large_is_cut(tmp_path: Path) -> None:
+    vertices, faces = box((2.0, 2.0, 2.0))
+    path = write_obj(tmp_path / "open.obj", vertices, faces[:-1])
+    part = {"name": "a", "file": "open.obj", "density": 3, "length_unit": "m", "cut": {"normal": [1, 0, 0]}}
+    half = solids.box((1.0, 2.0, 2.0), density=3.0).translated((0.5, 0, 0))
+    made = assembly.read({"name": "a", "part": [part | {"repair": True}]}, folder=path.parent)
+    assert made.body.isclose(half, rtol=1e-13)
+    for key, value in (("closure", "caps"), ("orient", True), ("union", True)):
+        own = part | {"file": "open.obj" if key == "closure" else "whole.obj"}
+        write_obj(tmp_path / "whole.obj", vertices, faces)
+        with pytest.raises(
+            PolhodeError, match=rf"{key}: a mesh is cut as its file .* repair = true mends it"
+        ):
+            assembly.read({"name": "a", "part": [own | {key: value}]}, folder=path.parent)
+    write_obj(tmp_path / "turned.obj", vertices, faces[:, ::-1])
+    made = assembly.read(
+        {"name": "a", "part": [part | {"file": "turned.obj", "repair": True}]}, folder=path.parent
+    )
+    assert made.body.isclose(half, rtol=1e-13)
+    write_obj(tmp_path / "ball.obj", *icosphere(5))  # more faces than a body holds
+    whole = RigidBody.from_file(tmp_path / "ball.obj", density=3.0)
+    made = assembly.read({"name": "a", "part": [part | {"file": "ball.obj"}]}, folder=path.parent)
+    assert made.body.mass == pytest.approx(float(whole.mass) / 2.0, rel=1e-9)
+    doubtful = assembly.read(
+        {"name": "a", "part": [part | {"repair": True, "density": "3 ± 1"}]}, folder=path.parent
+    )
+    sigma = doubtful.body.sigma
+    assert sigma is not None
+    assert sigma.mass == pytest.approx(4.0, rel=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        ({"cut": [0, 0, 1]}, r"part 'hull': cut: write a table with the normal of a plane"),
+        ({"cut": {"point": [0, 0, 1]}}, r"part 'hull': cut: write a table with the normal of a plane"),
+        ({"cut": {"normal": [0, 0, 1], "pont": 1}}, r"cut: 'pont' is not a known key; is 'point' meant"),
+        ({"cut": {"normal": [0, 1]}}, r"cut: normal: expected 3 numbers, got 2"),
+        ({"cut": {"normal": [0, 0, 0]}}, r"part 'hull': .*normal must not be the zero vector"),
+        ({"cut": {"normal": [0, 0, 1], "point": [0, 0, 7000]}}, r"part 'hull': .*nothing lies beyond"),
+        ({"cut": {"normal": [0, 0, 1]}, "thickness": 1}, r"cut: thickness makes a sheet"),
+        ({"cut": {"normal": [0, 0, 1]}, "density": {"*": 1}}, r"cut: a solid of one density is cut"),
+    ],
+)
+def test_what_an_assembly_refuses_to_cut(hull: Path, more: Any, says: str) -> None:
+    with pytest.raises(PolhodeError, match=says):
+        assembly.read({"name": "a", "part": [PONTOON | more]}, folder=hull.parent)
 
 
 def test_refused() -> None:

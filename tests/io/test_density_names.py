@@ -6,19 +6,16 @@ import base64
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+import numpy as np
 import pytest
 from boxes import at
-from cad_files import write_assembly
+from cad_files import moved, primitive, write_assembly, write_iges
 from command_line import run
 from mesh_files import ascii_stl, three_mf
 from polhode import RigidBody, assembly, solids
 from polhode.errors import PolhodeError
 from polhode.io.components import assign
-
-if TYPE_CHECKING:
-    import numpy as np
 
 SIDES = [(1.0, 1.0, 1.0), (1.0, 0.5, 0.75), (0.25, 0.5, 1.0)]
 PLACES = [(0.0, 0.0, 0.0), (3.0, 0.5, 0.25), (0.0, 5.0, 0.0)]
@@ -139,6 +136,44 @@ def test_every_format_with_names(form: str, tmp_path: Path) -> None:
         RigidBody.from_file(path, density={"plate": 1.0}, length_unit=unit)
 
 
+def base_materials(path: Path, by_triangle: bool) -> Path:
+    """A 3MF file whose objects, or triangles, have base materials; the last has another property."""
+    bases = "".join(f'<base name="{name}" displaycolor="#808080FF"/>' for name in ("steel", " PLA  blue"))
+    more = f'<basematerials id="7">{bases}</basematerials>'
+    choices = {"steel": ("7", "0"), "PLA blue": ("7", "1"), "": ("9", "0")}
+    for number, (vertices, faces), name in zip((2, 3, 4), MESHES, ("PLA blue", "steel", ""), strict=True):
+        group, place = choices[name]
+        own = f'pid="{group}" pindex="{place}"' if not by_triangle else 'pid="7" pindex="0"'
+        word = f'pid="{group}" p1="{place}"' if by_triangle else ""
+        points = "".join(f'<vertex x="{x!r}" y="{y!r}" z="{z!r}"/>' for x, y, z in vertices.tolist())
+        plates = "".join('<triangle v1="{}" v2="{}" v3="{}" {}/>'.format(*face, word) for face in faces)
+        more += (
+            f'<object id="{number}" type="model" name="o{number}" {own}><mesh><vertices>{points}</vertices>'
+        )
+        more += f"<triangles>{plates}</triangles></mesh></object>"
+    data = three_mf(*MESHES[0], build="".join(f'<item objectid="{k}"/>' for k in (2, 3, 4)), more=more)
+    (path / "m.3mf").write_bytes(data)
+    return path / "m.3mf"
+
+
+@pytest.mark.parametrize("by_triangle", [False, True])
+def test_base_materials_of_3mf(tmp_path: Path, by_triangle: bool) -> None:
+    path = base_materials(tmp_path, by_triangle)
+    for given, densities in (
+        ({"steel": 7.8, "PLA blue": 1.2, "*": 1.0}, [1.2, 7.8, 1.0]),
+        ({"steel": 7.8, "o2": 5.0, "*": 1.0}, [5.0, 7.8, 1.0]),
+        ({"PLA blue": 1.2, "o3": 3.0, "o4": 4.0}, [1.2, 3.0, 4.0]),
+    ):
+        assert RigidBody.from_file(path, density=given).isclose(by_hand(densities), rtol=1e-13)
+    code, out, err = run("report", path, "--density", "steel=7.8, PLA blue=1.2, *=1", "--format", "json")
+    assert code == 0, err
+    assert json.loads(out)["mass"] == pytest.approx(float(by_hand([1.2, 7.8, 1.0]).mass), rel=1e-12)
+    with pytest.raises(
+        PolhodeError, match=r"no component 'brass'; give one density for each of .*PLA blue.*steel"
+    ):
+        RigidBody.from_file(path, density={"brass": 1.0})
+
+
 def test_the_command_line_and_assemblies(tmp_path: Path) -> None:
     path = FORMATS["o"](tmp_path)
     expected = by_hand([2700.0, 7800.0, 7800.0])
@@ -198,6 +233,23 @@ def test_solids_of_cad(tmp_path: Path) -> None:
     code, _, err = run("report", path, "--density", "ball=3, block=2")
     assert code == 0, err
     with pytest.raises(PolhodeError, match="no component 'lid'"):
+        RigidBody.from_file(path, density={"lid": 3.0})
+
+
+def test_solids_of_iges(tmp_path: Path) -> None:
+    pytest.importorskip("OCP")
+    box = primitive("Box", 10.0, 20.0, 30.0)
+    cans = [moved(primitive("Cylinder", 5.0, 8.0), x, 0.0, 0.0) for x in (50.0, 90.0)]
+    path = write_iges(tmp_path / "a.igs", [("block", box()), *(("can", can()) for can in cans)])
+    volumes = [6e-6] + [np.pi * 25.0 * 8.0 * 1e-9] * 2
+    for given, densities in (
+        ({"block": 2.0, "can": 3.0}, [2.0, 3.0, 3.0]),
+        ({"can": 3.0, "*": 1.0}, [1.0, 3.0, 3.0]),
+        ({"can#2": 4.0, "1": 2.0, "*": 1.0}, [2.0, 1.0, 4.0]),
+    ):
+        mass = sum(rho * volume for rho, volume in zip(densities, volumes, strict=True))
+        assert float(RigidBody.from_file(path, density=given).mass) == pytest.approx(mass, rel=1e-8)
+    with pytest.raises(PolhodeError, match=r"no component 'lid'; give one density for each of block, .*can#2"):
         RigidBody.from_file(path, density={"lid": 3.0})
 
 

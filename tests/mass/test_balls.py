@@ -60,7 +60,7 @@ def test_quadrature_to_40_digits(seed: Any) -> None:
 
 
 def check_by_samples(seeds: Any, samples: Any) -> Any:
-    """As many errors beyond four sigmas as chance has."""
+    """As many errors beyond four sigmas as chance has, one in 16,000."""
     beyond = total = 0
     for seed in seeds:
         rng = np.random.default_rng(seed)
@@ -68,10 +68,11 @@ def check_by_samples(seeds: Any, samples: Any) -> Any:
         body = RigidBody.from_balls(centers, radii, density=1.0)
         found = np.concatenate([[body.mass], body.mass * body.center_of_mass])
         mean, sigma = sampled_union(centers, radii, samples, rng)
-        errors = np.abs(found - mean) / np.maximum(sigma, 1e-12)
+        errors = np.abs(found - mean) / sigma
         assert errors.max() < 6.0, seed
         beyond, total = beyond + int((errors > 4.0).sum()), total + errors.size
-    assert beyond <= 2 + 4e-4 * total
+    print(f"{beyond} of {total} errors are beyond 4 sigma")
+    assert beyond <= 2 + 1.5e-4 * total
 
 
 def test_monte_carlo() -> None:

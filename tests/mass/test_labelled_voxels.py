@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from typing import Any
 
@@ -123,8 +124,12 @@ KINDS: list[Any] = [
     np.int32,
     np.int64,
     np.uint64,
+    np.float16,
+    np.float32,
     float,
+    np.longdouble,
     ">i2",
+    ">f8",
 ]
 
 
@@ -179,8 +184,14 @@ def test_refused() -> None:
     image = np.arange(8).reshape(2, 2, 2)
     with pytest.raises(errors.PolhodeError, match="no voxel has the value 12; the values are 0, 1"):
         RigidBody.from_labelled_voxels(image, {12: 1.0}, spacing=1.0)
-    with pytest.raises(errors.PolhodeError, match="expected whole numbers, got fractions"):
-        RigidBody.from_labelled_voxels(image + 0.5, 1.0, spacing=1.0)
+    for kind in (np.float16, np.float32, np.float64, np.longdouble):
+        with pytest.raises(errors.PolhodeError, match=r"must be whole numbers .*go to from_voxels, got 0\.5"):
+            RigidBody.from_labelled_voxels((image + 0.5).astype(kind), 1.0, spacing=1.0)
+    for label in (math.nan, math.inf, 2.0**53):
+        with pytest.raises(errors.PolhodeError, match="labels must be whole numbers"):
+            RigidBody.from_labelled_voxels(np.where(image == 5, label, 1.0), 1.0, spacing=1.0)
+    with pytest.raises(errors.PolhodeError, match=r"labels must be whole .*got 1\.8446744073709552e19"):
+        RigidBody.from_labelled_voxels(image.astype(np.uint64) + (2**64 - 8), 1.0, spacing=1.0)
     with pytest.raises(errors.PolhodeError, match=r"label 3: density must be positive, got -1.0"):
         RigidBody.from_labelled_voxels(image, {3: -1.0}, spacing=1.0)
     with pytest.raises(ValueError, match=r"labels: expected shape \(nx, ny, nz\), got \(4,\)"):

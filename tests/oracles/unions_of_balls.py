@@ -164,7 +164,10 @@ def _rule(n: Any, digits: Any) -> Any:
 
 
 def sampled_union(centers: Any, radii: Any, n: Any, rng: Any) -> Any:
-    """Volume and first moments by Monte Carlo, with their standard errors."""
+    """Volume and first moments by Monte Carlo, with their standard errors.
+
+    What no sample saw, such as a small overlap, may have a probability of 1/n.
+    """
     volumes = 4 / 3 * np.pi * radii**3
     total = volumes.sum()
     ball = rng.choice(len(radii), size=n, p=volumes / total)
@@ -174,4 +177,4 @@ def sampled_union(centers: Any, radii: Any, n: Any, rng: Any) -> Any:
     inside = ((points[:, None] - centers) ** 2).sum(axis=2) <= radii**2 * (1 + 1e-12)
     weights = total / np.maximum(inside.sum(axis=1), 1)
     samples = weights[:, None] * np.column_stack([np.ones(n), points])
-    return samples.mean(axis=0), samples.std(axis=0) / np.sqrt(n)
+    return samples.mean(axis=0), np.hypot(samples.std(axis=0) / np.sqrt(n), np.abs(samples).max(axis=0) / n)

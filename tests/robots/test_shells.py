@@ -18,6 +18,9 @@ SHELLS = {
     "box": 'type="box" size="0.3 0.2 0.1"',
     "cylinder": 'type="cylinder" size="0.2 0.5"',
     "capsule": 'type="capsule" size="0.2 0.5"',
+    "ellipsoid": 'type="ellipsoid" size="0.1 0.2 0.3"',
+    "round ellipsoid": 'type="ellipsoid" size="0.3 0.3 0.3"',
+    "flat ellipsoid": 'type="ellipsoid" size="1 2 0.05" pos="1 2 3" euler="10 20 30"',
     "placed": 'type="capsule" size="0.1" fromto="0.1 0.2 0.3 0.5 -0.1 0.2"',
 }
 
@@ -36,6 +39,19 @@ def test_a_shell_is_that_of_mujoco(name: str, weight: str) -> None:
     assert verdict.mass == pytest.approx(model.body_mass[1], rel=1e-12)
     assert verdict.moments is not None
     assert np.allclose(verdict.moments, np.sort(model.body_inertia[1]), rtol=1e-9)
+
+
+def test_what_a_hollow_ellipsoid_is() -> None:
+    text = '<geom type="ellipsoid" size="{}" shellinertia="true"/>'
+    text = f'<mujoco><worldbody><body name="b"><joint type="hinge"/>{text}</body></worldbody></mujoco>'
+    (verdict,) = robots.check(parse(text.format("0.3 0.3 0.3").encode()))
+    assert verdict.moments is not None
+    assert verdict.mass is not None
+    assert verdict.mass == pytest.approx(1000.0 * 4.0 * np.pi * 0.09, rel=1e-12)
+    assert np.allclose(verdict.moments, 2.0 / 3.0 * verdict.mass * 0.09, rtol=1e-5)
+    assert any("hollow ellipsoid is counted as MuJoCo does" in note for note in verdict.notes)
+    (verdict,) = robots.check(parse(text.format("0.1 0.2 0.3").encode()))
+    assert verdict.mass == pytest.approx(488.82146302582, rel=0.0106)  # exact, by elliptic integrals
 
 
 TENSOR = 'ixx="4" ixy="-0.5" ixz="0.25" iyy="5" iyz="0.75" izz="6"'

@@ -16,6 +16,7 @@ from polhode.interop.printouts import from_printout
 from polhode.io.budget import words_of
 from polhode.io.components import MOST_FACES, overlapping
 from polhode.io.content import is_molecule
+from polhode.io.cut import Plane, cut_solid
 from polhode.io.formats import SAVED_SUFFIXES, body_of_molecule, check_arguments, load, read_saved
 from polhode.io.images import body_of_image, is_image, read_image, unit_of
 from polhode.io.mesh_solid import solid_of
@@ -218,7 +219,7 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
                 "save one of them alone"
             )
         return Matter(body, scope.metres)
-    with_units = ("mass", "density", "thickness", "weld")
+    with_units = ("mass", "density", "thickness", "cut", "weld")
     options = {key: table[key] for key in FILE if key in table and key not in with_units}
     for key in (key for key in _SWITCHES if key in table):
         if not isinstance(table[key], bool):
@@ -245,16 +246,28 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
     metres = metres_per(_unit_of(loaded, table, scope))
     if "thickness" in table:
         options["thickness"] = scope.lengths("thickness", table["thickness"], 1)[0]
+    plane = _plane(table, scope) if "cut" in table else None
     if "weld" in table:
         options["weld"] = scope.lengths("weld", table["weld"], 1)[0] / metres
     if not ({"mass", "density"}.isdisjoint(table) and _has_materials(loaded)):
         options |= _weight(table, scope, path.name)
     if isinstance(options.get("density"), dict):
+        if plane is not None:
+            raise PartError(
+                f"{scope.where}: cut: a solid of one density is cut, not parts of several; give one density"
+            )
         with warnings.catch_warnings(record=True) as told:
             warnings.simplefilter("always")
             body = body_by_names(loaded, options.pop("density"), scale=metres, **options)
         return Matter(body, metres, notes=(*loaded.notes, *(str(each.message) for each in told)))
     solid = solid_of(loaded, scale=metres, **options)
+    if plane is not None:
+        weights = {key: options.get(key) for key in ("density", "mass")}
+        mended = {key: options.get(key) for key in ("closure", *_SWITCHES)}
+        weld = options.get("weld", 0.0)
+        solid, left = cut_solid(loaded, solid, plane, **weights, scale=metres, weld=weld, mended=mended)
+        found = None if left is None or len(left.faces) > MOST_FACES else (left.vertices, left.faces)
+        return Matter(solid.body, metres, notes=loaded.notes, mesh=found)
     is_whole = options.keys().isdisjoint(("union", "closure", "repair", "weld", "thickness"))
     if loaded.cad is not None or not is_whole or solid.faces > MOST_FACES:
         return Matter(
@@ -264,6 +277,22 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
     lines = overlapping(*mesh)
     lines += ["union = true counts what components share once"] if lines else []
     return Matter(solid.body, metres, notes=(*loaded.notes, *lines), mesh=mesh)
+
+
+def _plane(table: Mapping[str, Any], scope: Scope) -> Plane:
+    """Read the plane that cuts a solid, in its own axes."""
+    where, given = f"{scope.where}: cut", table["cut"]
+    if not isinstance(given, dict) or "normal" not in given:
+        raise PartError(
+            f"{where}: write a table with the normal of a plane, as in cut = {{ normal = [0, 0, -1], "
+            "point = [0, 0, 0.3] }"
+        )
+    check_keys(given, Plane._fields, where)
+    if "thickness" in table:
+        raise PartError(f"{where}: thickness makes a sheet, which has no inside; leave one of the two out")
+    inner = type(scope)(where, scope.length_unit)
+    normal = inner.numbers("normal", given["normal"], "1", count=3)
+    return Plane(normal, inner.lengths("point", given.get("point", [0, 0, 0]), 3))
 
 
 def _has_materials(loaded: FileContent) -> bool:

@@ -45,7 +45,18 @@ KINDS: Final = ("solid", "file", "assembly", "inertia")
 """Keys that define a part; exactly one is needed."""
 REPEATED: Final = ("count", "step", "turn")
 COMMON: Final = ("name", "comment", *KINDS, "length_unit", "mirror", "position", "rotation", *REPEATED)
-FILE: Final = ("mass", "density", "thickness", "weld", "closure", "orient", "union", "repair", "index_base")
+FILE: Final = (
+    "mass",
+    "density",
+    "thickness",
+    "cut",
+    "weld",
+    "closure",
+    "orient",
+    "union",
+    "repair",
+    "index_base",
+)
 _MOST_NAMES: Final = 30
 PRINTED: Final = ("mass", "com", "tensor", "products", "about", "rtol")
 """Keys of `inertia`, as CAD programs print it."""

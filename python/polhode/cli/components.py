@@ -102,9 +102,12 @@ def weigh(
         ("closure", options.closure is not None),
         ("repair", options.repair),
         ("thickness", options.thickness is not None),
+        ("cut", bool(options.cut)),
     ):
         if is_given:
-            raise PolhodeError(f"--{name}: components of several densities are not joined; leave it out")
+            raise PolhodeError(
+                f"--{name}: components of several densities are neither joined nor cut; leave it out"
+            )
     given = densities_of(options.density or "", options.length_unit)
     if loaded.cad is not None:
         from polhode.io.cad_files import solids_of

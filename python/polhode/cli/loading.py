@@ -12,10 +12,11 @@ from polhode.cli.files import as_file
 from polhode.cli.terminal import reading_progress
 from polhode.errors import PolhodeError
 from polhode.io.content import is_molecule
+from polhode.io.cut import Plane, cut_solid
 from polhode.io.formats import check_arguments, load, molecule_isotopes
 from polhode.io.mesh import weld_within
 from polhode.io.mesh_solid import MeshSolid, solid_of
-from polhode.units import METRES, amount, has_unit, metres_per, quantity
+from polhode.units import METRES, amount, has_unit, metres_per, quantity, split_vector, vector
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -33,6 +34,8 @@ __all__ = ["LoadedBody", "bond_sigma", "in_file_unit", "load_body", "loaded_mole
 
 _LEAST, _MOST = 1e-13, 1e4
 """Between these volumes, in m^3, nothing is remarked of a part."""
+_CHANGE_FACES = ("closure", "orient", "union", "repair")
+"""Options after which the faces are not those of the file."""
 
 
 @dataclass(frozen=True)
@@ -129,10 +132,11 @@ def _load_mesh(file: Path, options: BodyOptions, with_shape: bool, with_componen
     thickness = None
     if options.thickness is not None:
         thickness = in_file_unit(options.thickness, "--thickness", unit) * scale
+    plane = _plane(options, unit, scale)
     solid = _solid(loaded, options, density, mass, scale, weld, thickness)
     if has_names(options.density):
         solid = weigh(loaded, solid, options, scale, weld)
-    elif with_components and thickness is None:
+    elif with_components and thickness is None and plane is None:
         solid = solid._replace(components=components_of(loaded, solid, options, scale, weld))
     provenance = solid.body.provenance
     notes = [*_note_units(options, unit), *_of_unit(loaded, asked), *loaded.notes]
@@ -155,6 +159,16 @@ def _load_mesh(file: Path, options: BodyOptions, with_shape: bool, with_componen
             f"the mesh is open; --closure {provenance.closure} closed it, which changed its volume by "
             f"{share:.3g} %; the area is that of the file's triangles"
         )
+    shape = _shape(loaded, weld, scale) if with_shape else None
+    if plane is not None:
+        mended = {name: getattr(options, name) for name in _CHANGE_FACES}
+        solid, cut = cut_solid(
+            loaded, solid, plane, density=density, mass=mass, scale=scale, weld=weld, mended=mended
+        )
+        shape = cut if with_shape else None
+        notes.append(
+            f"the solid is cut by a plane (--cut {' '.join(options.cut)}); its area is with the section"
+        )
     return LoadedBody(
         body=solid.body,
         source=solid,
@@ -166,10 +180,26 @@ def _load_mesh(file: Path, options: BodyOptions, with_shape: bool, with_componen
         volume=solid.volume,
         assumed=assumed,
         notes=tuple(notes),
-        shape=_shape(loaded, weld, scale) if with_shape else None,
+        shape=shape,
         length_unit=unit,
         states_unit=loaded.unit is not None and asked in (None, loaded.unit),
     )
+
+
+def _plane(options: BodyOptions, unit: str | None, scale: float) -> Plane | None:
+    """Read the plane that cuts the solid, in the unit of the body."""
+    if not options.cut:
+        if options.cut_point:
+            raise PolhodeError("--cut-point: no plane is given; state its normal, as in --cut 0 0 -1")
+        return None
+    if options.thickness is not None:
+        raise PolhodeError("--cut: --thickness makes a sheet, which has no inside; leave one of the two out")
+    point = (0.0, 0.0, 0.0)
+    if options.cut_point:
+        parts = split_vector(options.cut_point, "m", "--cut-point")
+        x, y, z = (in_file_unit(part, "--cut-point", unit) * scale for part in parts)
+        point = x, y, z
+    return Plane(vector(options.cut, "1", "--cut"), point)
 
 
 def _unusual(volume: float, unit: str | None, loaded: FileContent) -> list[str]:
@@ -294,6 +324,7 @@ def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
         density=options.density is not None,
         mass=options.mass is not None,
         thickness=options.thickness is not None,
+        cut=bool(options.cut or options.cut_point),
         weld=options.weld is not None,
         closure=options.closure is not None,
         orient=options.orient,

@@ -113,6 +113,12 @@ class BodyOptions:
         Thickness of a sheet, such as 2mm: the mesh, open or closed, is the middle of a shell and not the
         surface of a
         solid. A number without a unit is in the unit of the file.
+    cut
+        Normal of a plane that cuts the solid, such as "0 0 -1": what lies on the side to which it points is
+        left, closed by the section.
+    cut_point
+        A point of the plane of --cut, such as "0 0 30" (in the unit of the file) or "0, 0, 3 cm". Default:
+        the origin.
     weld
         Join corners that are at most this far apart, such as 1e-6. A number without a unit is in the unit of
         the file. Without it, only equal corners are joined.
@@ -151,6 +157,8 @@ class BodyOptions:
     mass: Annotated[str | None, BODY] = None
     length_unit: Annotated[LengthUnit | None, BODY] = None
     thickness: Annotated[str | None, MESH] = None
+    cut: Annotated[Words, WORDS, MESH] = ()
+    cut_point: Annotated[Words, WORDS, MESH] = ()
     weld: Annotated[str | None, MESH] = None
     closure: Annotated[Literal["caps", "hull"] | None, MESH] = None
     orient: Annotated[bool, FLAG, MESH] = False

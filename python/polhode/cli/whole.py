@@ -42,7 +42,17 @@ __all__ = [
     "whole_report",
 ]
 
-_OF_MESHES: Final = ("thickness", "weld", "closure", "orient", "union", "repair", "index_base")
+_OF_MESHES: Final = (
+    "thickness",
+    "cut",
+    "cut_point",
+    "weld",
+    "closure",
+    "orient",
+    "union",
+    "repair",
+    "index_base",
+)
 _OF_SHAPES: Final = ("density", "mass", *_OF_MESHES, "bond_sigma", "mass_sigmas")
 _OF_PRINTOUTS: Final = ("inertia", "center_of_mass", "products", "inertia_about")
 _PLAIN: Final = BodyOptions()

@@ -2,25 +2,77 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import os
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from polhode import _core
+from polhode._format import Argument
 from polhode.errors import PolhodeError
-from polhode.io.mesh import Mesh
+from polhode.io.mesh import Mesh, weld_within
+from polhode.io.mesh_solid import naming_file
+from polhode.io.repair import repair_mesh, spanned_volume
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import ArrayLike, NDArray
 
     from polhode._core import RigidBody
+    from polhode._typing import SupportsSigma
+    from polhode.io.formats import FileContent
+    from polhode.io.mesh_solid import MeshSolid
 
     Floats = NDArray[np.float64]
     Integers = NDArray[np.int64]
+    Number = float | _core.Uncertain | SupportsSigma
 
-__all__ = ["cut_body", "cut_mesh"]
+__all__ = ["CutSolid", "Plane", "cut_body", "cut_mesh", "cut_solid"]
 
 _WAY_OUT = "read its mesh and cut that: polhode.io.cut_mesh(vertices, faces, normal, point)"
+
+
+class Plane(NamedTuple):
+    """A plane that cuts.
+
+    Attributes
+    ----------
+    normal : array_like, shape (3,)
+        Toward the part that is left.
+    point : array_like, shape (3,)
+    """
+
+    normal: ArrayLike
+    point: ArrayLike = (0.0, 0.0, 0.0)
+
+
+class CutSolid(NamedTuple):
+    """What is left of a solid.
+
+    Attributes
+    ----------
+    solid : MeshSolid
+        Its area is that of its surface with the section.
+    mesh : Mesh or None
+        Closed; None where its section overlaps itself, see :func:`cut_mesh`.
+    """
+
+    solid: MeshSolid
+    mesh: Mesh | None
+
+
+class _Parts(NamedTuple):
+    """Faces of what is left: those of the surface, and those of the section."""
+
+    corners: Floats
+    surface: Integers
+    section: Integers
+
+    def mesh(self) -> Mesh:
+        left = np.concatenate([self.surface, self.section])
+        used, index = np.unique(left, return_inverse=True)
+        return Mesh(self.corners[used], index.reshape(-1, 3).astype(np.int64), "cut")
 
 
 def cut_mesh(
@@ -60,6 +112,10 @@ def cut_mesh(
     >>> RigidBody.from_mesh(top.vertices, top.faces, density=6.0).mass
     1.0
     """
+    return _cut(vertices, faces, normal, point).mesh()
+
+
+def _cut(vertices: ArrayLike, faces: ArrayLike, normal: ArrayLike, point: ArrayLike) -> _Parts:
     corners = _core.real_numbers(vertices, "vertices")
     triangles = np.asarray(faces)
     n, p = _vector(normal, "normal"), _vector(point, "point")
@@ -91,23 +147,95 @@ def cut_mesh(
             "move the point, or turn the normal round"
         )
     cut, corners = _cut_triangles(crossed, corners, heights)
-    left = np.concatenate([whole, cut])
-    open_edges = _open_edges(left)
+    surface = np.concatenate([whole, cut])
+    open_edges = _open_edges(surface)
+    section = np.empty((0, 3), dtype=np.int64)
     if len(open_edges):
         # One point for all outlines of the section: it joins them to one surface, holes in it included.
         middle = corners[open_edges[:, 0]].mean(axis=0)
         middle -= n * (n @ (middle - p))
         apex = np.full(len(open_edges), len(corners))
         corners = np.vstack([corners, middle])
-        left = np.concatenate([left, np.column_stack([open_edges[:, ::-1], apex])])
-    used, index = np.unique(left, return_inverse=True)
-    return Mesh(corners[used], index.reshape(-1, 3).astype(np.int64), "cut")
+        section = np.column_stack([open_edges[:, ::-1], apex])
+    return _Parts(corners, surface, section)
 
 
 def cut_body(body: RigidBody, normal: ArrayLike, point: ArrayLike = (0.0, 0.0, 0.0)) -> RigidBody:
     """Cut a body that holds its mesh: what ``RigidBody.cut`` does, with its parameters."""
     if body.shape:
         raise PolhodeError(f"cut: expected one body, got a stack of shape {body.shape}; index it")
+    vertices, faces = _mesh_of(body)
+    _, volume = _core.RigidBody._from_mesh(vertices, faces, density=1.0)
+    density = float(body.mass) / volume
+    left = cut_mesh(vertices, faces, normal, point)
+    return _core.RigidBody.from_mesh(left.vertices, left.faces, density=density)
+
+
+def cut_solid(
+    loaded: FileContent,
+    solid: MeshSolid,
+    plane: Plane,
+    *,
+    density: Number | None,
+    mass: Number | None,
+    scale: float,
+    weld: float,
+    mended: Mapping[str, object],
+) -> CutSolid:
+    """Cut the solid of a loaded file, of any number of faces.
+
+    Parameters
+    ----------
+    loaded : FileContent
+    solid : MeshSolid
+        The whole.
+    plane : Plane
+        In units of the result.
+    density, mass
+        As of the whole: a mass is that of the whole.
+    scale, weld
+        See :func:`polhode.io.mesh_solid.solid_of`.
+    mended : mapping
+        The options that mend it, of which `repair` alone goes with a cut.
+    """
+    if loaded.cad is not None:
+        raise PolhodeError(
+            Argument("cut"),
+            f": {os.fspath(loaded.path)} holds solids, not a mesh; leave it out, or export a mesh",
+        )
+    name = next((name for name, value in mended.items() if value and name != "repair"), None)
+    if name is not None:
+        raise PolhodeError(
+            Argument(name),
+            ": a mesh is cut as its file has it, or as ",
+            Argument("repair", True),
+            " mends it; leave it out",
+        )
+    if mended.get("repair"):
+        mesh, _, _, _ = repair_mesh(loaded.mesh, weld)
+        if spanned_volume(mesh) < 0.0:
+            mesh = mesh._replace(faces=mesh.faces[:, ::-1])
+    else:
+        mesh = weld_within(loaded.mesh, weld) if weld != 0.0 else loaded.mesh
+    with naming_file(loaded.path):
+        _core.RigidBody._from_mesh(mesh.vertices, mesh.faces, density=1.0)  # which faces outward
+        parts = _cut(mesh.vertices * scale, mesh.faces, *plane)
+    left = parts.mesh()
+    body, volume = _core.RigidBody._from_mesh(left.vertices, left.faces, density=1.0)
+    if mass is None:
+        body = _core.RigidBody.from_mesh(left.vertices, left.faces, density=density)
+    else:
+        body = body.scaled(mass=1.0 / solid.volume).scaled(mass=mass)
+    a, b, c = (parts.corners[parts.section[:, k]] for k in range(3))
+    triangles = np.cross(b - a, c - a) / 2.0
+    whole = triangles.sum(axis=0)
+    is_simple = bool((triangles @ whole >= 0.0).all())
+    area = _core.surface_area(parts.corners, parts.surface) + float(np.linalg.norm(whole))
+    return CutSolid(solid._replace(body=body, volume=volume, area=area), left if is_simple else None)
+
+
+def _mesh_of(body: RigidBody) -> tuple[Floats, Integers]:
+    """Return the mesh that a body holds, where it stands."""
     held = body._figures()
     parts = [] if held is None else held[0]
     if len(parts) != 1 or parts[0][0] != "mesh" or parts[0][4]:
@@ -121,12 +249,7 @@ def cut_body(body: RigidBody, normal: ArrayLike, point: ArrayLike = (0.0, 0.0, 0
     turn, shift = np.array(place[:9]).reshape(3, 3), np.array(place[9:])
     vertices = np.asarray(numbers).reshape(-1, 3) @ turn.T + shift
     faces = np.asarray(triangles).reshape(-1, 3).astype(np.int64)
-    if np.linalg.det(turn) < 0.0:
-        faces = faces[:, ::-1]
-    _, volume = _core.RigidBody._from_mesh(vertices, faces, density=1.0)
-    density = float(body.mass) / volume
-    left = cut_mesh(vertices, faces, normal, point)
-    return _core.RigidBody.from_mesh(left.vertices, left.faces, density=density)
+    return vertices, faces[:, ::-1] if np.linalg.det(turn) < 0.0 else faces
 
 
 def _vector(given: ArrayLike, name: str) -> Floats:

@@ -63,6 +63,7 @@ _OF_MESHES: Final = (
     "density",
     "mass",
     "thickness",
+    "cut",
     "weld",
     "closure",
     "orient",
@@ -111,6 +112,8 @@ class FileContent:
     groups : tuple of (str, int)
         The name of each part of a mesh and the number of its triangles, in the order of the faces; empty
         where the format has no names, and for v/f text, whose names are read when they are asked for.
+    materials : tuple of (str, int)
+        The same of the materials of a 3MF file.
     """
 
     path: Path
@@ -122,6 +125,7 @@ class FileContent:
     notes: tuple[str, ...] = ()
     cad: CadFile | None = None
     groups: tuple[tuple[str, int], ...] = ()
+    materials: tuple[tuple[str, int], ...] = ()
     _molecule: Molecule | None = None
     _mesh: Mesh | None = None
 
@@ -299,6 +303,7 @@ def _load(file: Path, suffix: str, index_base: int, budget: Budget, packed: int 
                 states_unit=package.states_unit,
                 notes=package.notes,
                 groups=package.groups,
+                materials=package.materials,
                 _mesh=package.mesh,
             )
         if suffix in (".vtk", ".vtu", ".vtp"):

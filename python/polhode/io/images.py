@@ -386,7 +386,7 @@ def bodies_of_labels(
         raise PolhodeError(
             Argument("length_unit"), ": is for files; lengths of arrays are those of spacing or affine"
         )
-    own = _whole_numbers(labels)
+    own = _label_array(labels)
     weights = density if isinstance(density, Mapping) else _core.real_numbers(density, "density")
     is_image = not isinstance(weights, Mapping) and weights.ndim > 0
     if not isinstance(weights, Mapping) and weights.shape not in ((), own.shape):
@@ -468,23 +468,13 @@ def _turned_round(
     return labels.T, None, None, known[:, [2, 1, 0, 3]]
 
 
-def _whole_numbers(labels: ArrayLike) -> NDArray[Any]:
-    """Return labels as an array of integers that the compiled library takes."""
+def _label_array(labels: ArrayLike) -> NDArray[Any]:
+    """Return labels as an array of numbers that the compiled library takes."""
     own = np.asarray(labels)
     if own.dtype.kind == "b":
         return own.view(np.uint8)
-    if own.dtype.kind == "f":
-        if own.size and not (
-            np.isfinite(own).all() and (np.abs(own) < 2.0**53).all() and (own == np.trunc(own)).all()
-        ):
-            raise PolhodeError(
-                "labels: expected whole numbers, got fractions; densities and grey values go to from_voxels"
-            )
-        return own.astype(np.int64)
-    if own.dtype.kind not in "iu":
+    if own.dtype.kind not in "iuf":
         raise TypeError(f"labels: expected whole numbers, got {own.dtype}")
-    if own.dtype == np.uint64:
-        if own.size and int(own.max()) > np.iinfo(np.int64).max:
-            raise ValueError(f"labels: {own.max()} is beyond the whole numbers of 64 bits")
-        return own.astype(np.int64)
+    if own.dtype.kind == "f" and own.dtype.itemsize not in (4, 8):
+        return own.astype(np.float64)
     return own.astype(own.dtype.newbyteorder("="), copy=False)

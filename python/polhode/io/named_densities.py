@@ -47,8 +47,12 @@ def named_parts(loaded: FileContent, scale: float, weld: float) -> list[Part]:
     """
     mesh = weld_within(loaded.mesh, weld) if weld != 0.0 else loaded.mesh
     vertices = mesh.vertices * scale
-    groups = [name for name, count in loaded.groups for _ in range(count)]
-    parts = parts_of(vertices, mesh.faces, groups)
+    groups, materials = (
+        [name for name, count in runs for _ in range(count)] for runs in (loaded.groups, loaded.materials)
+    )
+    parts = parts_of(
+        vertices, mesh.faces, groups, materials=materials if len(materials) == len(mesh.faces) else None
+    )
     if len(parts) > 1 and inner_suffix(loaded.path) == ".obj":
         with unpack(loaded.path) as inside:
             groups, materials = groups_of(inside)

@@ -33,8 +33,16 @@ class Scene:
         self._faces: list[Integers] = []
         self._count = 0
         self._names: list[str] = []
+        self._materials: list[tuple[tuple[str, int], ...]] = []
 
-    def place(self, vertices: Floats, faces: Integers, matrix: Floats, name: str = "") -> None:
+    def place(
+        self,
+        vertices: Floats,
+        faces: Integers,
+        matrix: Floats,
+        name: str = "",
+        materials: tuple[tuple[str, int], ...] = (),
+    ) -> None:
         """Place triangles.
 
         Parameters
@@ -46,6 +54,8 @@ class Scene:
             Takes their coordinates to those of the scene.
         name : str
             Of the part that they are.
+        materials : tuple of (str, int)
+            The name of each material and the number of triangles of it, in their order; empty for none.
         """
         self._budget.spend("placements")
         self._budget.spend("triangles", len(faces))
@@ -64,11 +74,18 @@ class Scene:
         self._faces.append(faces + self._count)
         self._count += len(vertices)
         self._names.append(name)
+        self._materials.append(materials or (("", len(faces)),))
 
     @property
     def groups(self) -> tuple[tuple[str, int], ...]:
         """The name of each part and the number of its triangles, in the order of the faces."""
         return tuple((name, len(faces)) for name, faces in zip(self._names, self._faces, strict=True))
+
+    @property
+    def materials(self) -> tuple[tuple[str, int], ...]:
+        """The same of materials; empty where no part has one."""
+        runs = tuple(run for of_part in self._materials for run in of_part)
+        return runs if any(name for name, _ in runs) else ()
 
     def mesh(self, name: str) -> Mesh:
         """Join all that was placed, equal corners made one; `name` is that of the format."""

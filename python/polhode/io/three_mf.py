@@ -86,6 +86,8 @@ class Package(NamedTuple):
         Whether the file says it; else it is the format's, millimetres.
     groups : tuple of (str, int)
         The name of each object and the number of its triangles, in the order of the file.
+    materials : tuple of (str, int)
+        The same of base materials; empty where the file has none.
     notes : tuple of str
         What of the file is no matter.
     """
@@ -94,6 +96,7 @@ class Package(NamedTuple):
     unit: str
     states_unit: bool
     groups: tuple[tuple[str, int], ...]
+    materials: tuple[tuple[str, int], ...]
     notes: tuple[str, ...]
 
 
@@ -142,17 +145,20 @@ def read_three_mf(stream: BinaryIO, file: Path, budget: Budget) -> Package:
 class _Object:
     """Triangles of its own, or others that it places."""
 
-    def __init__(self, name: str, kind: str) -> None:
+    def __init__(self, name: str, kind: str, material: tuple[str | None, str | None] = (None, None)) -> None:
         self.name, self.kind = name, kind
         self.numbers, self.corners = array("d"), array("q")
+        self.material = material
+        """Its group of properties and its number there, of triangles that do not say another."""
+        self.materials = array("q")
         self.components: list[_Placement] = []
 
-    def triangles(self, name: str) -> tuple[Floats, Integers]:
+    def triangles(self, name: str) -> tuple[Floats, Integers, Integers]:
         vertices = np.array(self.numbers).reshape(-1, 3)
         corners = np.array(self.corners, dtype=np.int64).reshape(-1, 3)
         if len(corners) and (corners.min() < 0 or corners.max() >= len(vertices)):
             raise _FaultError(f"a triangle of object {name[:40]!r} names a vertex that it does not hold")
-        return vertices, corners
+        return vertices, corners, np.array(self.materials, dtype=np.int64)
 
 
 class _Model:
@@ -162,6 +168,17 @@ class _Model:
         self.unit, self.states_unit = "millimeter", False
         self.objects: dict[str, _Object] = {}
         self.items: list[_Placement] = []
+        self.materials = [""]
+        """The names of base materials; the first is that of what has none."""
+        self.places: dict[tuple[str | None, str | None], int] = {}
+        """Where the name of a base material stands, by its group and number there, as they are written."""
+
+    def runs(self, materials: NDArray[np.int64]) -> tuple[tuple[str, int], ...]:
+        """Return the materials of triangles that follow each other, and how many do."""
+        starts = np.flatnonzero(np.diff(materials, prepend=-1))
+        counts = np.diff(starts, append=len(materials))
+        names = (self.materials[k] for k in materials[starts].tolist())
+        return tuple(zip(names, counts.tolist(), strict=True))
 
 
 class _Volume:
@@ -175,7 +192,7 @@ class _Build:
     def __init__(self, package: zipfile.ZipFile, budget: Budget) -> None:
         self._package, self._budget = package, budget
         self._models: dict[str, _Model] = {}
-        self._meshes: dict[tuple[str, str], tuple[Floats, Integers]] = {}
+        self._meshes: dict[tuple[str, str], tuple[Floats, Integers, Integers]] = {}
         self._cut: dict[str, tuple[Floats, Integers]] = {}
         self._left_out: Counter[str] = Counter()
         self._notes: dict[str, None] = {}
@@ -196,7 +213,14 @@ class _Build:
             for kind, count in self._left_out.items()
         ]
         unit = _UNITS[root.unit]
-        return Package(scene.mesh("3MF"), unit, root.states_unit, scene.groups, (*notes, *self._notes))
+        return Package(
+            scene.mesh("3MF"),
+            unit,
+            root.states_unit,
+            scene.groups,
+            scene.materials,
+            (*notes, *self._notes),
+        )
 
     def _start(self) -> str:
         found: list[str] = []
@@ -239,6 +263,7 @@ class _Build:
         self._budget.spend("files")
         model = self._models[path] = _Model()
         current = [_Object("", "model")]
+        group = [("", 0)]
 
         def start(tag: str, attributes: dict[str, str]) -> None:
             kind = _local(tag)
@@ -248,13 +273,24 @@ class _Build:
                 )
             elif kind == "triangle":
                 corners = (int(attributes["v1"]), int(attributes["v2"]), int(attributes["v3"]))
-                current[0].corners.extend(corners)
+                of = current[0]
+                of.corners.extend(corners)
+                own, number = attributes.get("pid", of.material[0]), attributes.get("p1", of.material[1])
+                of.materials.append(model.places.get((own, number), 0))
             elif kind == "object":
                 name = attributes["id"]
                 if name in model.objects:
                     raise _FaultError(f"two objects of {path} have the id {name[:40]!r}")
-                current[0] = _Object(attributes.get("name", ""), attributes.get("type", "model"))
+                material = attributes.get("pid"), attributes.get("pindex")
+                current[0] = _Object(attributes.get("name", ""), attributes.get("type", "model"), material)
                 model.objects[name] = current[0]
+            elif kind == "basematerials":
+                group[0] = (attributes["id"], 0)
+            elif kind == "base":
+                name, count = group[0]
+                model.places[name, str(count)] = len(model.materials)
+                model.materials.append(" ".join(attributes.get("name", "").split())[:200])
+                group[0] = (name, count + 1)
             elif kind in ("component", "item"):
                 self._budget.spend("items")
                 way = _attribute(attributes, "path")
@@ -352,7 +388,8 @@ class _Build:
                 self._left_out[part.role] += 1
         if (path, name) not in self._meshes:
             self._meshes[path, name] = thing.triangles(name)
-        vertices, corners = self._meshes[path, name]
+        vertices, corners, materials = self._meshes[path, name]
+        runs = self._models[path].runs
         is_free = np.ones(len(corners), dtype=bool)
         for volume in volumes.values():
             if not 0 <= volume.first <= volume.last < len(corners):
@@ -366,11 +403,11 @@ class _Build:
             is_free[own] = False
             if volume.role in (_MATTER, _NEGATIVE):
                 scene = solid if volume.role == _MATTER else negative
-                scene.place(vertices, corners[own], place, volume.name)
+                scene.place(vertices, corners[own], place, volume.name, runs(materials[own]))
             else:
                 self._left_out[volume.role] += 1
         if is_free.any():
-            solid.place(vertices, corners[is_free], place, called or thing.name)
+            solid.place(vertices, corners[is_free], place, called or thing.name, runs(materials[is_free]))
 
 
 def _local(tag: str) -> str:

@@ -54,6 +54,7 @@ _SHELLS: Final[dict[str, Callable[[tuple[float, ...]], RigidBody]]] = {
     "sphere": lambda size: solids.hollow_sphere(size[0], size[0], mass=4.0 * np.pi * size[0] ** 2),
     "cylinder": lambda size: _can(laminae.disk(size[0], density=1.0), *size),
     "capsule": lambda size: _can(_dome(size[0]), *size),
+    "ellipsoid": lambda size: _ellipsoid_shell(np.array(size)),
 }
 """Of a mass per area of 1."""
 # How well a box or a cylinder is taken to stand for the true part, of its diagonal.
@@ -379,10 +380,30 @@ def _solid(shape: Shape) -> tuple[RigidBody | None, str]:
     if shape.kind not in _SOLIDS:
         return None, f"a shape of kind {quote(shape.kind)} has no volume that could be told"
     made = _SHELLS if shape.counting == "shell" and shape.kind in _SHELLS else _SOLIDS
+    note = _ROUGH if made is _SHELLS and shape.kind == "ellipsoid" else ""
     try:
-        return made[shape.kind](shape.size), ""
+        return made[shape.kind](shape.size), note
     except ValueError as error:
         return None, f"{shape.kind}: {error}"
+
+
+_ROUGH: Final = (
+    "a hollow ellipsoid is counted as MuJoCo does: its area to 1 %, its wall thinner away from the axes"
+)
+
+
+def _ellipsoid_shell(inner: Floats) -> RigidBody:
+    """Return the surface of an ellipsoid as MuJoCo counts it.
+
+    Its area is that of Thomsen's formula, its mass that between two ellipsoids whose semi-axes differ by
+    a millionth.
+    """
+    p = 1.6075
+    outer = inner + 1e-6
+    powers = [(inner[k] * inner[k - 1]) ** p for k in range(3)]
+    area = 4.0 * np.pi * (sum(powers) / 3.0) ** (1.0 / p)
+    layer = (outer.prod() * outer**2 - inner.prod() * inner**2) / 5.0 / (outer.prod() - inner.prod())
+    return RigidBody(float(area), np.diag(layer.sum() - layer) * area)
 
 
 def _box_shell(a: float, b: float, c: float) -> RigidBody:

@@ -354,8 +354,6 @@ class _Reader:
             low, high = self.groups
             mass = mass if low <= int(group) <= high else 0.0
         is_shell = weighs and attributes.get("shellinertia") == "true"
-        if is_shell and kind == "ellipsoid":  # MuJoCo has no closed form for its surface either
-            return Shape(f"{kind}, hollow", (), frame, "collision", "", density, mass, geom.where)
         if kind == "mesh":
             place = frame.then(self._place(geom, attributes))
             name = attributes.get("mesh", "")

@@ -1,7 +1,7 @@
 //! Grids of voxels: where their cells stand, densities, labels.
 
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
-use polhode::mass::labelled_voxels::{LabelledCells, count_labels};
+use polhode::mass::labelled_voxels::{Label, LabelledCells, count_labels};
 use polhode::mass::voxels::{Grid, Voxel, edges_of_boxes, voxels};
 use polhode::{Error, RigidBody};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -141,11 +141,11 @@ pub(crate) fn labelled_voxels<'py>(
             $(if let Ok(array) = labels.cast::<PyArrayDyn<$kind>>() {
                 count(py, &array.readonly(), frame)?
             } else)* {
-                return Err(PyTypeError::new_err("labels: expected an array of integers"));
+                return Err(PyTypeError::new_err("labels: expected an array of real numbers"));
             }
         };
     }
-    let (cells, frame) = counted!(u8 i8 u16 i16 u32 i32 i64);
+    let (cells, frame) = counted!(u8 i8 u16 i16 u32 i32 u64 i64 f32 f64);
     let names: Vec<i64> = cells.iter().map(|cells| cells.label).collect();
     let counts: Vec<usize> = cells.iter().map(LabelledCells::count).collect();
     let ranges: Vec<usize> = cells
@@ -180,7 +180,7 @@ pub(crate) fn labelled_voxels<'py>(
 }
 
 /// The cells of each label, and the frame in whose order of axes the array lies in memory.
-fn count<L: numpy::Element + Copy + Into<i64> + PartialEq + Sync>(
+fn count<L: numpy::Element + Label>(
     py: Python<'_>,
     labels: &PyReadonlyArrayDyn<'_, L>,
     frame: Frame,

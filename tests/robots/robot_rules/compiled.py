@@ -6,6 +6,8 @@ from typing import Final
 
 from robot_texts import BALL, HEAVY, HINGE, ROUND, SHARP, Row, link, mjcf, sdf, slink, urdf, weighed
 
+from robot_rules.formats import FITTED
+
 __all__ = ["COMPILED", "MARKS"]
 
 BOTH: Final = '<compiler boundmass="0.3" boundinertia="0.01"/>'
@@ -111,8 +113,8 @@ COMPILED: Final = {
     "scaled to a total that is not known": Row(
         mjcf(
             f'<body name="a">{HINGE}{GEOM}</body>'
-            f'<body name="b">{HINGE}<geom type="ellipsoid" size="0.1 0.2 0.3" shellinertia="true"/></body>',
-            before='<compiler settotalmass="2"/>',
+            f'<body name="b">{HINGE}<geom type="capsule" mesh="m"/></body>',
+            before=f'<compiler settotalmass="2"/>{FITTED}',
         ),
         {"a": "inferred", "b": "inferred"},
         "settotalmass would scale it: the mass of b is not known",

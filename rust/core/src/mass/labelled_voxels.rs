@@ -46,6 +46,59 @@ const MOST_LABELS: usize = 1 << 20;
 /// An image with more cells along an edge has sums beyond whole numbers of 64 bits.
 const MOST_CELLS: usize = 1 << 20;
 
+/// A number that labels may be stored as.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::labelled_voxels::Label;
+///
+/// assert_eq!(7_u8.whole(), Ok(7));
+/// assert_eq!(3.0_f64.whole(), Ok(3));
+/// assert_eq!(0.5_f64.whole(), Err(0.5));
+/// ```
+pub trait Label: Copy + PartialEq + Sync {
+    /// The label as a whole number.
+    ///
+    /// # Errors
+    /// The number, where it is not whole or beyond 64 bits.
+    fn whole(self) -> Result<i64, f64>;
+}
+
+macro_rules! whole {
+    ($($kind:ty)*) => {
+        $(impl Label for $kind {
+            fn whole(self) -> Result<i64, f64> {
+                Ok(self.into())
+            }
+        })*
+    };
+}
+
+whole!(u8 i8 u16 i16 u32 i32 i64);
+
+impl Label for u64 {
+    fn whole(self) -> Result<i64, f64> {
+        i64::try_from(self).map_err(|_| self as f64)
+    }
+}
+
+impl Label for f64 {
+    fn whole(self) -> Result<i64, f64> {
+        if self.abs() < 2.0_f64.powi(53) && self.trunc() == self {
+            #[expect(clippy::cast_possible_truncation, reason = "whole and below 2^53")]
+            return Ok(self as i64);
+        }
+        Err(self)
+    }
+}
+
+impl Label for f32 {
+    fn whole(self) -> Result<i64, f64> {
+        f64::from(self).whole()
+    }
+}
+
 /// The cells of one label in a grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LabelledCells {
@@ -72,11 +125,12 @@ struct Slab {
 /// `watch` is asked about every 20 ms whether to go on.
 ///
 /// # Errors
-/// When the grid is empty or has more than 2²⁰ cells along an edge, or more than 2²⁰ labels; [`Error::Stopped`] where `watch` said so.
+/// When the grid is empty or has more than 2²⁰ cells along an edge, or more than 2²⁰ labels, or a label is not whole or beyond 64 bits;
+/// [`Error::Stopped`] where `watch` said so.
 ///
 /// # Panics
 /// When the number of labels is not that of the cells.
-pub fn count_labels<L: Copy + Into<i64> + PartialEq + Sync>(
+pub fn count_labels<L: Label>(
     labels: &[L],
     shape: [usize; 3],
     watch: &mut Watch<'_>,
@@ -97,7 +151,7 @@ pub fn count_labels<L: Copy + Into<i64> + PartialEq + Sync>(
     let all: Mutex<HashMap<i64, LabelledCells>> = Mutex::default();
     let mut done = vec![(); nx];
     fill_blocks(&mut done, 1, watch, |i, _| {
-        let slab = slab(&labels[i * ny * nz..(i + 1) * ny * nz], nz);
+        let slab = slab(&labels[i * ny * nz..(i + 1) * ny * nz], nz)?;
         let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
         for (label, found) in slab {
             all.entry(label)
@@ -120,36 +174,59 @@ pub fn count_labels<L: Copy + Into<i64> + PartialEq + Sync>(
 }
 
 /// The sums of each label over rows of so many cells. Cells of equal label that follow each other are one run.
-fn slab<L: Copy + Into<i64> + PartialEq>(labels: &[L], length: usize) -> Vec<(i64, Slab)> {
+///
+/// # Errors
+/// When a label is not whole.
+fn slab<L: Label>(labels: &[L], length: usize) -> Result<Vec<(i64, Slab)>, Error> {
     let mut found: Vec<(i64, Slab)> = Vec::new();
     let mut places: HashMap<i64, usize> = HashMap::new();
-    let mut last = (0, usize::MAX);
+    // Where labels of this last byte were found last: a table is sooner read than a map.
+    let mut recent = [(0, usize::MAX); 256];
     for (j, row) in labels.chunks_exact(length).enumerate() {
         let mut from = 0;
         while from < length {
-            let label = row[from];
-            let run = row[from..].iter().position(|&other| other != label);
-            let to = run.map_or(length, |run| from + run);
-            let name: i64 = label.into();
-            if last.1 == usize::MAX || last.0 != name {
-                let place = *places.entry(name).or_insert(found.len());
+            let label = row[from].whole().map_err(|value| Error::OutOfDomain {
+                what: "labels",
+                law: "whole numbers below 2^63, below 2^53 where they are floats: densities and grey values go to from_voxels",
+                value,
+            })?;
+            let to = from + run(&row[from..]);
+            let known = &mut recent[usize::from(label.to_le_bytes()[0])];
+            if known.1 == usize::MAX || known.0 != label {
+                let place = *places.entry(label).or_insert(found.len());
                 if place == found.len() {
                     let range = [[j, j + 1], [from, to]];
                     found.push((
-                        name,
+                        label,
                         Slab {
                             range,
                             ..Slab::default()
                         },
                     ));
                 }
-                last = (name, place);
+                *known = (label, place);
             }
-            found[last.1].1.add(j, from, to);
+            found[known.1].1.add(j, from, to);
             from = to;
         }
     }
-    found
+    Ok(found)
+}
+
+/// How many cells from the first one on have its label.
+fn run<L: PartialEq>(row: &[L]) -> usize {
+    /// Cells that are compared at once.
+    const PIECE: usize = 16;
+    let is_same = |other: &L| *other == row[0];
+    let mut length = 0;
+    for piece in row.chunks_exact(PIECE) {
+        if !piece.iter().fold(true, |all, other| all & is_same(other)) {
+            break;
+        }
+        length += PIECE;
+    }
+    let rest = row[length..].iter();
+    length + rest.take_while(|other| is_same(other)).count()
 }
 
 impl Slab {
@@ -331,6 +408,33 @@ mod tests {
 
     use super::*;
     use crate::mass::voxels::{Grid, voxels};
+
+    #[test]
+    fn labels_are_whole_numbers_of_any_kind() {
+        let go_on = &mut |_: f64| ControlFlow::Continue(());
+        let row: Vec<i64> = (0..200).map(|k| [-3, 7, 263][k / 5 % 7 % 3]).collect();
+        let found = count_labels(&row, [1, 1, 200], go_on).expect("cells");
+        let floats: Vec<f32> = row.iter().map(|&label| label as f32).collect();
+        assert_eq!(count_labels(&floats, [1, 1, 200], go_on), Ok(found));
+        for label in [0.5, f64::NAN, f64::INFINITY, 2.0_f64.powi(53)] {
+            let refused = count_labels(&[1.0, label], [1, 2, 1], go_on);
+            assert!(matches!(
+                refused,
+                Err(Error::OutOfDomain { what: "labels", .. })
+            ));
+        }
+        assert!(count_labels(&[u64::MAX], [1, 1, 1], go_on).is_err());
+    }
+
+    #[test]
+    fn a_run_ends_at_the_first_other_label() {
+        for length in 1..70 {
+            for end in 1..=length {
+                let row: Vec<u8> = (0..length).map(|k| u8::from(k >= end)).collect();
+                assert_eq!(run(&row), end);
+            }
+        }
+    }
 
     /// The bodies of all labels at once are those of each label alone.
     #[test]

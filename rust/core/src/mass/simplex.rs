@@ -21,10 +21,14 @@ use crate::numerics::lane::{Double, Lane};
 use crate::numerics::split_vector::along_axes;
 use crate::numerics::structure_of_arrays::{ROWS, StructureOfArrays};
 use crate::numerics::threads::{Watch, fill_blocks};
-use crate::numerics::tree_sum::{BLOCK, depth};
+use crate::numerics::tree_sum::{self, BLOCK, depth, sum_blocks};
 use crate::principal::principal_axes;
 
 // What the sums over simplices come to in a frame.
+
+/// What an element of other matter adds: content, first moment (3), second moment (6), what rounding can have done to the
+/// content.
+pub(super) const ELEMENT: usize = 11;
 
 /// What was summed, in the coordinates and the unit of a frame.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +41,8 @@ pub(super) struct Sums {
     pub(in crate::mass) magnitude: f64,
     pub(in crate::mass) first: Vector3<f64>,
     pub(in crate::mass) second: Matrix3<f64>,
-    /// What the rounding of each simplex's content is relative to, by [`Kind::content`].
+    /// What the rounding of each simplex's content is relative to, by [`Kind::content`]; of other elements, along x what
+    /// rounding can have done to the content.
     pub(in crate::mass) scale: Vector3<f64>,
     /// The largest coordinates.
     pub(in crate::mass) extent: Vector3<f64>,
@@ -77,6 +82,32 @@ impl Sums {
             scale: Vector3::from(scale) * K::FACTOR,
             extent: Vector3::new(e1, e2, e3),
         }
+    }
+
+    /// The sums of `count` elements of positive content, in blocks.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] where `watch` said so.
+    pub(in crate::mass) fn of_elements(
+        count: usize,
+        frame: &LocalFrame,
+        extent: Vector3<f64>,
+        watch: &mut Watch<'_>,
+        element: impl Fn(usize) -> [f64; ELEMENT] + Sync,
+    ) -> Result<Self, Error> {
+        let [w, x, y, z, xx, xy, xz, yy, yz, zz, error] = sum_blocks(count, watch, |range| {
+            tree_sum::block_sum(range.start, range.end, &element)
+        })?;
+        Ok(Self {
+            frame: *frame,
+            count,
+            content: w,
+            magnitude: w,
+            first: Vector3::new(x, y, z),
+            second: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
+            scale: Vector3::new(error, 0.0, 0.0),
+            extent,
+        })
     }
 
     /// Centre of mass from the reference, in the frame.

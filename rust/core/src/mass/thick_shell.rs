@@ -19,13 +19,12 @@ use super::error_bound::UNIT;
 use super::integrator::{Matter, integrate_sums};
 use super::polyhedron::{Index, View};
 use super::provenance::{BodySource, Checks, Provenance};
-use super::simplex::{LocalFrame, Sums};
+use super::simplex::{ELEMENT, LocalFrame, Sums};
 use super::surface::finish;
 use crate::error::{Corner, Count, Error, MeshFault};
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
 use crate::numerics::split_vector::{SplitVector, cross};
 use crate::numerics::threads::{Halt, Watch, each_watched};
-use crate::numerics::tree_sum::{block_sum, sum_blocks};
 use crate::principal::{PrincipalAxes, principal_axes};
 
 // The body of a shell: what is asked of its mid-surface and its thickness, and the axes its integrals are taken in.
@@ -152,20 +151,7 @@ impl Matter for ShellIntegrand<'_> {
             extent,
         };
         let count = self.offset.faces.len();
-        let [w, x, y, z, xx, xy, xz, yy, yz, zz, slack] = sum_blocks(count, watch, |range| {
-            block_sum(range.start, range.end, &|face| placed.terms(face))
-        })?;
-        Ok(Sums {
-            frame: *frame,
-            count,
-            content: w,
-            magnitude: w,
-            first: Vector3::new(x, y, z),
-            second: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
-            // What the roundings of all faces have done to the volume.
-            scale: Vector3::new(slack, 0.0, 0.0),
-            extent,
-        })
+        Sums::of_elements(count, frame, extent, watch, |face| placed.element(face))
     }
 }
 
@@ -180,13 +166,10 @@ struct ShellInFrame<'a> {
     extent: Vector3<f64>,
 }
 
-/// Volume, first moment (3), second moment (6), what rounding can have done to the volume.
-const TERMS: usize = 11;
-
 impl ShellInFrame<'_> {
     /// What one face sweeps.
     #[inline]
-    fn terms(&self, face: usize) -> [f64; TERMS] {
+    fn element(&self, face: usize) -> [f64; ELEMENT] {
         /// √(3/5), with the weight 5/9; the middle has 8/9.
         const NODE: f64 = 0.774_596_669_241_483_4;
         let corners = self.offset.faces[face];
@@ -196,7 +179,7 @@ impl ShellInFrame<'_> {
         let worst = corners
             .iter()
             .fold(0.0_f64, |worst, &k| worst.max(self.offset.errors[k]));
-        let mut terms = [0.0; TERMS];
+        let mut terms = [0.0; ELEMENT];
         for (node, weight) in [(-NODE, 5.0), (0.0, 8.0), (NODE, 5.0)] {
             let (s, weight) = (node * self.half, weight * self.weight / 9.0);
             let r = [v[0] + d[0] * s, v[1] + d[1] * s, v[2] + d[2] * s];

@@ -15,11 +15,14 @@
 //! over sectors.
 //!
 //! The polygons are those of a polyhedron, from which each plane cuts a piece. An edge belongs to two faces, and where it leaves the
-//! ball is computed once; so the arcs form closed curves for any rounding, and what rounding moves changes the sums by no more than rounding.
+//! ball is computed in the same way for both; so the arcs form closed curves for any rounding, and what rounding moves changes the sums by no more
+//! than rounding.
+//!
+//! What a face adds is summed in its own axes s, t, u and turned once.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector2, Vector3};
 
 use crate::mass::error_bound::UNIT;
 
@@ -76,71 +79,96 @@ const ALONG: f64 = 8.0 * UNIT;
 #[derive(Default)]
 pub(super) struct Cutter {
     cell: Polyhedron,
-    next: Polyhedron,
+    /// Of the corners over a plane.
     heights: Vec<f64>,
-    /// Where a corner of the old polyhedron is in the new one.
-    places: Vec<usize>,
-    /// New corners: the edge, by its inner and outer end, and the number of the corner.
-    cuts: Vec<(usize, usize, usize)>,
-    /// Edges of the new face.
-    cap: Vec<(usize, usize)>,
+    /// Corners beyond it.
+    outer: Vec<usize>,
+    /// Half-edges from corners beyond it to others, and for each half-edge the new corner on it.
+    cuts: Vec<usize>,
+    made: Vec<usize>,
     is_inside: Vec<bool>,
+    is_done: Vec<bool>,
+    /// The corners of a face.
+    face: Vec<usize>,
     arcs: Vec<Arc>,
     /// Of the arcs, cut into pieces.
     points: Vec<Vector3<f64>>,
 }
 
-/// A convex polyhedron, its faces counter-clockwise seen from outside.
+/// A convex polyhedron with three edges at each corner. Those of corner c are the half-edges 3c, 3c + 1 and 3c + 2, counter-clockwise
+/// seen from outside.
+///
+/// Each edge that a plane meets gets a corner of its own. So there are three edges also where many planes meet in a point, and some
+/// of them have no length.
 #[derive(Default)]
 struct Polyhedron {
     corners: Vec<Vector3<f64>>,
-    /// The number of the plane of each face, and where its corners begin.
-    faces: Vec<(usize, usize)>,
-    loops: Vec<usize>,
+    /// Of each half-edge, the same edge from its other end.
+    twins: Vec<usize>,
+    /// Of each half-edge, the number of the plane of the face on its left.
+    planes: Vec<usize>,
+    /// Corners that were cut off; their places are not numbers.
+    free: Vec<usize>,
+}
+
+/// The next half-edge of a corner, counter-clockwise.
+fn turn(edge: usize) -> usize {
+    if edge % 3 == 2 { edge - 2 } else { edge + 1 }
 }
 
 impl Polyhedron {
-    fn clear(&mut self) {
-        self.corners.clear();
-        self.faces.clear();
-        self.loops.clear();
-    }
-
     /// A cube about the origin, no face of which is in a plane that has a number.
     fn make_cube(&mut self) {
-        const FACES: [[usize; 4]; 6] = [
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-        ];
-        self.clear();
+        self.corners.clear();
+        self.twins.clear();
+        self.planes.clear();
+        self.free.clear();
+        // The bits of a corner are the signs of x, y and z. Edges along x, y, z are counter-clockwise at every second corner.
+        let edge = |corner: usize, axis: usize| {
+            let is_right = corner.count_ones() % 2 == 1;
+            3 * corner + if is_right { axis } else { (3 - axis) % 3 }
+        };
+        self.twins.resize(24, 0);
+        self.planes.resize(24, usize::MAX);
         for corner in 0..8 {
-            let side = |bit: usize| {
-                if corner >> bit & 1 == 1 {
-                    HALF_EDGE
-                } else {
-                    -HALF_EDGE
-                }
-            };
+            let side = |bit: usize| HALF_EDGE * (2.0 * (corner >> bit & 1) as f64 - 1.0);
             self.corners.push(Vector3::new(side(0), side(1), side(2)));
-        }
-        for face in FACES {
-            self.faces.push((usize::MAX, self.loops.len()));
-            self.loops.extend(face);
+            for axis in 0..3 {
+                self.twins[edge(corner, axis)] = edge(corner ^ (1 << axis), axis);
+            }
         }
     }
 
-    /// The number of the plane of a face, and its corners in order.
-    fn face(&self, index: usize) -> (usize, &[usize]) {
-        let (plane, from) = self.faces[index];
-        let to = self
-            .faces
-            .get(index + 1)
-            .map_or(self.loops.len(), |face| face.1);
-        (plane, &self.loops[from..to])
+    /// Adds a corner on a half-edge from a corner that is cut off; its twin now ends there. The new edges are left open.
+    fn add_corner(&mut self, place: Vector3<f64>, edge: usize, number: usize) -> usize {
+        let corner = self.free.pop().unwrap_or(self.corners.len());
+        if corner == self.corners.len() {
+            self.corners.push(place);
+            self.twins.extend([0; 3]);
+            self.planes.extend([0; 3]);
+        }
+        let twin = self.twins[edge];
+        self.corners[corner] = place;
+        self.twins[3 * corner] = twin;
+        self.twins[twin] = 3 * corner;
+        self.planes[3 * corner] = self.planes[edge];
+        self.planes[3 * corner + 1] = number;
+        self.planes[3 * corner + 2] = self.planes[twin];
+        corner
+    }
+
+    /// The corners of the face on the left of a half-edge, in order.
+    fn go_round(&self, edge: usize, is_done: &mut [bool], corners: &mut Vec<usize>) {
+        corners.clear();
+        let mut at = edge;
+        loop {
+            is_done[at] = true;
+            corners.push(at / 3);
+            at = turn(turn(self.twins[at]));
+            if at == edge {
+                return;
+            }
+        }
     }
 }
 
@@ -152,85 +180,60 @@ impl Cutter {
         }
         self.cell.make_cube();
         for (number, plane) in planes.iter().enumerate() {
-            self.cut(number, plane);
-            if self.cell.faces.is_empty() {
+            if !self.cut(number, plane) {
                 return Moments::default();
             }
         }
         self.measure(planes)
     }
 
-    /// Cuts the polyhedron by a plane.
-    fn cut(&mut self, number: usize, plane: &Plane) {
-        let old = &self.cell;
+    /// Cuts the polyhedron by a plane; false where nothing is left.
+    fn cut(&mut self, number: usize, plane: &Plane) -> bool {
+        let cell = &mut self.cell;
         self.heights.clear();
         let height = |corner: &Vector3<f64>| plane.normal.dot(corner) - plane.height;
-        self.heights.extend(old.corners.iter().map(height));
-        if self.heights.iter().all(|&height| height <= ALONG) {
-            return;
+        self.heights.extend(cell.corners.iter().map(height));
+        let heights = &self.heights;
+        let is_outer = |corner: usize| heights[corner] > ALONG;
+        self.outer.clear();
+        (self.outer).extend((0..heights.len()).filter(|&corner| is_outer(corner)));
+        if self.outer.is_empty() {
+            return true;
         }
-        let new = &mut self.next;
-        new.clear();
-        self.places.clear();
-        for (corner, &height) in old.corners.iter().zip(&self.heights) {
-            self.places.push(new.corners.len());
-            if height <= ALONG {
-                new.corners.push(*corner);
-            }
+        if self.outer.len() + cell.free.len() == heights.len() {
+            return false;
         }
-        let is_in = |corner: usize| self.heights[corner] <= ALONG;
         self.cuts.clear();
-        self.cap.clear();
-        for face in 0..old.faces.len() {
-            let (of_plane, corners) = old.face(face);
-            let from = new.loops.len();
-            // Where the face leaves the half-space and where it comes back, an edge of the cap runs the other way.
-            let (mut left, mut came_first) = (None, None);
-            for (k, &a) in corners.iter().enumerate() {
-                let b = corners[(k + 1) % corners.len()];
-                if is_in(a) {
-                    new.loops.push(self.places[a]);
-                }
-                if is_in(a) == is_in(b) {
+        self.made.resize(self.made.len().max(3 * heights.len()), 0);
+        for &outer in &self.outer {
+            for edge in 3 * outer..3 * outer + 3 {
+                let inner = cell.twins[edge] / 3;
+                if is_outer(inner) {
                     continue;
                 }
-                let (inner, outer) = if is_in(a) { (a, b) } else { (b, a) };
-                let known = (self.cuts.iter()).find(|cut| (cut.0, cut.1) == (inner, outer));
-                let corner = known.map_or(new.corners.len(), |cut| cut.2);
-                if known.is_none() {
-                    let (p, q) = (self.heights[inner], self.heights[outer]);
-                    let part = (p / (p - q)).clamp(0.0, 1.0);
-                    let start = old.corners[inner];
-                    new.corners
-                        .push(start + (old.corners[outer] - start) * part);
-                    self.cuts.push((inner, outer, corner));
-                }
-                new.loops.push(corner);
-                if is_in(a) {
-                    left = Some(corner);
-                } else if let Some(leaving) = left.take() {
-                    self.cap.push((corner, leaving));
-                } else {
-                    came_first = Some(corner);
-                }
-            }
-            if let (Some(leaving), Some(coming)) = (left, came_first) {
-                self.cap.push((coming, leaving));
-            }
-            if new.loops.len() > from {
-                new.faces.push((of_plane, from));
+                let (p, q) = (heights[inner], heights[outer]);
+                let part = (p / (p - q)).clamp(0.0, 1.0);
+                let start = cell.corners[inner];
+                let place = start + (cell.corners[outer] - start) * part;
+                self.made[edge] = cell.add_corner(place, edge, number);
+                self.cuts.push(edge);
             }
         }
-        // The edges of the cap form one loop; more where rounding has cut a corner from the polygon.
-        while let Some((start, mut end)) = self.cap.pop() {
-            new.faces.push((number, new.loops.len()));
-            new.loops.push(start);
-            while let Some(k) = self.cap.iter().position(|edge| edge.0 == end) {
-                new.loops.push(end);
-                end = self.cap.swap_remove(k).1;
+        // Back along each face that is cut, from where it comes back to where it left, is an edge of the new face.
+        for &edge in &self.cuts {
+            let mut at = turn(edge);
+            while is_outer(cell.twins[at] / 3) {
+                at = turn(cell.twins[at]);
             }
+            let (from, to) = (3 * self.made[edge] + 1, 3 * self.made[at] + 2);
+            cell.twins[from] = to;
+            cell.twins[to] = from;
         }
-        std::mem::swap(&mut self.cell, &mut self.next);
+        for &outer in &self.outer {
+            cell.corners[outer] = Vector3::repeat(f64::NAN);
+        }
+        cell.free.extend(&self.outer);
+        true
     }
 
     /// The moments of the unit ball within the polyhedron.
@@ -238,24 +241,27 @@ impl Cutter {
         let cell = &self.cell;
         self.is_inside.clear();
         (self.is_inside).extend(cell.corners.iter().map(|r| r.norm_squared() <= 1.0));
+        self.is_done.clear();
+        self.is_done.resize(cell.twins.len(), false);
+        for &corner in &cell.free {
+            self.is_done[3 * corner..3 * corner + 3].fill(true);
+        }
         self.arcs.clear();
         let mut sum = Boundary::default();
         let (mut largest, mut caps) = (0.0_f64, 0.0);
-        for face in 0..cell.faces.len() {
-            let (number, corners) = cell.face(face);
-            let Some(plane) = planes.get(number).filter(|plane| plane.height.abs() < 1.0) else {
-                continue; // of the cube
+        for edge in 0..cell.twins.len() {
+            let Some(plane) = (planes.get(cell.planes[edge]))
+                .filter(|plane| !self.is_done[edge] && plane.height.abs() < 1.0)
+            else {
+                continue; // of the cube, or of a face that was measured
             };
+            cell.go_round(edge, &mut self.is_done, &mut self.face);
             let cap = TAU * (1.0 - plane.height);
             largest = largest.max(cap);
             caps += cap;
-            let arcs = self.arcs.len();
             let mut disk = Disk::new(plane, &mut self.arcs);
-            disk.go_round(&cell.corners, &self.is_inside, corners);
+            disk.go_round(&cell.corners, &self.is_inside, &self.face);
             disk.finish(&mut sum);
-            for arc in &self.arcs[arcs..] {
-                sum.add_arc(arc);
-            }
         }
         let removed = removed_area(&self.arcs, &mut self.points);
         let whole = 2.0 * TAU;
@@ -266,7 +272,7 @@ impl Cutter {
         } else if area < 0.5 * (whole - caps) {
             area += whole;
         }
-        sum.moments(area, cell.faces.len())
+        sum.moments(area)
     }
 }
 
@@ -279,79 +285,78 @@ struct Arc {
     is_circle: bool,
 }
 
-/// What the integrals over the boundary come to.
+/// What the integrals over the boundary come to, but for the area of the patch.
 #[derive(Default)]
 struct Boundary {
+    faces: usize,
+    /// `3 V`.
     volume: f64,
+    /// `4 ∫ x dV`.
     first: Vector3<f64>,
+    /// `5 ∫ x xᵀ dV`.
     second: Matrix3<f64>,
-    /// `∫ n dΩ` and `∫ (n nᵀ − 1/3) dΩ`.
-    normal: Vector3<f64>,
-    square: Matrix3<f64>,
 }
 
 impl Boundary {
-    /// What the arc adds to the integrals over the patch, which is on its right.
-    fn add_arc(&mut self, arc: &Arc) {
-        let (u, h, angle) = (arc.plane.normal, arc.plane.height, arc.angle);
-        let square = (1.0 - h) * (1.0 + h);
-        let chord = (arc.to - arc.from).cross(&u);
-        self.normal -= (u * (square * angle) - chord * h) * 0.5;
-        let n = u * (h * angle) + chord;
-        let in_plane = Matrix3::identity() - u * u.transpose();
-        let nn = u * u.transpose() * (h * h * angle)
-            + twice_symmetric(&u, &chord) * h
-            + in_plane * (0.5 * square * angle)
-            - (twist(&arc.to, &arc.plane) - twist(&arc.from, &arc.plane)) * 0.25;
-        self.square -= (twice_symmetric(&u, &n) - nn * (2.0 * h)) / 6.0;
-    }
-
     /// The moments, with this area of the patch.
-    fn moments(&self, area: f64, faces: usize) -> Moments {
-        let sphere = self.square + Matrix3::identity() * (area / 3.0);
-        let second = (self.second + sphere) * 0.2;
+    fn moments(&self, area: f64) -> Moments {
+        let second = (self.second + Matrix3::identity() * (area / 3.0)) * 0.2;
         Moments {
-            volume: self.volume + area / 3.0,
-            first: self.first + self.normal * 0.25,
+            volume: (self.volume + area) / 3.0,
+            first: self.first * 0.25,
             second: (second + second.transpose()) * 0.5,
-            error: (16 + 16 * faces) as f64 * UNIT,
+            error: (112 + 16 * self.faces) as f64 * UNIT,
             radius: 1.0,
         }
     }
 }
 
-/// `a bᵀ + b aᵀ`.
-fn twice_symmetric(a: &Vector3<f64>, b: &Vector3<f64>) -> Matrix3<f64> {
-    a * b.transpose() + b * a.transpose()
-}
-
-/// `s tᵀ + t sᵀ`, s from the middle of the circle to a point of it and t along it: its derivative by the angle is `2 (t tᵀ − s sᵀ)`.
-fn twist(point: &Vector3<f64>, plane: &Plane) -> Matrix3<f64> {
-    let u = plane.normal;
-    twice_symmetric(&(point - u * plane.height), &u.cross(point))
-}
-
 /// A face: a polygon cut by the disk in which its plane cuts the unit ball.
 struct Disk<'a> {
     plane: Plane,
+    /// Axes in the plane, right-handed with its normal.
+    axes: [Vector3<f64>; 2],
     arcs: &'a mut Vec<Arc>,
-    first_arc: usize,
-    /// `∫ dA`, `∫ y dA`, `∫ y yᵀ dA`, y from the middle of the disk.
+    /// Over the triangles, with y = (a, b) from the middle of the disk: `2 ∫ dA`, `6 ∫ y dA`, `24 ∫ (a², a b, b²) dA`.
     area: f64,
-    first: Vector3<f64>,
-    second: Matrix3<f64>,
+    first: Vector2<f64>,
+    second: Vector3<f64>,
+    /// Of the arcs: their angles, the differences of their ends, and those of (−2 a b, a² − b²): half its derivative by the angle is
+    /// (b² − a², −2 a b).
+    angle: f64,
+    chord: Vector2<f64>,
+    twist: Vector2<f64>,
 }
+
+/// A point of the plane of a disk, and the same from the middle of the disk in its axes.
+type Placed = (Vector3<f64>, Vector2<f64>);
 
 impl<'a> Disk<'a> {
     fn new(plane: &Plane, arcs: &'a mut Vec<Arc>) -> Self {
+        // Of Duff and others (2017).
+        let u = plane.normal;
+        let sign = 1.0_f64.copysign(u.z);
+        let a = -1.0 / (sign + u.z);
+        let b = u.x * u.y * a;
         Self {
             plane: *plane,
-            first_arc: arcs.len(),
+            axes: [
+                Vector3::new(1.0 + sign * u.x * u.x * a, sign * b, -sign * u.x),
+                Vector3::new(b, sign + u.y * u.y * a, -u.y),
+            ],
             arcs,
             area: 0.0,
-            first: Vector3::zeros(),
-            second: Matrix3::zeros(),
+            first: Vector2::zeros(),
+            second: Vector3::zeros(),
+            angle: 0.0,
+            chord: Vector2::zeros(),
+            twist: Vector2::zeros(),
         }
+    }
+
+    fn place(&self, point: Vector3<f64>) -> Placed {
+        let [s, t] = &self.axes;
+        (point, Vector2::new(s.dot(&point), t.dot(&point)))
     }
 
     /// The polygon with these corners: triangles where its edges are in the disk, arcs where they are outside.
@@ -360,31 +365,42 @@ impl<'a> Disk<'a> {
         let mut left = None;
         let mut turn = 0.0;
         let mut came_first = None;
-        for (k, &a) in corners.iter().enumerate() {
-            let b = corners[(k + 1) % corners.len()];
-            let (p, q) = (points[a], points[b]);
-            let Some((enter, leave)) = crossings(points, is_inside, a, b) else {
-                turn += self.quarters(&p, &q);
-                continue;
-            };
-            if let Some(enter) = enter {
-                turn += self.quarters(&p, &enter);
-                match left.take() {
-                    Some(from) => self.push_arc(from, enter, turn),
-                    None => came_first = Some((enter, turn)),
+        let mut a = corners[corners.len() - 1];
+        let (_, mut p) = self.place(points[a]);
+        for &b in corners {
+            let (_, q) = self.place(points[b]);
+            if is_inside[a] && is_inside[b] {
+                self.add_triangle(&p, &q);
+            } else if let Some((enter, leave)) = crossings(points, is_inside, a, b) {
+                let mut from = p;
+                if let Some(enter) = enter {
+                    let enter = self.place(enter);
+                    turn += quarters(&p, &enter.1);
+                    match left.take() {
+                        Some(from) => self.push_arc(from, enter, turn),
+                        None => came_first = Some((enter, turn)),
+                    }
+                    turn = 0.0;
+                    from = enter.1;
                 }
-                turn = 0.0;
+                if let Some(leave) = leave {
+                    let leave = self.place(leave);
+                    self.add_triangle(&from, &leave.1);
+                    left = Some(leave);
+                    turn = quarters(&leave.1, &q);
+                } else {
+                    self.add_triangle(&from, &q);
+                }
+            } else {
+                turn += quarters(&p, &q);
             }
-            self.add_triangle(&enter.unwrap_or(p), &leave.unwrap_or(q));
-            if let Some(leave) = leave {
-                left = Some(leave);
-                turn = self.quarters(&leave, &q);
-            }
+            (a, p) = (b, q);
         }
         match (left, came_first) {
             (Some(from), Some((to, before))) => self.push_arc(from, to, turn + before),
             // All edges are outside the disk, and it is within the polygon or not.
             (None, None) if turn > 2.0 => {
+                self.angle += TAU;
                 self.arcs.push(Arc {
                     plane: self.plane,
                     from: self.plane.normal,
@@ -398,80 +414,80 @@ impl<'a> Disk<'a> {
     }
 
     /// Adds the arc between two points, on the way between which the polygon turned by about so many quarters.
-    fn push_arc(&mut self, from: Vector3<f64>, to: Vector3<f64>, turn: f64) {
-        let plane = self.plane;
-        let (p, q) = (self.place(&from), self.place(&to));
-        let angle = plane.normal.dot(&p.cross(&q)).atan2(p.dot(&q));
+    fn push_arc(&mut self, (from, p): Placed, (to, q): Placed, turn: f64) {
+        let angle = p.perp(&q).atan2(p.dot(&q));
         let rounds = ((turn * FRAC_PI_2 - angle) / TAU).round();
+        let angle = angle + rounds * TAU;
+        let twist = |r: &Vector2<f64>| Vector2::new(-2.0 * r.x * r.y, (r.x - r.y) * (r.x + r.y));
+        self.angle += angle;
+        self.chord += q - p;
+        self.twist += twist(&q) - twist(&p);
         self.arcs.push(Arc {
-            plane,
+            plane: self.plane,
             from,
             to,
-            angle: angle + rounds * TAU,
+            angle,
             is_circle: false,
         });
     }
 
-    /// From the middle of the disk.
-    fn place(&self, point: &Vector3<f64>) -> Vector3<f64> {
-        point - self.plane.normal * self.plane.height
-    }
-
-    /// The angle from one point to another, seen from the middle of the disk, in quarters of a turn and off by at most a
-    /// tenth of a quarter: enough to count rounds.
-    fn quarters(&self, from: &Vector3<f64>, to: &Vector3<f64>) -> f64 {
-        let (p, q) = (self.place(from), self.place(to));
-        let (y, x) = (self.plane.normal.dot(&p.cross(&q)), p.dot(&q));
-        let sum = x.abs() + y.abs();
-        if sum == 0.0 {
-            return 0.0;
-        }
-        (1.0 - x / sum).copysign(y)
-    }
-
-    fn add_triangle(&mut self, from: &Vector3<f64>, to: &Vector3<f64>) {
-        let (p, q) = (self.place(from), self.place(to));
-        let area = 0.5 * self.plane.normal.dot(&p.cross(&q));
-        let sum = p + q;
+    fn add_triangle(&mut self, p: &Vector2<f64>, q: &Vector2<f64>) {
+        let (area, sum) = (p.perp(q), p + q);
+        let of = |r: &Vector2<f64>| Vector3::new(r.x * r.x, r.x * r.y, r.y * r.y);
         self.area += area;
-        self.first += sum * (area / 3.0);
-        self.second +=
-            (p * p.transpose() + q * q.transpose() + sum * sum.transpose()) * (area / 12.0);
+        self.first += sum * area;
+        self.second += (of(p) + of(q) + of(&sum)) * area;
     }
 
-    /// Adds the sectors under the arcs, and the cone from the center of the ball over the face.
-    fn finish(mut self, sum: &mut Boundary) {
+    /// Adds the sectors under the arcs, the cone from the center of the ball over the face, and what its arcs say of the patch.
+    fn finish(self, sum: &mut Boundary) {
         let (u, h) = (self.plane.normal, self.plane.height);
         let square = (1.0 - h) * (1.0 + h);
-        let in_plane = Matrix3::identity() - u * u.transpose();
-        for arc in &self.arcs[self.first_arc..] {
-            self.area += 0.5 * square * arc.angle;
-            self.first += (arc.to - arc.from).cross(&u) * (square / 3.0);
-            let turned = twist(&arc.to, &self.plane) - twist(&arc.from, &self.plane);
-            self.second +=
-                in_plane * (square * square * arc.angle / 8.0) - turned * (square / 16.0);
-        }
-        let first = u * (h * self.area) + self.first;
-        let second = u * u.transpose() * (h * h * self.area)
-            + twice_symmetric(&u, &self.first) * h
-            + self.second;
-        sum.volume += h * self.area / 3.0;
-        sum.first += first * (h * 0.25);
-        sum.second += second * h;
+        let around = square * self.angle;
+        let chord = Vector2::new(self.chord.y, -self.chord.x);
+        let twist = Vector3::new(self.twist.x, self.twist.y, -self.twist.x);
+        let one = Vector3::new(1.0, 0.0, 1.0);
+        let area = 0.5 * (self.area + around);
+        let first = self.first / 6.0 + chord * (square / 3.0);
+        let second = self.second / 24.0 + one * (square * around / 8.0) - twist * (square / 16.0);
+        // In the axes s, t, u: of the face, and with the arcs counter-clockwise about the face, the patch on their right.
+        let outward = first * h + chord * (0.5 * h);
+        let across = first * (h * h) - chord * ((1.0 - 2.0 * h * h) / 6.0);
+        let along = second * h + (one * (0.5 * around) - twist * 0.25) * (h / 3.0);
+        let up = h * (h * h * area - around / 3.0);
+        let axes = Matrix3::from_columns(&[self.axes[0], self.axes[1], u]);
+        sum.faces += 1;
+        sum.volume += h * area;
+        sum.first += axes * Vector3::new(outward.x, outward.y, h * h * area - 0.5 * around);
+        #[rustfmt::skip]
+        let second = Matrix3::new(
+            along.x, along.y, across.x,
+            along.y, along.z, across.y,
+            across.x, across.y, up,
+        );
+        sum.second += axes * second * axes.transpose();
     }
+}
+
+/// The angle from one point to another, seen from the middle of the disk, in quarters of a turn and off by at most a
+/// tenth of a quarter: enough to count rounds.
+fn quarters(p: &Vector2<f64>, q: &Vector2<f64>) -> f64 {
+    let (y, x) = (p.perp(q), p.dot(q));
+    let sum = x.abs() + y.abs();
+    if sum == 0.0 {
+        return 0.0;
+    }
+    (1.0 - x / sum).copysign(y)
 }
 
 /// Where an edge enters a ball and leaves it.
 type Ends = (Option<Vector3<f64>>, Option<Vector3<f64>>);
 
-/// Where the edge from corner a to corner b is in the unit ball: where it enters and leaves, `None` where it does at its ends. `None`
-/// of an edge outside.
+/// Where the edge from corner a to corner b, not both inside, is in the unit ball: where it enters and leaves, `None` where it does at its ends.
+/// `None` of an edge outside.
 ///
 /// Both faces of an edge ask: so what decides is computed in one order of its ends.
 fn crossings(points: &[Vector3<f64>], is_inside: &[bool], a: usize, b: usize) -> Option<Ends> {
-    if is_inside[a] && is_inside[b] {
-        return Some((None, None));
-    }
     let (low, high) = (a.min(b), a.max(b));
     let (p, edge) = (points[low], points[high] - points[low]);
     let length = edge.norm_squared();

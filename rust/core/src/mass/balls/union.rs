@@ -2,20 +2,19 @@
 
 use std::convert::Infallible;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
 use super::cut_ball::{Cutter, Moments};
-use super::neighbours::Neighbours;
+use super::neighbours::{Ball, Neighbours};
 use crate::error::{BodyFault, Error, all_finite};
 use crate::mass::amount::Amount;
 use crate::mass::body::RigidBody;
 use crate::mass::integrator::{Matter, integrate_sums};
 use crate::mass::provenance::{BodySource, Checks, Provenance};
-use crate::mass::simplex::{LocalFrame, Sums};
+use crate::mass::simplex::{ELEMENT, LocalFrame, Sums};
 use crate::mass::surface::finish;
 use crate::numerics::power_of_two::exponent;
 use crate::numerics::threads::{Watch, fill_blocks};
-use crate::numerics::tree_sum::{block_sum, sum_blocks};
 
 /// Balls whose cells a thread computes at a time.
 const SHARE: usize = 64;
@@ -70,10 +69,7 @@ pub fn balls(
         high = high.sup(&center.add_scalar(radius));
     }
     let frame = LocalFrame::of_box(&low, &high);
-    let union = Union {
-        centers,
-        parts: parts(centers, radii, frame.unit, watch)?,
-    };
+    let union = Union::of(centers, radii, frame.unit, watch)?;
     let first = union.moments(&frame, watch)?;
     let (sums, moments) = integrate_sums(&union, &first, 3, watch)?;
     let error = sums.scale.x + sums.roundings() * sums.content;
@@ -85,35 +81,43 @@ pub fn balls(
     }))
 }
 
-/// What is left of each ball in its cell, about its center, lengths in `unit`.
-fn parts(
-    centers: &[[f64; 3]],
-    radii: &[f64],
-    unit: f64,
-    watch: &mut Watch<'_>,
-) -> Result<Vec<Moments>, Error> {
-    let neighbours = Neighbours::of(centers, radii, unit);
-    let mut parts = vec![Moments::default(); centers.len()];
-    fill_blocks(&mut parts, SHARE, watch, |first, share| {
-        let (mut cutter, mut planes) = (Cutter::default(), Vec::new());
-        for (ball, part) in (first..).zip(share) {
-            // A ball that another covers has no part.
-            if neighbours.planes(ball, &mut planes) {
-                *part = cutter.moments(&planes).of_radius(radii[ball] / unit);
-            }
-        }
-        Ok::<(), Infallible>(())
-    })?;
-    Ok(parts)
-}
-
-/// The parts of the balls in their places.
-struct Union<'a> {
-    centers: &'a [[f64; 3]],
+/// The parts of the balls in their cells.
+struct Union {
+    balls: Vec<Ball>,
+    /// Each about the center of its ball, lengths in the unit of the body.
     parts: Vec<Moments>,
 }
 
-impl Matter for Union<'_> {
+impl Union {
+    fn of(
+        centers: &[[f64; 3]],
+        radii: &[f64],
+        unit: f64,
+        watch: &mut Watch<'_>,
+    ) -> Result<Self, Error> {
+        let balls = centers.iter().zip(radii);
+        let balls = balls.map(|(&center, &radius)| Ball { center, radius });
+        let neighbours = Neighbours::of(balls.collect(), unit);
+        let mut parts = vec![Moments::default(); centers.len()];
+        fill_blocks(&mut parts, SHARE, watch, |first, share| {
+            let (mut cutter, mut planes) = (Cutter::default(), Vec::new());
+            for (ball, part) in (first..).zip(share) {
+                // A ball that another covers has no part.
+                if neighbours.planes(ball, &mut planes) {
+                    let radius = neighbours.balls[ball].radius / unit;
+                    *part = cutter.moments(&planes).of_radius(radius);
+                }
+            }
+            Ok::<(), Infallible>(())
+        })?;
+        Ok(Self {
+            balls: neighbours.balls,
+            parts,
+        })
+    }
+}
+
+impl Matter for Union {
     type Moments = Sums;
 
     fn moments(&self, frame: &LocalFrame, watch: &mut Watch<'_>) -> Result<Sums, Error> {
@@ -121,9 +125,9 @@ impl Matter for Union<'_> {
         let of_ball = |ball: usize| {
             let part = &self.parts[ball];
             if part.volume == 0.0 {
-                return [0.0; TERMS];
+                return [0.0; ELEMENT];
             }
-            let (c, v) = (frame.place(&self.centers[ball]), part.volume);
+            let (c, v) = (frame.place(&self.balls[ball].center), part.volume);
             let (own, second) = match &frame.axes {
                 None => (part.first, part.second),
                 Some(_) => (
@@ -149,31 +153,14 @@ impl Matter for Union<'_> {
                 part.error,
             ]
         };
-        let count = self.centers.len();
-        let sums = sum_blocks(count, watch, |range| {
-            block_sum(range.start, range.end, &of_ball)
-        })?;
-        let [w, x, y, z, xx, xy, xz, yy, yz, zz, error] = sums;
         let mut extent = Vector3::zeros();
-        for (center, part) in self.centers.iter().zip(&self.parts) {
-            let reach = frame.place(center).abs().add_scalar(part.radius);
+        for (ball, part) in self.balls.iter().zip(&self.parts) {
+            let reach = frame.place(&ball.center).abs().add_scalar(part.radius);
             extent = extent.sup(&reach);
         }
-        Ok(Sums {
-            frame: *frame,
-            count,
-            content: w,
-            magnitude: w,
-            first: Vector3::new(x, y, z),
-            second: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
-            scale: Vector3::new(error, 0.0, 0.0),
-            extent,
-        })
+        Sums::of_elements(self.parts.len(), frame, extent, watch, of_ball)
     }
 }
-
-/// Volume, first moment (3), second moment (6), what rounding can have done to the volume.
-const TERMS: usize = 11;
 
 #[cfg(test)]
 mod tests {
