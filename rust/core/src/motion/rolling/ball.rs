@@ -291,12 +291,37 @@ impl RollingBall {
         found * (1.5 - 0.5 * found.norm_squared())
     }
 
+    /// The force of the plane across the normal over the mass.
+    fn friction(&self, time: f64) -> Complex<f64> {
+        let [_, velocity, _] = self.place(time);
+        let flat = Complex::new(self.gravity.x, self.gravity.y);
+        I * velocity * self.rate() + self.pull() - flat
+    }
+
+    /// Return the largest friction needed between two times and the normal force, and when: the first where the acceleration, which turns with kΩ, is along −g in the
+    /// plane, or at an end.
+    pub(super) fn extremes(&self, [from, to]: [f64; 2]) -> [[f64; 2]; 2] {
+        let needed = |time: f64| self.friction(time).norm() / -self.gravity.z;
+        let mut found = [needed(from), from];
+        let rate = self.rate();
+        if rate != 0.0 {
+            let start = I * self.start() * rate + self.pull();
+            let flat = Complex::new(self.gravity.x, self.gravity.y);
+            let (first, period) = ((-flat / start).arg() / rate, std::f64::consts::TAU / rate.abs());
+            let time = first + ((from - first) / period).ceil() * period;
+            if time <= to && needed(time) > found[0] {
+                found = [needed(time), time];
+            }
+        }
+        if needed(to) > found[0] {
+            found = [needed(to), to];
+        }
+        [found, [-self.mass * self.gravity.z, from]]
+    }
+
     fn state(&self, time: f64, attitude: UnitQuaternion<f64>) -> RollingState {
         let [place, velocity, level] = self.place(time);
-        let pull = self.pull();
-        let speeding = I * velocity * self.rate() + pull;
-        let flat = Complex::new(self.gravity.x, self.gravity.y);
-        let friction = (speeding - flat) * self.mass;
+        let friction = self.friction(time) * self.mass;
         RollingState {
             attitude,
             omega: attitude.inverse() * Vector3::new(level.re, level.im, self.axial),

@@ -39,6 +39,7 @@ pub enum Outside {
 /// let RollingState { position, force, tips, .. } = motion.states(&[7.0])[0];
 /// assert!((position.x - 0.5 * 5.0 / 7.0 * 6.0 * 49.0).abs() < 1e-12);
 /// assert!((force - Vector3::new(-2.0 * 2.0 / 7.0 * 6.0, 0.0, 16.0)).norm() < 1e-13 && !tips);
+/// assert!((motion.extremes(0.0, 7.0).unwrap()[0][0] - 1.5 / 7.0).abs() < 1e-15);
 /// assert!(motion.reaches(1e3).is_err() && motion.reaches(100.0).is_ok());
 /// # Ok::<(), polhode::Error>(())
 /// ```
@@ -146,6 +147,16 @@ impl RollingMotion {
             return Err(MotionFault::RollingBeyondReach { t, reach }.into());
         }
         Ok(())
+    }
+
+    /// Compute the largest friction needed by a ball between two times and the least normal force, each with its time; of a cylinder or a cone
+    /// none, which touches the plane in no point.
+    #[must_use]
+    pub fn extremes(&self, from: f64, to: f64) -> Option<[[f64; 2]; 2]> {
+        match &self.0 {
+            Form::Ball(ball) => Some(ball.extremes([from, to])),
+            Form::Lying(_) => None,
+        }
     }
 
     /// Compute the states at many times, in any order. Each has the same bits whatever the others are; at a time that is not finite
