@@ -28,6 +28,7 @@ FILES_OF_ROWS = (
     "free_motion",
     "gyrostat",
     "heavy_top",
+    "rolling",
     "simulate",
     "chunks",
     "flyby",

@@ -74,6 +74,7 @@ if TYPE_CHECKING:
     from polhode.motion.events import Event, Events
     from polhode.motion.free import Cones, ErrorBar, LightCurve, Periods, Poinsot, Sensitivity
     from polhode.motion.gyrostat import Bifurcations, Equilibria, Wheel, wheel
+    from polhode.motion.rolling import RollingMotion
     from polhode.motion.trajectory import Trajectory
     from polhode.results import (
         AngularMomentum,
@@ -130,6 +131,7 @@ _APART = {
     **dict.fromkeys(("Ensemble", "ensemble"), ("polhode.ensembles.call",)),
     **dict.fromkeys(("Audit", "Finding", "audit"), ("polhode.motion.auditing",)),
     "LabelledMassAccumulator": ("polhode.accumulator",),
+    "RollingMotion": ("polhode.motion.rolling",),
 }
 """Names whose module is imported for them alone."""
 
@@ -170,6 +172,7 @@ __all__ = [
     "PrincipalSigma",
     "Provenance",
     "RigidBody",
+    "RollingMotion",
     "Sensitivity",
     "Sigma",
     "State",

@@ -12,6 +12,7 @@ from typing_extensions import disjoint_base
 from polhode._typing import SupportsQuaternion, SupportsSigma
 from polhode.motion.free import Cones, ErrorBar, Periods, Poinsot, Sensitivity
 from polhode.motion.gyrostat import Equilibria
+from polhode.motion.rolling import RollingMotion
 from polhode.motion.trajectory import Trajectory
 from polhode.orbits import DipoleField, Orbit, SampledOrbit
 from polhode.results import (
@@ -38,6 +39,7 @@ __all__ = [
     "MassAccumulator",
     "Region",
     "RigidBody",
+    "RuledSurface",
     "Slabs",
     "Surface",
     "Uncertain",
@@ -115,10 +117,13 @@ __all__ = [
     "rolling_critical_rate",
     "rolling_modes",
     "rolling_plane",
+    "rolling_states",
     "rolling_steady",
     "rolling_tippe_top",
     "rotate",
     "rotor",
+    "ruled_cone",
+    "ruled_cylinder",
     "sampled",
     "sampled_states",
     "schedule",
@@ -567,6 +572,14 @@ class RigidBody:
         *,
         rtol: float = 1e-06,
     ) -> HeavyTop: ...
+    def rolling_motion(
+        self,
+        surface: Surface | RuledSurface,
+        omega: ArrayLike,
+        attitude: _Attitude | None = None,
+        gravity: ArrayLike = (0.0, 0.0, -9.81),
+        turntable: float = 0.0,
+    ) -> RollingMotion: ...
     def simulate(
         self,
         t: ArrayLike,
@@ -611,6 +624,10 @@ class Region: ...
 class Surface:
     def contact(self, normal: ArrayLike) -> _Floats: ...
     def curvatures(self, normal: ArrayLike) -> _Floats: ...
+
+@final
+class RuledSurface:
+    def line_of_contact(self, normal: ArrayLike) -> _Floats: ...
 
 @final
 class Contact:
@@ -998,6 +1015,27 @@ def surface_torus(
     center: ArrayLike = (0.0, 0.0, 0.0),
 ) -> Surface: ...
 def surface_paraboloid(radii: ArrayLike, apex: float, axes: ArrayLike | None = None) -> Surface: ...
+def ruled_cylinder(
+    radius: float,
+    height: float,
+    axis: ArrayLike = (0.0, 0.0, 1.0),
+    center: ArrayLike = (0.0, 0.0, 0.0),
+) -> RuledSurface: ...
+def ruled_cone(
+    radius: float,
+    height: float,
+    axis: ArrayLike = (0.0, 0.0, 1.0),
+    center: ArrayLike = (0.0, 0.0, 0.0),
+) -> RuledSurface: ...
+def rolling_states(
+    body: RigidBody,
+    surface: Surface | RuledSurface,
+    omega: ArrayLike,
+    attitude: _Attitude | None,
+    gravity: ArrayLike,
+    turntable: float,
+    t: ArrayLike,
+) -> dict[str, Any]: ...
 def rolling_steady(
     body: RigidBody,
     surface: Surface,

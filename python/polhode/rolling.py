@@ -5,10 +5,13 @@ contact that :meth:`polhode.RigidBody.simulate` takes as ``contact=``. The body 
 whatever force that takes; ``motion.contact`` is a :class:`ContactHistory` and says how much friction it
 needs.
 
+:func:`cylinder` and :func:`cone` lie on a plane along a line. Of these, and of a homogeneous ball,
+:meth:`polhode.RigidBody.rolling_motion` computes the motion in closed form.
+
 :func:`steady`, :func:`critical_rate`, :func:`preferred_sense` and :func:`tippe_top` answer without a
 simulation which motions are steady on a level plane, and which of them are stable.
 
-The body touches one plane at rest or turning, in one point. Impacts, two contacts at once and soft ground are
+The body touches one plane, at rest or turning. Impacts, two contacts at once and soft ground are
 left to engines of many bodies such as MuJoCo, Drake or Chrono.
 """
 
@@ -20,6 +23,7 @@ import numpy as np
 
 from polhode._core import (
     Contact,
+    RuledSurface,
     Surface,
     rolling_critical_rate,
     rolling_modes,
@@ -27,6 +31,8 @@ from polhode._core import (
     rolling_tippe_top,
 )
 from polhode._core import rolling_plane as plane
+from polhode._core import ruled_cone as cone
+from polhode._core import ruled_cylinder as cylinder
 from polhode._core import surface_disk as disk
 from polhode._core import surface_ellipsoid as ellipsoid
 from polhode._core import surface_paraboloid as paraboloid
@@ -47,10 +53,13 @@ __all__ = [
     "ContactHistory",
     "Extreme",
     "Rattleback",
+    "RuledSurface",
     "Steady",
     "Surface",
     "TippeTop",
+    "cone",
     "critical_rate",
+    "cylinder",
     "disk",
     "ellipsoid",
     "paraboloid",

@@ -154,6 +154,12 @@ def test_a_rolling_coin_precesses_steadily() -> None:
 # Long times
 
 
+def slope_in_errors(values: Any) -> float:
+    """Return the mean slope of a constant over its standard error: rounding adds up as a random walk."""
+    steps = np.diff(values, axis=0)
+    return float(np.max(np.abs(steps.mean(axis=0)) / (steps.std(axis=0, ddof=1) / np.sqrt(len(steps)))))
+
+
 @pytest.mark.parametrize("turns", [300, pytest.param(10_000, marks=pytest.mark.long)])
 def test_ten_thousand_rotations_of_chaplygins_ball(turns: int) -> None:
     ball = RigidBody.from_principal(1.0, (0.08, 0.1, 0.13))
@@ -165,6 +171,8 @@ def test_ten_thousand_rotations_of_chaplygins_ball(turns: int) -> None:
     assert kept.energy_drift <= 1e-12
     assert kept.jellett is None
     assert np.max(np.abs(found.contact.residual)) <= 1e-14
+    assert slope_in_errors(kept.energy) < 3
+    assert slope_in_errors(kept.chaplygin) < 3
 
 
 @pytest.mark.parametrize("turns", [300, pytest.param(10_000, marks=pytest.mark.long)])
@@ -176,6 +184,7 @@ def test_ten_thousand_rotations_of_a_disk(turns: int) -> None:
     )
     assert found.status == "complete"
     assert found.invariants().energy_drift <= 1e-12
+    assert slope_in_errors(found.invariants().energy) < 3
 
 
 def test_jellett_and_routh_of_a_loaded_ball() -> None:

@@ -62,6 +62,8 @@ class Origin:
         Whether a load acted that is not known any more, since a file does not hold it.
     derived : bool
         Whether the angular velocity was computed from the attitudes of a record.
+    plane : bool
+        Whether a plane acts on it along a line of contact.
     """
 
     motion: _core.GyrostatMotion | None = None
@@ -69,6 +71,7 @@ class Origin:
     start: float | None = None
     loaded: bool = False
     derived: bool = False
+    plane: bool = False
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -1033,7 +1036,7 @@ class Trajectory(metaclass=ClassWithHints):
 
     def _is_loaded(self) -> bool:
         """Return whether a load acted, which a motion from a file does not have."""
-        return self.load is not None or self._origin.loaded
+        return self.load is not None or self._origin.loaded or self._origin.plane
 
     def _is_driven(self) -> bool:
         """Return whether a load or a plane acted, which a file of the motion does not hold."""
@@ -1102,6 +1105,11 @@ class Trajectory(metaclass=ClassWithHints):
 
     def _acting(self, what: str, index: int = 0) -> _core.Load | None:
         """Return the load that gives this motion in a simulation; for a gyrostat from one of its times on."""
+        if self._origin.plane:
+            raise ValueError(
+                f"{what}: a plane acts on this motion along a line of contact; force(t) and pressure_at(t) "
+                "of its RollingMotion give the force"
+            )
         if self.load is None and self._is_loaded() and self.carried is None:
             raise ValueError(f"{what}: a load acted on this motion, which its file does not hold")
         if self.load is not None or self.carried is None:

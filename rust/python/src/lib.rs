@@ -140,9 +140,11 @@ mod _core {
     use crate::rods::{arc, ring, rod};
     #[pymodule_export]
     use crate::rolling::{
-        PyContact, PySurface, contact_history, contact_invariants, disk as surface_disk,
+        PyContact, PyRuledSurface, PySurface, cone as ruled_cone, contact_history,
+        contact_invariants, cylinder as ruled_cylinder, disk as surface_disk,
         ellipsoid as surface_ellipsoid, paraboloid, plane, rolling_critical_rate, rolling_modes,
-        rolling_steady, rolling_tippe_top, sphere as surface_sphere, torus as surface_torus,
+        rolling_states, rolling_steady, rolling_tippe_top, sphere as surface_sphere,
+        torus as surface_torus,
     };
     #[pymodule_export]
     use crate::rotations::{

@@ -1,24 +1,32 @@
 //! Surfaces that roll, their contact with a plane, and what the plane does along a motion.
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+use numpy::PyUntypedArrayMethods;
 use polhode::Error;
 use polhode::mass::RigidBody;
 use polhode::motion::attitude::components;
 use polhode::motion::loads::Term;
 use polhode::motion::rolling::invariants::{self, ContactInvariants};
+use polhode::motion::rolling::rolling_motion::Outside;
 use polhode::motion::rolling::steady::{Rate, Upright, critical_rate, modes, steady, tippe_top};
-use polhode::motion::rolling::{Contact, LiftOff, Surface, force};
+use polhode::motion::rolling::{
+    Contact, LiftOff, RollingMotion, RollingState, RuledSurface, Surface, force,
+};
 use polhode::motion::simulate::gravity_alone;
 use polhode::motion::state::Phase;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arrays::{Argument, Item, read, read_or, read_scalar, write, write_of};
-use crate::attitudes::read_quaternion;
+use crate::arrays::{
+    Argument, Item, floats, read, read_or, read_scalar, write, write_any_of, write_of,
+};
+use crate::attitudes::{read_attitude_exactly, read_quaternion};
 use crate::body::PyRigidBody;
-use crate::errors::{new, to_py};
+use crate::errors::{at_row, new, to_py};
+use crate::interrupt::Interrupt;
 use crate::loads::PyLoad;
+use crate::memory;
 use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
 
@@ -41,12 +49,7 @@ pub(crate) struct PySurface {
 #[pymethods]
 impl PySurface {
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let given = self.arguments.iter().map(|(name, value)| {
-            let value = value.bind(py).repr()?;
-            Ok(format!("{name}={value}"))
-        });
-        let given = given.collect::<PyResult<Vec<_>>>()?.join(", ");
-        Ok(format!("rolling.{}({given})", self.function))
+        call_of(py, self.function, &self.arguments)
     }
 
     fn __reduce__<'py>(
@@ -112,6 +115,20 @@ impl PySurface {
         let curvatures = normals.map(py, |normal| self.surface.curvatures(normal))?;
         Ok(write(py, &curvatures)?.into_any())
     }
+}
+
+/// The call of a function of `polhode.rolling` with its arguments, as it is written.
+fn call_of(
+    py: Python<'_>,
+    function: &str,
+    arguments: &[(&'static str, Py<PyAny>)],
+) -> PyResult<String> {
+    let given = arguments.iter().map(|(name, value)| {
+        let value = value.bind(py).repr()?;
+        Ok(format!("{name}={value}"))
+    });
+    let given = given.collect::<PyResult<Vec<_>>>()?.join(", ");
+    Ok(format!("rolling.{function}({given})"))
 }
 
 /// Directions as unit vectors.
@@ -375,6 +392,288 @@ pub(crate) fn paraboloid(
     )
 }
 
+/// A cylinder or a cone, fixed in a body: a surface of straight lines, which lies on a plane along one of them.
+///
+/// Made by :func:`polhode.rolling.cylinder` and :func:`polhode.rolling.cone`, for
+/// :meth:`polhode.RigidBody.rolling_motion`.
+///
+/// Examples
+/// --------
+/// >>> from polhode import rolling
+/// >>> rolling.cone(3, 4).line_of_contact((1, 0, 0))
+/// array([[ 0.,  0.,  3.],
+///        [-3.,  0., -1.]])
+#[pyclass(name = "RuledSurface", module = "polhode.rolling", frozen)]
+pub(crate) struct PyRuledSurface {
+    surface: RuledSurface,
+    /// The function that made it, and its arguments.
+    function: &'static str,
+    arguments: [(&'static str, Py<PyAny>); 4],
+}
+
+#[pymethods]
+impl PyRuledSurface {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        call_of(py, self.function, &self.arguments)
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let function = py.import("polhode.rolling")?.getattr(self.function)?;
+        let arguments = self.arguments.iter().map(|(_, value)| value.bind(py));
+        Ok((function, PyTuple::new(py, arguments)?))
+    }
+
+    /// Compute the ends of the line on which the surface lies.
+    ///
+    /// Parameters
+    /// ----------
+    /// normal : array_like, shape (..., 3)
+    ///     Normal of the plane, towards the body, components in the body frame. Its part along the axis does not
+    ///     matter.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (..., 2, 3)
+    ///     Of a cone the apex first, of a cylinder the end to which its axis points; from the origin of the body
+    ///     frame. NaN where the normal is along the axis.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import rolling
+    /// >>> rolling.cylinder(0.5, 2).line_of_contact((0, 1, 0))
+    /// array([[ 0. , -0.5,  1. ],
+    ///        [ 0. , -0.5, -1. ]])
+    fn line_of_contact<'py>(
+        &self,
+        py: Python<'py>,
+        normal: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let normals = unit_normals(py, normal)?;
+        let shape = [&normals.shape[..], &[2]].concat();
+        let ends = (normals.rows.iter()).flat_map(|normal| self.surface.line_of_contact(normal));
+        let rows = ends.collect();
+        Ok(write(py, &Stack { rows, shape })?.into_any())
+    }
+}
+
+/// Make a cylinder, which lies on a plane along a line.
+///
+/// Parameters
+/// ----------
+/// radius : float
+/// height : float
+///     Length along the axis.
+/// axis : array_like, shape (3,), optional
+///     Components in the body frame; z by default.
+/// center : array_like, shape (3,), optional
+///     Its middle, from the origin of the body frame; that origin by default.
+///
+/// Returns
+/// -------
+/// RuledSurface
+///
+/// Raises
+/// ------
+/// PolhodeError
+///     If a length is not positive, or the axis is zero.
+///
+/// Examples
+/// --------
+/// >>> from polhode import rolling
+/// >>> rolling.cylinder(0.1, 0.5)
+/// rolling.cylinder(radius=0.1, height=0.5, axis=[0.0, 0.0, 1.0], center=[0.0, 0.0, 0.0])
+#[pyfunction]
+#[pyo3(
+    name = "ruled_cylinder",
+    signature = (radius, height, axis=Argument::default(), center=Argument::default()),
+    text_signature = "(radius, height, axis=(0.0, 0.0, 1.0), center=(0.0, 0.0, 0.0))"
+)]
+pub(crate) fn cylinder(
+    py: Python<'_>,
+    #[pyo3(from_py_with = read_scalar)] radius: f64,
+    #[pyo3(from_py_with = read_scalar)] height: f64,
+    axis: Argument<'_>,
+    center: Argument<'_>,
+) -> PyResult<PyRuledSurface> {
+    ruled(
+        py,
+        "cylinder",
+        RuledSurface::cylinder,
+        [radius, height],
+        [&axis, &center],
+    )
+}
+
+/// Make a cone, which lies on a plane along a line from its apex to its rim.
+///
+/// Parameters
+/// ----------
+/// radius : float
+///     Of the base.
+/// height : float
+/// axis : array_like, shape (3,), optional
+///     From the base to the apex, components in the body frame; z by default.
+/// center : array_like, shape (3,), optional
+///     Its centroid, a quarter of the height above the base, from the origin of the body frame; that origin by
+///     default, as for :func:`polhode.solids.cone`.
+///
+/// Returns
+/// -------
+/// RuledSurface
+///
+/// Raises
+/// ------
+/// PolhodeError
+///     If a length is not positive, or the axis is zero.
+///
+/// Examples
+/// --------
+/// >>> from polhode import rolling
+/// >>> rolling.cone(0.1, 0.5)
+/// rolling.cone(radius=0.1, height=0.5, axis=[0.0, 0.0, 1.0], center=[0.0, 0.0, 0.0])
+#[pyfunction]
+#[pyo3(
+    name = "ruled_cone",
+    signature = (radius, height, axis=Argument::default(), center=Argument::default()),
+    text_signature = "(radius, height, axis=(0.0, 0.0, 1.0), center=(0.0, 0.0, 0.0))"
+)]
+pub(crate) fn cone(
+    py: Python<'_>,
+    #[pyo3(from_py_with = read_scalar)] radius: f64,
+    #[pyo3(from_py_with = read_scalar)] height: f64,
+    axis: Argument<'_>,
+    center: Argument<'_>,
+) -> PyResult<PyRuledSurface> {
+    ruled(
+        py,
+        "cone",
+        RuledSurface::cone,
+        [radius, height],
+        [&axis, &center],
+    )
+}
+
+fn ruled(
+    py: Python<'_>,
+    function: &'static str,
+    make: fn(f64, f64, Vector3<f64>, Vector3<f64>) -> Result<RuledSurface, Error>,
+    [radius, height]: [f64; 2],
+    [axis, center]: [&Argument<'_>; 2],
+) -> PyResult<PyRuledSurface> {
+    let axis = vector(axis, "axis", [0.0, 0.0, 1.0])?;
+    let center = vector(center, "center", [0.0; 3])?;
+    let surface = make(radius, height, axis, center).map_err(|error| to_py(py, &error))?;
+    Ok(PyRuledSurface {
+        surface,
+        function,
+        arguments: [
+            ("radius", number(py, radius)?),
+            ("height", number(py, height)?),
+            ("axis", list(py, &axis)?),
+            ("center", list(py, &center)?),
+        ],
+    })
+}
+
+/// The states of bodies that roll in closed form, and what the plane does: arrays by name, of the shape of the stack and then that of `t`.
+#[pyfunction]
+pub(crate) fn rolling_states<'py>(
+    body: &Bound<'py, PyRigidBody>,
+    surface: &Bound<'py, PyAny>,
+    omega: &Bound<'py, PyAny>,
+    attitude: Option<&Bound<'py, PyAny>>,
+    gravity: &Bound<'py, PyAny>,
+    turntable: f64,
+    t: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let py = body.py();
+    let outside = if let Ok(surface) = surface.cast::<PySurface>() {
+        Outside::Point(surface.get().surface)
+    } else if let Ok(surface) = surface.cast::<PyRuledSurface>() {
+        Outside::Line(surface.get().surface)
+    } else {
+        return Err(PyValueError::new_err(format!(
+            "surface: expected rolling.sphere, rolling.cylinder or rolling.cone, got {}",
+            surface.get_type()
+        )));
+    };
+    let bodies = &body.get().bodies;
+    let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
+    let gravity: Stack<Vector3<f64>> = read(gravity, "gravity")?;
+    let attitude = match attitude {
+        None => Stack::one(None),
+        given => read_attitude_exactly(given, "attitude")?.map(py, |q| Some(*q))?,
+    };
+    let grid = Broadcast::of(
+        ["body", "omega", "attitude", "gravity"],
+        [&bodies.shape, &omega.shape, &attitude.shape, &gravity.shape],
+    )?;
+    let motions = grid.try_map(py, |[b, w, q, g]| {
+        RollingMotion::new(
+            &bodies[b],
+            &outside,
+            &omega[w],
+            attitude[q],
+            gravity[g],
+            turntable,
+        )
+    })?;
+    let times = floats(t, "t")?;
+    let shape = [&motions.shape[..], times.shape()].concat();
+    let times = times.as_slice()?;
+    for (row, motion) in motions.rows.iter().enumerate() {
+        for &t in times {
+            motion
+                .reaches(t)
+                .map_err(|error| at_row(&motions.shape, row, &to_py(py, &error), py))?;
+        }
+    }
+    memory::room("t", &shape, 2 * size_of::<RollingState>())?;
+    let interrupt = Interrupt::new(None);
+    let mut rows = Vec::new();
+    let is_complete = py.detach(|| {
+        for motion in &motions.rows {
+            for part in times.chunks(STATES_AT_ONCE) {
+                rows.extend(motion.states(part));
+                if interrupt.poll(None).is_break() {
+                    return false;
+                }
+            }
+        }
+        true
+    });
+    interrupt.finish(py, is_complete)?;
+    let found = Stack { rows, shape };
+    let arrays = PyDict::new(py);
+    arrays.set_item("omega", write_of(py, &found, |at| at.omega)?)?;
+    arrays.set_item(
+        "quaternion",
+        write_of(py, &found, |at| components(&at.attitude))?,
+    )?;
+    arrays.set_item("position", write_of(py, &found, |at| at.position)?)?;
+    arrays.set_item("velocity", write_of(py, &found, |at| at.velocity)?)?;
+    arrays.set_item("force", write_of(py, &found, |at| at.force)?)?;
+    arrays.set_item("pressure", write_of(py, &found, |at| at.pressure)?)?;
+    let [from, to] = (times.iter().filter(|t| t.is_finite()))
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[from, to], t| [from.min(*t), to.max(*t)]);
+    if motions.rows.iter().all(|motion| motion.extremes(0.0, 0.0).is_some()) {
+        let of = |motion: &RollingMotion| {
+            (motion.extremes(from, to)).unwrap_or([[f64::NAN; 2]; 2])
+        };
+        let [most, least] =
+            [0, 1].map(|which| write_of(py, &motions, |motion| of(motion)[which]));
+        arrays.set_item("extremes", (most?, least?))?;
+    }
+    arrays.set_item("tips", write_any_of(py, &found, |at| at.tips)?)?;
+    Ok(arrays)
+}
+
+/// Between looks at Ctrl-C.
+const STATES_AT_ONCE: usize = 1 << 16;
+
 /// The contact of a surface with a plane. Made by :func:`polhode.rolling.plane`.
 ///
 /// Attributes
@@ -527,6 +826,12 @@ pub(crate) fn plane(
     #[pyo3(from_py_with = read_scalar)] lift: &str,
 ) -> PyResult<PyContact> {
     let surface = surface.cast::<PySurface>().map_err(|_| {
+        if surface.is_instance_of::<PyRuledSurface>() {
+            return PyValueError::new_err(
+                "surface: a cylinder or a cone touches a plane along a line, not in a point: RigidBody.rolling_motion(surface, ...) \
+                 computes its motion in closed form",
+            );
+        }
         PyValueError::new_err(format!(
             "surface: expected a surface of polhode.rolling, as rolling.sphere(radius), got {}",
             surface.get_type()
@@ -784,6 +1089,74 @@ impl Rows {
             };
             Ok(of(&self.bodies[b], &self.contact, &self.gravity[g], &phase))
         })
+    }
+}
+
+#[pymethods]
+impl PyRigidBody {
+    /// The motion of a homogeneous ball, or of a cylinder or a cone that lies on a plane, in closed form.
+    ///
+    /// The plane is z = 0. Where it leans, gravity leans instead. The body rolls without slipping, whatever
+    /// friction that takes.
+    ///
+    /// Parameters
+    /// ----------
+    /// surface : Surface or RuledSurface
+    ///     `rolling.sphere` of a body with equal moments and its centre of mass at the centre; `rolling.cylinder` of one with
+    ///     its centre of mass on the axis; `rolling.cone` of one with equal moments across the axis too.
+    /// omega : array_like, shape (..., 3)
+    ///     Angular velocity at t = 0, components in the body frame; of a cylinder or a cone along its line of
+    ///     contact.
+    /// attitude : array_like, shape (..., 4), or rotation, optional
+    ///     R_NB at t = 0: unit quaternions (x, y, z, w), or anything with ``as_quat()``. By default the identity
+    ///     of a ball; the axis of a cylinder is along x, and the line of contact of a cone goes from its apex along x.
+    /// gravity : array_like, shape (..., 3), optional
+    ///     Components in space; (0, 0, -9.81) by default. Its third component is negative.
+    /// turntable : float, optional
+    ///     Rate at which the plane turns about z; zero by default, and for a cylinder or a cone.
+    ///
+    /// Returns
+    /// -------
+    /// RollingMotion
+    ///     Bodies, angular velocities, attitudes and gravities broadcast together. A ball and a cylinder touch at
+    ///     the origin below their centre of mass at t = 0; the apex of a cone rests at the origin.
+    ///
+    /// Raises
+    /// ------
+    /// ContactError
+    ///     For a body without closed form.
+    /// PolhodeError
+    ///     If the body does not lie on the plane, ω is not along the line of contact, or gravity does not press.
+    ///
+    /// Examples
+    /// --------
+    /// A ball on a turntable goes in circles with 2/7 of its rate:
+    ///
+    /// >>> import numpy as np
+    /// >>> from polhode import rolling, solids
+    /// >>> ball = solids.sphere(0.02, mass=0.1)
+    /// >>> motion = ball.rolling_motion(rolling.sphere(0.02), (0, 5, 0), turntable=3.0)
+    /// >>> motion.at([0, 7 / 2 * 2 * np.pi / 3.0]).position.round(12) + 0.0
+    /// array([[0.  , 0.  , 0.02],
+    ///        [0.  , 0.  , 0.02]])
+    #[pyo3(signature = (surface, omega, attitude=None, gravity=None, turntable=0.0))]
+    #[pyo3(
+        text_signature = "($self, surface, omega, attitude=None, gravity=(0.0, 0.0, -9.81), turntable=0.0)"
+    )]
+    fn rolling_motion<'py>(
+        slf: &Bound<'py, Self>,
+        surface: &Bound<'py, PyAny>,
+        omega: &Bound<'py, PyAny>,
+        attitude: Option<&Bound<'py, PyAny>>,
+        gravity: Option<&Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = read_scalar)] turntable: f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        (slf.py().import("polhode.motion.rolling")?)
+            .getattr("RollingMotion")?
+            .call_method1(
+                "_of_start",
+                (slf, surface, omega, attitude, gravity, turntable),
+            )
     }
 }
 

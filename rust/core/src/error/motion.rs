@@ -284,6 +284,27 @@ pub enum MotionFault {
         /// What it needs.
         needs: &'static str,
     },
+    /// A body whose rolling has no closed form here.
+    #[error(
+        "no closed form: {law}, got {value:?}; the simulation of a contact serves other bodies"
+    )]
+    RollsInNoClosedForm {
+        /// What must be so, and what the number is.
+        law: &'static str,
+        /// The number.
+        value: f64,
+    },
+    /// A time at which nothing is known of how far a body that rolls has turned.
+    #[error(
+        "t = {t:?} is beyond the reach of this motion, |t| <= {reach:.3e}: the attitude of a ball on a slope is summed for 1e5 radians, \
+         and after 1e15 radians no digit of an angle is left; ask for times within, or go on from a state at a later time"
+    )]
+    RollingBeyondReach {
+        /// The time.
+        t: f64,
+        /// The largest.
+        reach: f64,
+    },
     /// The step of an integration fell below what the clock can tell apart.
     #[error(
         "the integration cannot go on at t = {time:?}: its step would have to be {step:.2e}, too small to advance the \
@@ -360,6 +381,7 @@ impl MotionFault {
             | Self::WheelsTooHeavy { .. } => Kind::Inertia,
             Self::NoContact { .. }
             | Self::NoPointOfContact { .. }
+            | Self::RollsInNoClosedForm { .. }
             | Self::ContactCannotServe { .. } => Kind::Contact,
             Self::GimbalLock { .. } | Self::SingularEulerRates { .. } => Kind::SingularAttitude,
             Self::StepTooSmall { .. }
@@ -383,6 +405,7 @@ impl MotionFault {
             | Self::OutsideTimes { .. }
             | Self::StatesStay { .. }
             | Self::OrbitBeyondReach { .. }
+            | Self::RollingBeyondReach { .. }
             | Self::BeyondReach { .. } => Kind::Argument,
         }
     }

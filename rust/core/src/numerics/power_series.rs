@@ -245,15 +245,16 @@ pub(crate) const COUNT: usize = 27;
 #[derive(Clone, Debug)]
 pub(crate) struct PowerSeries {
     operations: Vec<Operation>,
-    /// The node of the rate of each variable.
+    /// The node of the rate of each variable, and those that are asked for besides.
     rates: Vec<usize>,
+    outputs: Vec<usize>,
     nodes: Vec<[f64; COUNT]>,
     variables: Vec<[f64; COUNT]>,
 }
 
 impl PowerSeries {
-    /// Make the series of the variables that `rates`, nodes of `recorder`, are the rates of.
-    pub(crate) fn new(recorder: &Recorder, rates: &[Node<'_>]) -> Self {
+    /// Make the series of the variables that `rates`, nodes of `recorder`, are the rates of; and of other nodes, `outputs`.
+    pub(crate) fn new(recorder: &Recorder, rates: &[Node<'_>], outputs: &[Node<'_>]) -> Self {
         let operations = recorder.operations.borrow().clone();
         let mut nodes = vec![[0.0; COUNT]; operations.len()];
         for (node, operation) in nodes.iter_mut().zip(&operations) {
@@ -264,6 +265,7 @@ impl PowerSeries {
         Self {
             operations,
             rates: rates.iter().map(|node| node.index).collect(),
+            outputs: outputs.iter().map(|node| node.index).collect(),
             nodes,
             variables: vec![[0.0; COUNT]; rates.len()],
         }
@@ -274,48 +276,84 @@ impl PowerSeries {
         for (variable, value) in self.variables.iter_mut().zip(values) {
             variable[0] = *value;
         }
-        for k in 0..order {
-            for index in 0..self.operations.len() {
-                self.compute(index, k);
-            }
-            for (variable, rate) in self.variables.iter_mut().zip(&self.rates) {
-                variable[k + 1] = self.nodes[*rate][k] / (k + 1) as f64;
-            }
+        for sweep in &SWEEPS[..order] {
+            sweep(self);
         }
     }
 
-    #[inline]
-    fn compute(&mut self, index: usize, k: usize) {
-        let (nodes, rest) = self.nodes.split_at_mut(index);
-        let Some(node) = rest.first_mut() else {
-            return;
-        };
-        node[k] = match self.operations[index] {
-            Operation::Constant(_) => return,
-            Operation::Variable(number) => self.variables[number][k],
-            Operation::Sum(a, b) => nodes[a][k] + nodes[b][k],
-            Operation::Difference(a, b) => nodes[a][k] - nodes[b][k],
-            Operation::Product(a, b) => product(&nodes[a][..=k], &nodes[b][..=k]),
-            Operation::Quotient(a, b) => {
-                let known = product(&node[..k], &nodes[b][1..=k]);
-                (nodes[a][k] - known) / nodes[b][0]
-            }
-            Operation::Root(a) if k == 0 => nodes[a][0].sqrt(),
-            Operation::Root(a) => {
-                let known = product(&node[1..k], &node[1..k]);
-                (nodes[a][k] - known) / (2.0 * node[0])
-            }
-            Operation::Multiple(a, number) => nodes[a][k] * number,
-            Operation::Shift(a, number) if k == 0 => nodes[a][0] + number,
-            Operation::Shift(a, _) => nodes[a][k],
-        };
+    /// Compute the coefficients of order K of all nodes, and the next ones of the variables: each order is code of its own, in which
+    /// the sums have a known length.
+    fn sweep<const K: usize>(&mut self) {
+        for (index, operation) in self.operations.iter().enumerate() {
+            let (nodes, rest) = self.nodes.split_at_mut(index);
+            let Some(node) = rest.first_mut() else {
+                return;
+            };
+            node[K] = match *operation {
+                Operation::Constant(_) => continue,
+                Operation::Variable(number) => self.variables[number][K],
+                Operation::Sum(a, b) => nodes[a][K] + nodes[b][K],
+                Operation::Difference(a, b) => nodes[a][K] - nodes[b][K],
+                Operation::Product(a, b) => product(&nodes[a][..=K], &nodes[b][..=K]),
+                Operation::Quotient(a, b) => {
+                    let known = product(&node[..K], &nodes[b][1..=K]);
+                    (nodes[a][K] - known) / nodes[b][0]
+                }
+                Operation::Root(a) if K == 0 => nodes[a][0].sqrt(),
+                Operation::Root(a) => {
+                    let known = product(&node[1..K], &node[1..K]);
+                    (nodes[a][K] - known) / (2.0 * node[0])
+                }
+                Operation::Multiple(a, number) => nodes[a][K] * number,
+                Operation::Shift(a, number) if K == 0 => nodes[a][0] + number,
+                Operation::Shift(a, _) => nodes[a][K],
+            };
+        }
+        for (variable, rate) in self.variables.iter_mut().zip(&self.rates) {
+            variable[K + 1] = self.nodes[*rate][K] / (K + 1) as f64;
+        }
     }
 
     /// Return the coefficients of each variable.
     pub(crate) fn coefficients(&self) -> &[[f64; COUNT]] {
         &self.variables
     }
+
+    /// Return the coefficients of an output; it has one less than the variables.
+    pub(crate) fn output(&self, number: usize) -> &[f64; COUNT] {
+        &self.nodes[self.outputs[number]]
+    }
 }
+
+/// The sweep of each order.
+const SWEEPS: [fn(&mut PowerSeries); COUNT - 1] = [
+    PowerSeries::sweep::<0>,
+    PowerSeries::sweep::<1>,
+    PowerSeries::sweep::<2>,
+    PowerSeries::sweep::<3>,
+    PowerSeries::sweep::<4>,
+    PowerSeries::sweep::<5>,
+    PowerSeries::sweep::<6>,
+    PowerSeries::sweep::<7>,
+    PowerSeries::sweep::<8>,
+    PowerSeries::sweep::<9>,
+    PowerSeries::sweep::<10>,
+    PowerSeries::sweep::<11>,
+    PowerSeries::sweep::<12>,
+    PowerSeries::sweep::<13>,
+    PowerSeries::sweep::<14>,
+    PowerSeries::sweep::<15>,
+    PowerSeries::sweep::<16>,
+    PowerSeries::sweep::<17>,
+    PowerSeries::sweep::<18>,
+    PowerSeries::sweep::<19>,
+    PowerSeries::sweep::<20>,
+    PowerSeries::sweep::<21>,
+    PowerSeries::sweep::<22>,
+    PowerSeries::sweep::<23>,
+    PowerSeries::sweep::<24>,
+    PowerSeries::sweep::<25>,
+];
 
 /// Compute the coefficient `Σ_j a_j b_{n−j}` of a product from as many coefficients of both.
 #[inline(always)]
@@ -345,7 +383,7 @@ mod tests {
     fn series(start: f64, rate: impl Fn(Node<'_>) -> Node<'_>) -> [f64; COUNT] {
         let recorder = Recorder::default();
         let rate = rate(recorder.variable(0));
-        let mut series = PowerSeries::new(&recorder, &[rate]);
+        let mut series = PowerSeries::new(&recorder, &[rate], &[rate]);
         series.expand(&[start], COUNT - 1);
         series.coefficients()[0]
     }

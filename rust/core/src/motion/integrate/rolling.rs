@@ -15,7 +15,10 @@ use crate::motion::rolling::equations::{ContactState, Equations, VARIABLES, norm
 use crate::motion::state::Phase;
 use crate::numerics::double_double::two_sum;
 use crate::numerics::power_of_two::power_below;
-use crate::numerics::power_series::{COUNT, PowerSeries, Recorder};
+use crate::numerics::power_series::{COUNT, PowerSeries, Recorder, dot};
+
+/// A sum of a series that is so far from zero, relative to its first term, has its sign, whatever was left out.
+const SURE: f64 = 1e-3;
 
 /// A motion of rolling under way, and its last step as polynomials in time.
 pub(crate) struct RollingSeries {
@@ -77,10 +80,12 @@ impl RollingSeries {
         }
         let recorder = Recorder::default();
         let variables = std::array::from_fn(|number| recorder.variable(number));
-        let rates = equations.motion(&ContactState::of(&variables)).rates;
+        let motion = equations.motion(&ContactState::of(&variables));
+        let normal = ContactState::of(&variables).normal;
+        let force = [motion.level[0], motion.level[1], normal].map(|axis| dot(motion.lift, axis));
         Self {
             contact: *contact,
-            series: PowerSeries::new(&recorder, &rates.variables()),
+            series: PowerSeries::new(&recorder, &motion.rates.variables(), &force),
             equations,
             length,
             rate,
@@ -233,6 +238,42 @@ impl RollingSeries {
         let [x, y, z, w, ..] = value;
         value[7..10].copy_from_slice(&normal_of([x, y, z, w]));
         self.to_phase(&value)
+    }
+
+    /// Compute the force of the plane over the mass at a time within the last step, from its series: two components in the plane and
+    /// the one along the normal.
+    pub(crate) fn force_over_mass(&self, elapsed: f64) -> [f64; 3] {
+        let part = (elapsed * self.rate - self.from.0) - self.from.1;
+        let unit = self.length * self.rate * self.rate;
+        [0, 1, 2].map(|number| {
+            let terms = &self.series.output(number)[..self.order];
+            terms.iter().rfold(0.0, |sum, term| sum * part + term) * unit
+        })
+    }
+
+    /// Return whether the normal force stays positive up to a time within the last step, for certain.
+    pub(crate) fn is_pressed_until(&self, elapsed: f64) -> bool {
+        let part = ((elapsed * self.rate - self.from.0) - self.from.1).abs();
+        let terms = &self.series.output(2)[..self.order];
+        let change = terms[1..]
+            .iter()
+            .rfold(0.0, |sum, term| (sum + term.abs()) * part);
+        terms[0] > 1.01 * change + SURE * terms[0].abs()
+    }
+
+    /// Return by how much the normal changes in body axes up to a time within the last step, at most.
+    pub(crate) fn most_change_of_normal(&self, elapsed: f64) -> f64 {
+        let part = ((elapsed * self.rate - self.from.0) - self.from.1).abs();
+        let changes = self.series.coefficients()[7..10].iter().map(|terms| {
+            let terms = terms[1..=self.order].iter();
+            terms.rfold(0.0, |sum, term| (sum + term.abs()) * part)
+        });
+        changes.sum::<f64>() * 1.01
+    }
+
+    /// Return the normal in body axes at the start of the last step.
+    pub(crate) fn normal_before(&self) -> Vector3<f64> {
+        ContactState::of(&self.before[0]).normal.into()
     }
 
     fn to_phase(&self, value: &[f64; VARIABLES]) -> Phase {

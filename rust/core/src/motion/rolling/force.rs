@@ -55,7 +55,21 @@ pub fn instant(
     gravity: &Vector3<f64>,
     phase: &Phase,
 ) -> Instant {
-    let equations = Equations::new(body, contact, gravity);
+    instant_of(
+        &Equations::new(body, contact, gravity),
+        body,
+        contact,
+        phase,
+    )
+}
+
+/// Compute the same with the equations of the body and its contact, which are made once for many states.
+pub(crate) fn instant_of(
+    equations: &Equations,
+    body: &RigidBody,
+    contact: &Contact,
+    phase: &Phase,
+) -> Instant {
     let state = equations.state(contact, phase);
     let motion = equations.motion(&state);
     let lift = Vector3::from(motion.lift) * equations.mass();

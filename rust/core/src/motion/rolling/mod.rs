@@ -11,6 +11,8 @@
 //! | Newton's and Euler's equations with the constraint of rolling solved | `equations` |
 //! | force, friction needed, power | [`force`] |
 //! | what stays constant | [`invariants`] |
+//! | motions in closed form: a ball, a cylinder or a cone | [`mod@rolling_motion`]: `ball`, `lying` |
+//! | cylinder and cone, which touch along a line | [`ruled`] |
 //! | steady motions, critical rates, rattleback, tippe top | [`mod@steady`] |
 //!
 //! # Examples
@@ -35,17 +37,23 @@
 //!
 //! Source: Routh, Advanced Rigid Dynamics (1884), §§ 244–255; Borisov & Mamaev, Regular and Chaotic Dynamics 7 (2002) 177.
 
+mod ball;
 pub mod contact;
 mod disk;
 mod ellipsoid;
 pub(crate) mod equations;
 pub mod force;
 pub mod invariants;
+mod lying;
 mod paraboloid;
+pub mod rolling_motion;
+pub mod ruled;
 mod sphere;
 pub mod steady;
 pub mod surface;
 mod torus;
 
 pub use contact::{Contact, LiftOff};
+pub use rolling_motion::{RollingMotion, RollingState};
+pub use ruled::RuledSurface;
 pub use surface::Surface;

@@ -233,6 +233,15 @@ impl Surface {
         }
     }
 
+    /// Return by how much the margin changes with the normal, at most; zero where it is constant.
+    pub(crate) fn margin_slope(&self) -> f64 {
+        match self.shape {
+            Shape::Sphere { .. } | Shape::Ellipsoid { .. } => 0.0,
+            Shape::Disk { .. } | Shape::Torus { .. } => 1.0,
+            Shape::Paraboloid { radii, apex } => 1.0 + (0.5 * radii[0].max(radii[1]) / apex).sqrt(),
+        }
+    }
+
     /// Return what is wrong where the margin is not positive.
     pub(crate) fn beyond_margin(&self) -> &'static str {
         match self.shape {

@@ -169,6 +169,12 @@ impl<'a, E: From<Error>> EventDetector<'a, E> {
             if matches!(trigger, EventTrigger::Stop(_) | EventTrigger::Slip(_)) {
                 continue; // told by the load
             }
+            if self.signs[event] > 0.0
+                && let Some(value) = stepper.stays_positive(event, from, to)
+            {
+                self.values[event] = value;
+                continue;
+            }
             let turn = stepper.turn(to - from);
             let mut search = RootSearch {
                 function: &mut |stepper, at, phase| match trigger {

@@ -13,21 +13,22 @@ use crate::motion::problem::limits::check_steps;
 use crate::motion::problem::{
     ContactExtremes, Crossing, Direction, End, EventTrigger, Rule, Run, Task,
 };
-use crate::motion::rolling::force::{Instant, instant};
+use crate::motion::rolling::equations::Equations;
+use crate::motion::rolling::force::{Instant, instant_of};
 use crate::motion::rolling::{Contact, LiftOff};
 use crate::motion::state::Phase;
 
 /// A body on a plane under uniform gravity.
-#[derive(Clone, Copy)]
 struct Rolling<'a> {
     task: &'a Task<'a>,
     contact: &'a Contact,
     gravity: Vector3<f64>,
+    equations: Equations,
 }
 
 impl Rolling<'_> {
     fn instant(&self, phase: &Phase) -> Instant {
-        instant(self.task.body, self.contact, &self.gravity, phase)
+        instant_of(&self.equations, self.task.body, self.contact, phase)
     }
 
     fn margin(&self, phase: &Phase) -> f64 {
@@ -48,6 +49,7 @@ pub(super) fn solve<E: From<Error>>(
         task,
         contact,
         gravity: *gravity,
+        equations: Equations::new(task.body, contact, gravity),
     };
     let mut run = Run::at_start(task, End::Complete);
     let mut extremes = Extremes::of(&rolling, task.times[0], &task.initial);
@@ -82,6 +84,8 @@ impl Rolling<'_> {
         let mut detector =
             EventDetector::new(&mut watched, start, &self.task.initial, span, &|_| -1.0)?;
         let mut dense = RollingStep {
+            rolling: self,
+            count,
             series: RollingSeries::new(
                 self.task.body,
                 self.contact,
@@ -217,12 +221,15 @@ impl<E> Events for WithContact<'_, E> {
 }
 
 /// A step as events see it.
-struct RollingStep<E> {
+struct RollingStep<'a, E> {
+    rolling: &'a Rolling<'a>,
+    /// Of the functions before the normal force.
+    count: usize,
     series: RollingSeries,
     error: PhantomData<E>,
 }
 
-impl<E> Dense for RollingStep<E> {
+impl<E> Dense for RollingStep<'_, E> {
     type Error = E;
 
     fn elapsed(&self) -> f64 {
@@ -240,12 +247,37 @@ impl<E> Dense for RollingStep<E> {
             self.series.at(elapsed)
         })
     }
+
+    fn stays_positive(&mut self, event: usize, _: f64, to: f64) -> Option<f64> {
+        let number = event.checked_sub(self.count)?;
+        let surface = &self.rolling.contact.surface;
+        let is_sure = match number {
+            0 => self.series.is_pressed_until(to),
+            _ => match surface.margin_slope() {
+                0.0 => return Some(surface.margin(&self.series.normal_before())),
+                slope => {
+                    let change = slope * self.series.most_change_of_normal(to);
+                    surface.margin(&self.series.normal_before()) > change
+                }
+            },
+        };
+        if !is_sure {
+            return None;
+        }
+        let phase = self.within(to).ok()?;
+        Some(match number {
+            0 => self.rolling.instant(&phase).normal_force,
+            _ => self.rolling.margin(&phase),
+        })
+    }
 }
 
 /// The parts into which a step is cut to look for extremes.
 const PARTS: usize = 8;
 /// A place that is below the extreme so far by more than that, relative to the range in the step, is not looked at closer.
 const NEAR: f64 = 0.3;
+/// An extreme of the series that is no larger than the extreme so far by that, relative to it, is none of the state either.
+const CLOSE: f64 = 1e-3;
 /// How often a bracket is made smaller: by the golden section 1e-8 of a part is left, where an extreme is flat to rounding.
 const SECTIONS: usize = 40;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
@@ -282,8 +314,20 @@ impl Extremes {
             let found = rolling.instant(&series.at(at));
             [friction(found.friction_needed), -found.normal_force]
         };
+        // The series of the force tells where to look, and the state what is there.
+        let mass = rolling.task.body.mass();
+        let near = |at: f64| {
+            let [x, y, normal] = series.force_over_mass(at);
+            let tangential = x.hypot(y);
+            let needed = if tangential == 0.0 {
+                0.0
+            } else {
+                tangential / normal
+            };
+            [friction(needed), -normal * mass]
+        };
         let place = |part: usize| from + (to - from) * (part as f64 / PARTS as f64);
-        let nodes: [[f64; 2]; PARTS + 1] = std::array::from_fn(|part| values(place(part)));
+        let nodes: [[f64; 2]; PARTS + 1] = std::array::from_fn(|part| near(place(part)));
         let best = [
             self.found.friction_needed,
             self.found.normal_force.map(|x| x),
@@ -300,9 +344,13 @@ impl Extremes {
                 if !is_peak || value(part) < best[which][0] - NEAR * (high - low) {
                     continue;
                 }
-                let function = |at: f64| values(at)[which];
+                let function = |at: f64| near(at)[which];
                 let (at, peak) = largest(&function, place(before), place(after));
                 for (at, peak) in [(at, peak), (place(part), value(part))] {
+                    if peak <= best[which][0] - CLOSE * peak.abs() {
+                        continue;
+                    }
+                    let peak = values(at)[which];
                     if peak > best[which][0] {
                         best[which] = [peak, start + at];
                     }

@@ -38,6 +38,13 @@ pub(super) trait Dense {
         -1.0
     }
 
+    /// The value of an event's function at the end of a part of the step, where the function is positive in all of it for certain, so
+    /// that no passage has to be looked for; from `from` to `to` since the start of the span.
+    fn stays_positive(&mut self, event: usize, from: f64, to: f64) -> Option<f64> {
+        let _ = (event, from, to);
+        None
+    }
+
     /// How far the body turns in the step, which was as long as `length`: about, in radians.
     fn turn(&self, length: f64) -> f64 {
         self.phase().omega.norm() * length.abs()
