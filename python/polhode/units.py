@@ -289,7 +289,7 @@ def split(texts: Sequence[str], count: int | None, unit: str, option: str) -> li
     if count is not None and len(parts) != count:
         raise PolhodeError(
             f"{option}: expected {count} numbers, got {len(parts)} in {text!r}; for example "
-            f"{', '.join([_example(unit).strip(chr(34))] * count)!r}"
+            f"{', '.join(['1' if unit == '1' else _example(unit).strip(chr(34))] * count)!r}"
         )
     return parts
 

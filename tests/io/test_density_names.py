@@ -249,7 +249,9 @@ def test_solids_of_iges(tmp_path: Path) -> None:
     ):
         mass = sum(rho * volume for rho, volume in zip(densities, volumes, strict=True))
         assert float(RigidBody.from_file(path, density=given).mass) == pytest.approx(mass, rel=1e-8)
-    with pytest.raises(PolhodeError, match=r"no component 'lid'; give one density for each of block, .*can#2"):
+    with pytest.raises(
+        PolhodeError, match=r"no component 'lid'; give one density for each of block, .*can#2"
+    ):
         RigidBody.from_file(path, density={"lid": 3.0})
 
 
