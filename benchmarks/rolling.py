@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 MASS, GRAVITY, SEMI_AXES = 1.0, np.array([0.0, 0.0, -9.81]), np.array([0.2, 0.03, 0.02])
 LEAN, MOMENTS, END = 0.4, (2e-4, 1.6e-3, 1.7e-3), 1.0
-"""A rattleback: its principal axes lean by 0.4 rad against those of its surface. Tapped, it turns to and fro."""
+"""A rattleback, whose principal axes lean by 0.4 rad against those of its surface; tapped, it reverses."""
 TURN = np.array([[np.cos(LEAN), -np.sin(LEAN), 0], [np.sin(LEAN), np.cos(LEAN), 0], [0, 0, 1]])
 _UPPER = TURN @ np.diag(MOMENTS) @ TURN.T
 INERTIA, CENTER = (_UPPER + _UPPER.T) / 2, np.array([0.0, 0.0, -0.002])

@@ -292,7 +292,7 @@ def test_in_a_stack_some_wheels_may_have_none(friction: list[float]) -> None:
 def test_the_stop_is_told(method: Method) -> None:
     """At Ω₀ over the friction times 1/J + 1/(I − J), with h = J ω of the locked body."""
     wheel = loads.wheel(ALONG, J, rate=10.0, dry_friction=0.25)
-    events = [Event.stop(), Event.slip()]
+    events = [Event.stop(), Event.breakaway()]
     run = PLAIN.simulate([0.0, 40.0], (0, 0, 0), load=wheel, events=events, method=method, rtol=1e-12)
     assert run.events.event.tolist() == [0]
     assert run.events.t[0] == pytest.approx(10.0 / (0.25 * BETWEEN), rel=1e-13)
@@ -312,7 +312,7 @@ def test_a_run_may_end_at_a_stop_or_a_slip() -> None:
     assert ended.status == "event"
     assert np.isfinite(ended.omega[:2]).all()
     assert np.isnan(ended.omega[2:]).all()
-    both = [Event.stop("w"), Event.slip("w", terminal=1)]
+    both = [Event.stop("w"), Event.breakaway("w", terminal=1)]
     ended = PLAIN.simulate(t, (0, 0, 0), load=wheel, events=both, rtol=1e-12)
     np.testing.assert_allclose(ended.events.t, [stop, 12.0], rtol=1e-12)
     assert ended.events.event.tolist() == [0, 1]
@@ -320,7 +320,9 @@ def test_a_run_may_end_at_a_stop_or_a_slip() -> None:
     assert np.isfinite(ended.omega[2]).all()
     # A motor that is stronger turns it on at once.
     through = loads.wheel(ALONG, J, rate=2.0, torque=-0.5, dry_friction=0.25)
-    run = PLAIN.simulate([0.0, 9.0], (0, 0, 0), load=through, events=[Event.stop(), Event.slip()], rtol=1e-12)
+    run = PLAIN.simulate(
+        [0.0, 9.0], (0, 0, 0), load=through, events=[Event.stop(), Event.breakaway()], rtol=1e-12
+    )
     np.testing.assert_allclose(run.events.t, [2.0 / (0.75 * BETWEEN)] * 2, rtol=1e-12)
     assert run.events.event.tolist() == [0, 1]
 
@@ -330,7 +332,7 @@ def test_stops_and_slips_are_those_of_the_model(seed: int) -> None:
     """All of them, of several wheels, against SciPy from one to the next."""
     run, _, changes = random_case(seed)
     wheels = [name for name in run.states if name.startswith("wheel")]
-    events = [make(name) for name in wheels for make in (Event.stop, Event.slip)]
+    events = [make(name) for name in wheels for make in (Event.stop, Event.breakaway)]
     again = run.body.simulate(
         run.t, run.omega[0], run.quaternion[0], load=run.load, events=events, method="dop853", rtol=1e-12
     )
@@ -376,9 +378,10 @@ def test_events_of_wheels_that_cannot_be() -> None:
         run(Event.stop())
     with pytest.raises(ValueError, match=r"Event\.limit asks for a wheel with a motor with a limit"):
         run(Event.limit())
-    with pytest.raises(ValueError, match=r'Event\.slip asks for the wheel "w"; the load carries "wheel"'):
-        run(Event.slip("w"))
+    words = r'Event\.breakaway asks for the wheel "w"; the load carries "wheel"'
+    with pytest.raises(ValueError, match=words):
+        run(Event.breakaway("w"))
     with pytest.raises(ValueError, match="the load carries nothing"):
-        run(Event.slip("w"), loads.constant_torque((0, 0, 1)))
+        run(Event.breakaway("w"), loads.constant_torque((0, 0, 1)))
     with pytest.raises(TypeError, match="found by simulate"):
         Event.stop()(0.0, np.zeros(3), np.zeros(4), np.zeros(3), np.zeros(3))

@@ -61,7 +61,7 @@ class Event:
 
         The integration itself needs these times, and finds them to the last digits. The state of the event
         has the wheel at rest. If the motor is stronger than the friction, the wheel goes on at once; there is
-        then a :meth:`slip` at the same time.
+        then a :meth:`breakaway` at the same time.
 
         Parameters
         ----------
@@ -82,9 +82,9 @@ class Event:
         return cls._of_kind("stop", wheel, 0.0, terminal)
 
     @classmethod
-    def slip(cls, wheel: str = "wheel", *, terminal: bool | int = False) -> Event:
+    def breakaway(cls, wheel: str = "wheel", *, terminal: bool | int = False) -> Event:
         """Make the event that a wheel at rest in its bearing begins to turn; arguments as :meth:`stop`."""
-        return cls._of_kind("slip", wheel, 0.0, terminal)
+        return cls._of_kind("breakaway", wheel, 0.0, terminal)
 
     @classmethod
     def limit(cls, wheel: str = "wheel", *, direction: float = 0.0, terminal: bool | int = False) -> Event:

@@ -151,7 +151,7 @@ fn read_event(
     };
     let (trigger, has, lack): (_, fn(&dyn CarriedMomentum) -> bool, _) = match kind.as_str() {
         "stop" => (EventTrigger::Stop(slot.first), has_bearing, "dry friction"),
-        "slip" => (EventTrigger::Slip(slot.first), has_bearing, "dry friction"),
+        "breakaway" => (EventTrigger::Slip(slot.first), has_bearing, "dry friction"),
         _ => (
             EventTrigger::Limit(slot.first),
             |carried| carried.has_limit(),
