@@ -335,7 +335,9 @@ def receivers() -> dict[str, tuple[Any, ...]]:
         "Load": (loads.constant_torque((0.5, 0.0, 0.25)), load_of_all()),
         "MassAccumulator": (accumulator,),
         "PrincipalAxes": (TUMBLER.principal, STACK.principal),
-        "RollingMotion": (solids.sphere(0.5, mass=2.0).rolling_motion(rolling.sphere(0.5), OMEGA, gravity=(1.0, 0.0, -8.0)),),
+        "RollingMotion": (
+            solids.sphere(0.5, mass=2.0).rolling_motion(rolling.sphere(0.5), OMEGA, gravity=(1.0, 0.0, -8.0)),
+        ),
         "RuledSurface": (rolling.cylinder(0.5, 2.0), rolling.cone(0.5, 2.0)),
         "Surface": (rolling.sphere(0.5), rolling.paraboloid((1.0, 0.5), 0.5)),
         "Trajectory": (motion, TUMBLER.free_motion(OMEGA).at([0.0, 0.5])),
