@@ -299,7 +299,7 @@ def test_what_a_line_of_contact_does_not_tell() -> None:
     ],
 )
 def test_motions_without_closed_form_are_refused(error: Any, words: str, given: dict[str, Any]) -> None:
-    arguments = {"surface": SPHERE, "omega": OMEGA} | given
+    arguments: dict[str, Any] = {"surface": SPHERE, "omega": OMEGA} | given
     body = arguments.pop("body", BALL)
     with pytest.raises(error, match=words):
         body.rolling_motion(**arguments)
@@ -312,8 +312,8 @@ def test_ruled_surfaces() -> None:
     lines = rolling.cone(0.5, 2).line_of_contact(np.ones((4, 5, 3)))
     assert lines.shape == (4, 5, 2, 3)
     assert np.isnan(rolling.cone(0.5, 2).line_of_contact((0, 0, 1))).any()
-    surface: Any = rolling.cone(0.5, 2)
+    cone: Any = rolling.cone(0.5, 2)
     with pytest.raises(ValueError, match="touches a plane along a line"):
-        rolling.plane(surface)
+        rolling.plane(cone)
     with pytest.raises(PolhodeError, match="height must be a positive length"):
         rolling.cylinder(1.0, -1.0)
