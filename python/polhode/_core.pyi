@@ -48,6 +48,7 @@ __all__ = [
     "angular_velocity_from_euler_rates",
     "annulus",
     "arc",
+    "attitudes",
     "box",
     "callback",
     "canonical_axes",
@@ -79,6 +80,7 @@ __all__ = [
     "gravity_gradient",
     "hemisphere",
     "hollow_sphere",
+    "impulses",
     "inertia_from_center_of_mass",
     "inertia_to_center_of_mass",
     "kepler_period",
@@ -102,6 +104,7 @@ __all__ = [
     "quaternion_from_euler_angles",
     "quaternion_from_matrix",
     "random_numbers",
+    "rates",
     "ray_kappa",
     "read_plates",
     "read_stl",
@@ -152,6 +155,7 @@ __all__ = [
     "uniform_gravity",
     "wedge",
     "wheel",
+    "white_noise",
     "with_states",
     "within_box",
 ]
@@ -1154,6 +1158,14 @@ def steady_precession(
 ) -> _Floats: ...
 def quaternion_from_matrix(matrix: ArrayLike) -> _Floats: ...
 def rotate(quaternion: ArrayLike, vector: ArrayLike, inverse: bool = False) -> _Floats: ...
+def rates(
+    t: ArrayLike, rows: ArrayLike, order: int | None = None, sigma: float | None = None
+) -> tuple[_Floats, _Floats]: ...
+def white_noise(t: ArrayLike, rows: ArrayLike) -> float: ...
+def attitudes(
+    t: ArrayLike, omega: ArrayLike, attitude: _Attitude, frame: Literal["body", "space"], order: int
+) -> tuple[_Floats, _Floats]: ...
+def impulses(t: ArrayLike, quaternion: ArrayLike, torques: Sequence[ArrayLike]) -> list[_Floats]: ...
 def principal_gaps(moments: ArrayLike) -> _Floats: ...
 def classify_tops(moments: ArrayLike, rtol: ArrayLike) -> Any: ...
 def real_numbers(values: ArrayLike, name: str) -> _Floats: ...

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from command_line import one_line, run
-from polhode import RigidBody, samples, solids
+from polhode import RigidBody, loads, samples, solids
 
 T = np.arange(401) / 20.0
 MOTION: Any = RigidBody.from_principal(1.0, (2.0, 3.0, 4.0)).free_motion((0.1, 1.5, 0.05)).at(T)
@@ -89,6 +89,26 @@ def test_bodies(tmp_path: Path) -> None:
     assert any("no mistake that is known" in note for note in found["notes"])
 
 
+def test_declared_loads(tmp_path: Path) -> None:
+    """The weight of a top, and a wheel: each explains the record, and without it nothing agrees."""
+    top = RigidBody(2.0, np.diag([0.5, 0.5, 0.2]), center_of_mass=(0.0, 0.0, 0.3))
+    moments = ("--moments", "0.5 0.5 0.2")
+    start = ((0.1, 0.0, 30.0), (0.2, 0.0, 0.0, 0.96**0.5))
+    weight = loads.uniform_gravity((0.0, 0.0, -9.81))
+    wheel = loads.rotor((0.0, 0.6, 0.0))
+    cases: Any = (
+        (weight, "origin", ("--gravity", "9.81", "--mass", "2", "--center-of-mass", "0 0 0.3")),
+        (wheel, "center_of_mass", ("--wheel", "y, 0.6")),
+    )
+    for load, about, options in cases:
+        run = top.simulate(T / 10.0, *start, load=load, about=about)
+        run_csv = table(tmp_path / "run.csv", "t,qx,qy,qz,qw,wx,wy,wz", run.t, run.quaternion, run.omega)
+        code, found = told(run_csv, *moments, *options)
+        assert (code, found.get("findings", [])) == (0, [])
+        assert found["angle_from_exact"] < 1e-6
+        assert told(run_csv, *moments)[0] == 1
+
+
 def test_pictures_gaps_and_two_records(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     code, found = told(samples.path("tumble.csv"), *BODY, "--save", tmp_path / "drifts.png")
@@ -121,6 +141,8 @@ def test_pictures_gaps_and_two_records(tmp_path: Path) -> None:
         ("1,2,3\n", (), "3 columns without names"),
         ("t,qx,qy,qz,qw\n0,0,0,0,1\n0,0,0,0,1\n", (), "row 1 is 0.0 after 0.0, and times must ascend"),
         ("t,qx,qy,qz,qw\n0,0,0,0,2\n", (), "row 0 is no rotation"),
+        ("t,qx,qy,qz,qw\n0,0,0,0,1\n", ("--gravity", "9.81"), "--gravity: the weight acts at the centre"),
+        ("t,qx,qy,qz,qw\n0,0,0,0,1\n", ("--wheel", "y"), "--wheel: 'y' is not an axis"),
         ("t,qx,qy,qz,qw\n0,0,0,0,1\n", ("--ratio", "2"), "--ratio: it compares the steps of two records"),
         (
             "t,qx,qy,qz,qw\n0,0,0,0,1\n",

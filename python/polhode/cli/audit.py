@@ -6,17 +6,18 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from polhode import RigidBody, Trajectory
+from polhode import RigidBody, Trajectory, loads
 from polhode._optional import require
 from polhode.cli.files import as_file, check_suffixes, label
 from polhode.cli.layout import Column, Field, Report, Table
 from polhode.cli.loading import LoadedBody
-from polhode.cli.whole import any_body, check_moments_alone
+from polhode.cli.spin import momentum_inside
+from polhode.cli.whole import any_body, check_moments_alone, check_weight, mass_and_center
 from polhode.errors import PolhodeError
 from polhode.io.motion_tables import read_motion_table
 from polhode.io.writing import save_picture
 from polhode.motion.auditing import Audit, audit
-from polhode.units import amounts
+from polhode.units import amounts, quantity
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -41,8 +42,9 @@ def audit_report(file: Path, options: AuditOptions, body: BodyOptions) -> tuple[
     if options.ratio is not None and options.finer is None:
         raise PolhodeError("--ratio: it compares the steps of two records; give the second one with --finer")
     loaded = _body(options, body)
-    record, columns = _record(file, loaded.body, options)
-    finer = None if options.finer is None else _record(options.finer, loaded.body, options)[0]
+    load = _load(options, loaded)
+    record, columns = _record(file, loaded.body, load, options)
+    finer = None if options.finer is None else _record(options.finer, loaded.body, load, options)[0]
     found = audit(record, rtol=options.rtol, finer=finer, ratio=options.ratio)
     report = Report()
     report.section(
@@ -101,14 +103,31 @@ def _body(options: AuditOptions, body: BodyOptions) -> LoadedBody:
     if options.body is not None or body.inertia:
         other = "--body" if options.body is not None else "--inertia"
         raise PolhodeError(f"--moments and {other}: both say what the body is; give one of the two")
-    check_moments_alone(body)
+    check_moments_alone(body, *(() if options.gravity is None else ("mass", "center_of_mass")))
+    check_weight(options.gravity, body)
+    mass, center = mass_and_center(body)
     moments = [
         float(getattr(one, "value", one)) for one in amounts(options.moments, 3, "kg m^2", "--moments")
     ]
-    return LoadedBody(RigidBody(1.0, np.diag(moments)), [], "kg", "m")
+    known = RigidBody(float(getattr(mass, "value", mass)), np.diag(moments), center_of_mass=center)
+    return LoadedBody(known, [], "kg", "m")
 
 
-def _record(file: Path, body: RigidBody, options: AuditOptions) -> tuple[Trajectory, dict[str, list[str]]]:
+def _load(options: AuditOptions, loaded: LoadedBody) -> dict[str, Any]:
+    """Return what is declared to act, and about which point the body turns."""
+    found: dict[str, Any] = {}
+    if options.gravity is not None:
+        g = quantity(options.gravity, "m/s^2", "--gravity")
+        found = {"load": loads.uniform_gravity((0.0, 0.0, -g)), "about": "origin"}
+    if options.wheel:
+        rotor = loads.rotor(momentum_inside(options.wheel, np.eye(3), loaded))
+        found["load"] = found["load"] + rotor if "load" in found else rotor
+    return found
+
+
+def _record(
+    file: Path, body: RigidBody, load: dict[str, Any], options: AuditOptions
+) -> tuple[Trajectory, dict[str, list[str]]]:
     with as_file(file) as path:
         table = read_motion_table(
             path,
@@ -123,7 +142,9 @@ def _record(file: Path, body: RigidBody, options: AuditOptions) -> tuple[Traject
             if options.sequence is not None
             else "--attitude: three columns are Euler angles; give their order with --sequence, such as ZYX"
         )
-    record = Trajectory.from_samples(body, table.t, table.attitude, table.omega, sequence=options.sequence)
+    record = Trajectory.from_samples(
+        body, table.t, table.attitude, table.omega, sequence=options.sequence, **load
+    )
     return record, table.columns
 
 

@@ -306,6 +306,12 @@ class AuditOptions:
     omega
         Columns with the angular velocity along the axes of the body, in rad/s, such as "wx,wy,wz". Without
         it, those with usual names, or none: it is then computed from the attitudes.
+    gravity
+        Declared load: the weight, with an acceleration along -z such as 9.81, of a body that turns about its
+        fixed origin. A number without a unit is in m/s^2.
+    wheel
+        Declared load: a wheel of the body, its axis and its constant angular momentum relative to the body,
+        such as "z, 2.5 kg m^2/s" or "0, 0.6, 0.8, 1.2 N m s". May be repeated.
     finer
         A second record, from the same start with smaller steps: the report gives the order of the method.
     ratio
@@ -324,6 +330,8 @@ class AuditOptions:
     attitude: Annotated[Words, WORDS, TABLE] = ()
     sequence: Annotated[str | None, TABLE] = None
     omega: Annotated[Words, WORDS, TABLE] = ()
+    gravity: Annotated[str | None, MOTION] = None
+    wheel: Annotated[Words, REPEATED, MOTION] = ()
     finer: Annotated[Path | None, REPORT] = None
     ratio: Annotated[float | None, REPORT] = None
     rtol: Annotated[float | None, REPORT] = None

@@ -18,7 +18,14 @@ from polhode.cli.loading import LoadedBody
 from polhode.cli.options import MODES
 from polhode.cli.tables import note_linear, sigmas_of, top_fields
 from polhode.cli.terminal import printable, progress
-from polhode.cli.whole import any_body, check_moments_alone, check_source, check_weight, source_of
+from polhode.cli.whole import (
+    any_body,
+    check_moments_alone,
+    check_source,
+    check_weight,
+    mass_and_center,
+    source_of,
+)
 from polhode.draw.pivot import path_of
 from polhode.draw.sampling import TURN, fastest, motion_times, turns
 from polhode.draw.triangles import cluster_vertices
@@ -28,7 +35,7 @@ from polhode.io.saved import TRAJECTORY_SUFFIXES
 from polhode.io.writing import save_picture
 from polhode.motion.invariants import drift, lengths
 from polhode.uncertainty.motion import each_motion
-from polhode.units import amount, amounts, has_unit, quantity, vector
+from polhode.units import amounts, has_unit, quantity, vector
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -208,10 +215,7 @@ def _body(file: Path | None, spin: SpinOptions, options: BodyOptions) -> LoadedB
     check_moments_alone(options, "mass", "center_of_mass")
     check_weight(spin.gravity, options)
     moments = amounts(spin.moments, 3, "kg m^2", "--moments")
-    mass = amount(options.mass, "kg", "--mass") if options.mass is not None else 1.0
-    center = (
-        vector(options.center_of_mass, "m", "--center-of-mass") if options.center_of_mass else (0.0, 0.0, 0.0)
-    )
+    mass, center = mass_and_center(options)
     body = RigidBody.from_principal(mass, moments, center_of_mass=center)
     return LoadedBody(body=body, source=[], mass_unit="kg", length="m")
 

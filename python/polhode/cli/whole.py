@@ -6,7 +6,7 @@ Whole are saved bodies, assemblies, and the numbers that a CAD program printed.
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from polhode.cli.components import has_names
 from polhode.cli.files import label
@@ -38,6 +38,7 @@ __all__ = [
     "check_moments_alone",
     "check_source",
     "check_weight",
+    "mass_and_center",
     "source_of",
     "whole_report",
 ]
@@ -236,6 +237,13 @@ def check_weight(gravity: str | None, options: BodyOptions) -> None:
         raise PolhodeError(
             "--gravity: the weight acts at the centre of mass; state --mass and --center-of-mass too"
         )
+
+
+def mass_and_center(options: BodyOptions) -> tuple[Any, Any]:
+    """Read the mass and the centre of mass of the body of --moments; 1 kg and the origin without them."""
+    mass = 1.0 if options.mass is None else amount(options.mass, "kg", "--mass")
+    center = options.center_of_mass
+    return mass, vector(center, "m", "--center-of-mass") if center else (0.0, 0.0, 0.0)
 
 
 def _is_given(options: BodyOptions, name: str) -> bool:

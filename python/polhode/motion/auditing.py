@@ -3,7 +3,6 @@
 A record is the motion of a body when its attitudes turn with its angular velocity, and when its angular
 momentum in space changes by the impulse of the load alone. A mistake of the writer breaks the first, one of
 the program the second. Each is a change of the record, or a torque along it, and is judged by likelihood.
-Vectors have their components first, as in `polhode.motion.rates`.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from polhode import _core
 from polhode._format import one_line
 from polhode._hints import check_kind
 from polhode.errors import PolhodeError
-from polhode.motion.rates import angular_acceleration, angular_velocity, cross, integral, noise_of
+from polhode.motion.rates import rates_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -47,6 +46,7 @@ _NOISELESS: Final = 1e-9
 """Noise of attitudes, in radians, that is none."""
 _EXPLAINED: Final = 0.05
 """Share of the squares that an alternative may leave unexplained."""
+_CONJUGATE: Final = np.array([-1.0, -1.0, -1.0, 1.0])
 
 KINDS: Final = {
     "scalar-first": (
@@ -196,13 +196,9 @@ class _Record(NamedTuple):
     omega: Floats
     torque: Floats
 
-    def in_space(self, vectors: Floats) -> Floats:
-        return _rotate(self.quaternion, vectors)
-
-
-def _rotate(quaternion: Floats, vectors: Floats, *, inverse: bool = False) -> Floats:
-    turned = _core.rotate(np.ascontiguousarray(quaternion.T), np.ascontiguousarray(vectors.T), inverse)
-    return np.ascontiguousarray(turned.T)
+    def impulses(self, *torques: Floats) -> list[Floats]:
+        """Integrate torques in the body along the attitudes, in space."""
+        return _core.impulses(self.t, self.quaternion, list(torques))
 
 
 def audit(
@@ -290,15 +286,15 @@ def audit(
     tensor = tensor / units.inertia
     reading = _Reading(scaled, tensor, limit, derived=trajectory._origin.derived)
     findings, agrees = reading.judge()
-    momentum = _momentum(scaled, tensor)
-    first = np.linalg.norm(momentum[:, 0])
-    drift = np.linalg.norm(momentum - momentum[:, :1], axis=0)
+    momentum = reading.momentum_of(scaled)
+    first = np.linalg.norm(momentum[0])
+    drift = np.sqrt(_lengths(momentum - momentum[0]))
     noise = {"attitude": reading.noise, "angular_momentum": reading.noise_of_momentum}
     return Audit(
         t=trajectory.t,
         energy_drift=_energy_drift(trajectory, there),
         angular_momentum_drift=_whole(there, drift / first if first > 0.0 else drift),
-        residual_torque=_whole(there, _residual(scaled, tensor).T * units.inertia / units.time**2),
+        residual_torque=_whole(there, _residual(scaled, tensor) * units.inertia / units.time**2),
         angle_from_exact=_whole(there, _angles(trajectory, there)),
         order=order,
         findings=tuple(Finding(one.kind, _in_units(one.evidence, units)) for one in findings),
@@ -346,10 +342,12 @@ def _in_units(evidence: dict[str, Any], units: _Units) -> dict[str, Any]:
 
 def _known(trajectory: Trajectory) -> NDArray[np.bool_]:
     """Return which rows have no NaN."""
-    return np.asarray(np.isfinite(np.hstack((trajectory.quaternion, trajectory.omega))).all(1))
+    return np.asarray(np.isfinite(trajectory.quaternion).all(1) & np.isfinite(trajectory.omega).all(1))
 
 
 def _whole(there: NDArray[np.bool_], values: Floats) -> Floats:
+    if there.all():
+        return values
     found = np.full((len(there), *values.shape[1:]), np.nan)
     found[there] = values
     return found
@@ -357,32 +355,30 @@ def _whole(there: NDArray[np.bool_], values: Floats) -> Floats:
 
 def _record_of(trajectory: Trajectory, there: NDArray[np.bool_]) -> _Record:
     """Return the rows without NaN."""
-    rows = (trajectory.quaternion, trajectory.omega, trajectory.torque())
-    found = [np.ascontiguousarray(values[there].T) for values in rows]
-    return _Record(trajectory.t[there], found[0], found[1], found[2])
+    rows = (trajectory.t, trajectory.quaternion, trajectory.omega, trajectory.torque())
+    return _Record(*(rows if there.all() else (values[there] for values in rows)))
 
 
 def _momentum(record: _Record, tensor: Floats) -> Floats:
-    """Compute the angular momentum in space less the impulse of the load, components first."""
-    momentum = record.in_space(tensor @ record.omega)
+    """Compute the angular momentum in space less the impulse of the load."""
+    momentum = _core.rotate(record.quaternion, record.omega @ tensor)
     if record.torque.any():
-        momentum = momentum - integral(record.t, record.in_space(record.torque))
+        momentum -= record.impulses(record.torque)[0]
     return momentum
 
 
 def _residual(record: _Record, tensor: Floats) -> Floats:
-    """Compute the torque that the record needs besides the load, in the body, components first."""
-    noise = noise_of(record.t, record.omega, turning=False)
-    size = float(np.abs(record.omega).max())
-    sigma = noise if noise > _NOISELESS * size else None
-    rate = angular_acceleration(record.t, record.omega.T, order=4 if sigma else None, sigma=sigma)[0].T
-    return tensor @ rate + cross(record.omega, tensor @ record.omega) - record.torque
+    """Compute the torque that the record needs besides the load, in the body."""
+    noise = _core.white_noise(record.t, record.omega)
+    sigma = noise if noise > _NOISELESS * float(np.abs(record.omega).max()) else None
+    rate = rates_of(record.t, record.omega, 4 if sigma else None, sigma, turning=False)[0]
+    return rate @ tensor + _cross(record.omega, record.omega @ tensor) - record.torque
 
 
 def _energy_drift(trajectory: Trajectory, there: NDArray[np.bool_]) -> Floats:
     kinetic, potential = trajectory.kinetic_energy().total, trajectory._potential()
     energy = kinetic if potential is None else kinetic + potential
-    first = energy[there][0]
+    first = energy[there.argmax()]
     size = abs(first) if potential is None else max(abs(first), float(kinetic[there].max()))
     drift: Floats = (energy - first) / size if size > 0.0 else energy - first
     return drift
@@ -390,7 +386,9 @@ def _energy_drift(trajectory: Trajectory, there: NDArray[np.bool_]) -> Floats:
 
 def _angles(trajectory: Trajectory, there: NDArray[np.bool_]) -> Floats:
     """Compute the angles between the attitudes and those of the exact motion from the first row on."""
-    t, quaternion, omega = (x[there] for x in (trajectory.t, trajectory.quaternion, trajectory.omega))
+    t, quaternion, omega = (
+        x if there.all() else x[there] for x in (trajectory.t, trajectory.quaternion, trajectory.omega)
+    )
     about = trajectory._about_word()
     if trajectory.load is None and about == "center_of_mass":
         exact = trajectory.body.free_motion(omega[0], quaternion[0]).at(t - t[0]).quaternion
@@ -411,7 +409,7 @@ def _angles(trajectory: Trajectory, there: NDArray[np.bool_]) -> Floats:
 
 def _angle_between(a: Floats, b: Floats) -> Floats:
     sign = np.sign(np.einsum("ij,ij->i", a, b))[:, None]
-    apart = np.linalg.norm(a - sign * b, axis=1)
+    apart = np.sqrt(_lengths(a - sign * b))
     found: Floats = 4.0 * np.arcsin(np.minimum(0.5 * apart, 1.0))
     return found
 
@@ -445,16 +443,17 @@ class _Reading:
 
     def __init__(self, record: _Record, tensor: Floats, rtol: float, *, derived: bool) -> None:
         self.record, self.tensor, self.rtol = record, tensor, rtol
-        self.noise = noise_of(record.t, record.quaternion, turning=True)
+        self.noise = _core.white_noise(record.t, record.quaternion)
         self.noise_of_momentum = 0.0
+        self._momentum: tuple[_Record, Floats] | None = None
         self.derived = derived
         self.rates, self.error = self._rates(record.t)
 
     def _rates(self, t: Floats) -> tuple[Floats, float]:
         """Compute the angular velocity of the attitudes, and the size of its error."""
         sigma = self.noise if self.noise > _NOISELESS else None
-        rates, error = angular_velocity(t, self.record.quaternion.T, order=4 if sigma else None, sigma=sigma)
-        return rates.T, float(np.median(error))
+        rates, error = rates_of(t, self.record.quaternion, 4 if sigma else None, sigma, turning=True)
+        return rates, float(np.median(error))
 
     def judge(self) -> tuple[list[Finding], bool]:
         """Return the findings, and whether the record is the motion of the body."""
@@ -473,16 +472,21 @@ class _Reading:
         findings += found
         return findings, agrees and settled and not findings
 
+    def momentum_of(self, record: _Record) -> Floats:
+        """Compute the angular momentum of a record, once."""
+        if self._momentum is None or self._momentum[0] is not record:
+            self._momentum = record, _momentum(record, self.tensor)
+        return self._momentum[1]
+
     def _noise_of_omega(self) -> float:
         size = _size(self.record.omega)
-        return (
-            noise_of(self.record.t, self.record.omega, turning=False) * 3.0**0.5 / size if size > 0.0 else 0.0
-        )
+        noise = _core.white_noise(self.record.t, self.record.omega)
+        return noise * 3.0**0.5 / size if size > 0.0 else 0.0
 
     def _misfit(self, record: _Record, rates: Floats) -> float:
         """Return how far attitudes turn otherwise than with ω, relative to both."""
         least = len(record.t) - max(len(record.t) // 10, 1)
-        off = np.partition(((rates - record.omega) ** 2).sum(0), least)[:least]
+        off = np.partition(_lengths(rates - record.omega), least)[:least]
         size = max(_size(rates), _size(record.omega))
         return float(np.sqrt(off.mean())) / size if size > 0.0 else 0.0
 
@@ -490,8 +494,8 @@ class _Reading:
         """Find rows at which the clock jumps, and set it right."""
         record = self.record
         widths = np.diff(record.t)
-        turns = _angle_between(record.quaternion[:, :-1].T, record.quaternion[:, 1:].T)
-        speed = np.linalg.norm(record.omega, axis=0)
+        turns = _angle_between(record.quaternion[:-1], record.quaternion[1:])
+        speed = np.sqrt(_lengths(record.omega))
         expected = 0.5 * (speed[1:] + speed[:-1])
         if self.derived:
             expected = _running_median(turns / widths)
@@ -572,22 +576,19 @@ class _Reading:
         """Yield attitudes as they stand, inverted, and with the scalar first, with the rates of each."""
         q = self.record.quaternion
         yield (), q, self.rates
-        inverse = np.concatenate((-q[:3], q[3:]))
-        yield ("inverse attitude",), inverse, -_rotate(q, self.rates)
-        for names, other in ((("scalar-first",), q[[1, 2, 3, 0]]),):
-            sigma = self.noise if self.noise > _NOISELESS else None
-            order = 4 if sigma else None
-            rates = angular_velocity(self.record.t, other.T, order=order, sigma=sigma)[0].T
-            yield names, other, rates
-            inverse = np.concatenate((-other[:3], other[3:]))
-            yield ("scalar-first", "inverse attitude"), inverse, -_rotate(other, rates)
+        yield ("inverse attitude",), q * _CONJUGATE, -_core.rotate(q, self.rates)
+        other = q[:, [1, 2, 3, 0]]
+        sigma = self.noise if self.noise > _NOISELESS else None
+        rates = rates_of(self.record.t, other, 4 if sigma else None, sigma, turning=True)[0]
+        yield ("scalar-first",), other, rates
+        yield ("scalar-first", "inverse attitude"), other * _CONJUGATE, -_core.rotate(other, rates)
 
     def _omegas(self, quaternion: Floats) -> Iterator[tuple[tuple[str, ...], Floats]]:
         """Yield ω as it stands, in degrees, and in the axes of space."""
         omega = self.record.omega
         yield (), omega
         yield ("degrees",), np.deg2rad(omega)
-        turned = _rotate(quaternion, omega, inverse=True)
+        turned = _core.rotate(quaternion, omega, inverse=True)
         yield ("space-axes omega",), turned
         yield ("space-axes omega", "degrees"), np.deg2rad(turned)
 
@@ -597,7 +598,7 @@ class _Reading:
         for names, quaternion, rates in self._attitudes():
             record = self.record._replace(quaternion=quaternion, omega=rates)
             momentum = _momentum(record, self.tensor)
-            off = _size(momentum - momentum.mean(1, keepdims=True)) / max(_size(momentum), 1e-300)
+            off = _size(_centred(momentum)) / max(_size(momentum), 1e-300)
             found.append((off, names, record))
         stated = found[0][0]
         best = min(found, key=lambda one: one[0] * 1.2 ** len(one[1]))
@@ -619,10 +620,9 @@ class _Reading:
 
     def _mistakes(self) -> tuple[list[Finding], bool]:
         """Find the mistake that explains how the angular momentum changes; and whether it is kept."""
-        record, tensor = self.record, self.tensor
-        momentum = _momentum(record, tensor)
+        record, momentum = self.record, self.momentum_of(self.record)
         length = max(_size(momentum), 1e-300)
-        sigma = noise_of(record.t, momentum, turning=False)
+        sigma = _core.white_noise(record.t, momentum)
         self.noise_of_momentum = sigma / length
         count = 3.0 * (len(record.t) - 1)
         stated = _squares(momentum)
@@ -664,12 +664,10 @@ class _Reading:
             return [], True
         rate = self._euler(self.record.omega)
         off = self.rates - self.record.omega
-        size = (rate * rate).sum(0)
-        if not size.any():
+        if not _size(rate) > 0.0:
             return [], True
-        parts = np.array_split(np.arange(len(size)), 20)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            each = np.array([(off * rate)[:, p].sum() / size[p].sum() for p in parts if size[p].sum() > 0.0])
+        parts = zip(np.array_split(off, 20), np.array_split(rate, 20), strict=True)
+        each = np.array([np.vdot(a, b) / size for a, b in parts if (size := np.vdot(b, b)) > 0.0])
         late, spread = float(each.mean()), float(each.std(ddof=1) / np.sqrt(len(each)))
         shift = abs(late) * _size(rate)
         before, after = _size(off), _size(off - late * rate)
@@ -680,7 +678,7 @@ class _Reading:
         step = 2.0 * abs(late)
         if shift < small or abs(late) < 6.0 * spread or not explained or step > 2.0 * self._width():
             return [], True
-        gain = 1.5 * len(size) * np.log(before / max(after, 1e-300))
+        gain = 1.5 * len(rate) * np.log(before / max(after, 1e-300))
         speed = _size(self.record.omega)
         evidence = {
             "step": step,
@@ -695,55 +693,48 @@ class _Reading:
 
     def _euler(self, omega: Floats) -> Floats:
         """Compute ω̇ by Euler's equations."""
-        right = self.record.torque - cross(omega, self.tensor @ omega)
-        found: Floats = np.linalg.pinv(self.tensor) @ right
+        right = self.record.torque - _cross(omega, omega @ self.tensor)
+        found: Floats = right @ np.linalg.pinv(self.tensor)
         return found
 
     def _alternatives(self, momentum: Floats) -> Iterator[_Alternative]:
         """Yield every mistake with the squares that it leaves of the angular momentum."""
         record, tensor = self.record, self.tensor
         omega = record.omega
-        spin = tensor @ omega
-
-        def impulse(torque: Floats) -> Floats:
-            return integral(record.t, record.in_space(torque))
-
-        gyroscopic = impulse(cross(omega, spin))
+        spin = omega @ tensor
+        rate = self._euler(omega)
+        lag = _cross(rate, spin)
+        along = [np.broadcast_to(axis, omega.shape) for axis in np.eye(3)]
+        gyroscopic, *in_body, damped, by_omega, late, step = record.impulses(
+            _cross(omega, spin), *along, -spin, -omega, lag, 0.5 * (lag + _cross(omega, rate @ tensor))
+        )
         yield _Alternative("no gyroscopic term", _squares(momentum - gyroscopic))
         yield _Alternative("doubled gyroscopic term", _squares(momentum + gyroscopic))
         diagonal = np.diag(tensor.diagonal())
         if np.abs(tensor - diagonal).max() > 1e-9 * np.abs(tensor).max():
-            sigma = noise_of(record.t, momentum, turning=False)
+            sigma = _core.white_noise(record.t, momentum)
             for kind, other in (
                 ("diagonal tensor", diagonal),
                 ("products of the other sign", 2 * diagonal - tensor),
             ):
                 kept = _momentum(record, other)  # noise of ω has another size in it
-                own = noise_of(record.t, kept, turning=False)
+                own = _core.white_noise(record.t, kept)
                 yield _Alternative(kind, _squares(kept) * ((sigma / own) ** 2 if own > 0.0 else 1.0))
-        eye = np.eye(3)
-        for frame in ("body", "space"):
-            ones = [np.repeat(eye[:, [k]], len(record.t), axis=1) for k in range(3)]
-            impulses = [impulse(one) if frame == "body" else one * (record.t - record.t[0]) for one in ones]
-            left, found, _ = _fit(momentum, impulses)
+        passed = (record.t - record.t[0])[:, None]
+        for frame, impulses in (("body", in_body), ("space", [axis * passed for axis in np.eye(3)])):
+            left, found = _fit(momentum, impulses)
             yield _Alternative(
                 "undeclared torque", left, 3, evidence={"torque": found.tolist(), "frame": frame}
             )
-        for name, torque in (("rate", -spin), ("coefficient", -omega)):
-            left, found, _ = _fit(momentum, [impulse(torque)])
+        for name, impulse in (("rate", damped), ("coefficient", by_omega)):
+            left, found = _fit(momentum, [impulse])
             yield _Alternative(
                 "undeclared damping", left, 1, evidence={name: found[0]}, possible=found[0] > 0.0
             )
-        yield self._first_order(momentum, spin)
-
-    def _first_order(self, momentum: Floats, spin: Floats) -> _Alternative:
-        """Fit the lag of the attitudes behind ω, and the terms of second order of Euler's method."""
-        record, tensor, omega = self.record, self.tensor, self.record.omega
-        rate = self._euler(omega)
-        pairs = (cross(rate, spin), 0.5 * (cross(rate, spin) + cross(omega, tensor @ rate)))
-        left, (late, step), _ = _fit(momentum, [integral(record.t, record.in_space(one)) for one in pairs])
-        size = max(abs(step), 2.0 * abs(late))
-        return _Alternative(
+        # The lag of the attitudes behind ω, and the terms of second order of Euler's method.
+        left, found = _fit(momentum, [late, step])
+        size = max(abs(found[1]), 2.0 * abs(found[0]))
+        yield _Alternative(
             "first-order step", left, 2, evidence={"step": size}, possible=size < 2.0 * self._width()
         )
 
@@ -760,23 +751,43 @@ class _Alternative(NamedTuple):
     gain: float = 0.0
 
 
+def _cross(a: Floats, b: Floats) -> Floats:
+    x, y, z = range(3)
+    found = np.empty_like(a)
+    for k, (i, j) in enumerate(((y, z), (z, x), (x, y))):
+        np.subtract(a[:, i] * b[:, j], a[:, j] * b[:, i], out=found[:, k])
+    return found
+
+
+def _lengths(vectors: Floats) -> Floats:
+    """Return the squares of the lengths."""
+    found: Floats = np.einsum("ij,ij->i", vectors, vectors)
+    return found
+
+
 def _size(vectors: Floats) -> float:
     """Return the root of the mean square of the lengths."""
-    return float(np.sqrt((vectors * vectors).sum(0).mean()))
+    return float(np.sqrt(np.vdot(vectors, vectors) / len(vectors)))
+
+
+def _centred(vectors: Floats) -> Floats:
+    found: Floats = vectors - vectors.mean(0)
+    return found
 
 
 def _squares(vectors: Floats) -> float:
     """Sum the squares of the distances from the mean."""
-    return float(((vectors - vectors.mean(1, keepdims=True)) ** 2).sum())
+    off = _centred(vectors)
+    return float(np.vdot(off, off))
 
 
-def _fit(momentum: Floats, impulses: list[Floats]) -> tuple[float, Any, Floats]:
-    """Fit multiples of impulses and a constant to the momentum: what is left, and the multiples."""
-    centred = momentum - momentum.mean(1, keepdims=True)
-    columns = np.stack([(one - one.mean(1, keepdims=True)).ravel() for one in impulses], axis=1)
-    found = np.linalg.lstsq(columns, centred.ravel(), rcond=1e-12)[0]
-    left = centred.ravel() - columns @ found
-    return float(left @ left), found, left
+def _fit(momentum: Floats, impulses: list[Floats]) -> tuple[float, Any]:
+    """Fit multiples of impulses and a constant to the momentum: what is left, squared, and the multiples."""
+    columns = np.stack([_centred(one).ravel() for one in (*impulses, momentum)], axis=1)
+    factor: Any = np.linalg.qr(columns, mode="r")
+    found = np.linalg.lstsq(factor[:-1, :-1], factor[:-1, -1], rcond=1e-12)[0]
+    left = columns[:, -1] - columns[:, :-1] @ found
+    return float(left @ left), found
 
 
 def _running_median(values: Floats, half: int = 5) -> Floats:

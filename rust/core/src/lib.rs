@@ -65,6 +65,7 @@
 //! | triangles from files | [`io`], then [`mass::polyhedron`] |
 //! | `I = V diag(I₁, I₂, I₃) Vᵀ`: axes, and what kind of top it is | [`principal`] |
 //! | `T = ½ ω·I ω`, `L = I ω`, `I ω̇ + ω × I ω = N` at one instant | [`motion::kinetic_energy`], [`motion::angular_momentum`], [`motion::euler_equations`] |
+//! | `ω = φ̇ − (1 − cos φ)/φ² φ×φ̇ + …` along a record, and back | [`motion::rates`] |
 //! | motions in closed form | [`motion::free`], [`motion::gyrostat`], [`motion::heavy_top`] |
 //! | rolling on a plane | [`motion::rolling`] |
 //! | motions under loads | [`motion::loads`], [`motion::simulate`](mod@motion::simulate) |

@@ -56,6 +56,7 @@ mod particles;
 mod pictures;
 mod principal;
 mod random;
+mod rates;
 mod realizable;
 mod regions;
 mod rigid_body;
@@ -130,6 +131,8 @@ mod _core {
     };
     #[pymodule_export]
     use crate::random::{covariance_factor, random_numbers};
+    #[pymodule_export]
+    use crate::rates::{attitudes, impulses, rates, white_noise};
     #[pymodule_export]
     use crate::realizable::{nearest_valid, within_box};
     #[pymodule_export]

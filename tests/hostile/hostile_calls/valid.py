@@ -198,6 +198,10 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "kinematics.angular_velocity": {"attitude": TURNS, "order": None, "sequence": None, "sigma": 0.125},
     "kinematics.angular_acceleration": {"omega": RATES, "order": None, "sigma": 0.125},
     "kinematics.quaternion": {"omega": RATES, "order": 4},
+    "rates": {"rows": TURNS, "order": None, "sigma": None},
+    "white_noise": {"rows": TURNS},
+    "attitudes": {"omega": RATES, "order": 4},
+    "impulses": {"quaternion": TURNS, "torques": [RATES]},
     "audit": {"trajectory": TUMBLER.free_motion(OMEGA).at(np.arange(20.0)), "finer": None, "ratio": None},
     "Trajectory.from_samples": {
         "attitude": TURNS,

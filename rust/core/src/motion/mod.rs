@@ -4,6 +4,7 @@
 //! |---|---|
 //! | velocity and acceleration of any point, rates in moving frames (mln24, mln27) | [`kinematics`] |
 //! | attitude `R_NB` as a quaternion, its rate ½ q∘ω | [`attitude`] |
+//! | rates along the rows of a record, and what they integrate to (msl26) | [`rates`] |
 //! | Euler angles, all twelve sequences, and their rates (msl25, msl26) | [`euler_angles`] |
 //! | kinetic energy in three parts (mln25) | [`kinetic_energy`] |
 //! | angular momentum in three parts | [`angular_momentum`] |
@@ -39,6 +40,7 @@ pub mod loads;
 pub mod nutation_damping;
 pub mod pivot_reaction;
 pub(crate) mod problem;
+pub mod rates;
 pub mod rolling;
 pub mod simulate;
 pub mod stability;
