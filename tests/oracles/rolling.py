@@ -37,7 +37,7 @@ COLUMNS = 9
 STEP = LONG(1e-30)
 SETTLED = 1e-14
 """Motions that change by less with half the steps are known; the others depend on their start that much."""
-MOST_STEPS = 512
+MOST_STEPS = 1024
 LEAST_MARGIN = 0.05
 """Motions that come nearer to lying flat, or to the rim of their surface, are left out."""
 SHORT, LONGER = 50, 100

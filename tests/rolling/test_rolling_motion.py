@@ -58,7 +58,7 @@ def test_a_ball_by_newtons_and_eulers_equations(gravity: Any, turntable: float) 
     }
     exact = rolling_motion(case, steps=96)
     sizes = np.array([1.0] * 4 + [15.0] * 3 + [10.0] * 3)
-    assert off(flat(ball(gravity, turntable).at(3.0)), exact, sizes) < 2e-15
+    assert off(flat(ball(gravity, turntable).at(3.0)), exact, sizes) < 1e-14
 
 
 @pytest.mark.parametrize(("gravity", "turntable"), PLANES)
@@ -83,7 +83,7 @@ def test_a_ball_by_a_simulation(gravity: Any, turntable: float) -> None:
     assert np.allclose(found.contact.force, run.contact.force, rtol=0, atol=1e-12 * MASS * fast)
     most, least = found.contact.largest_friction_needed, found.contact.smallest_normal_force
     assert most.value == pytest.approx(run.contact.largest_friction_needed.value, rel=1e-12, abs=1e-14)
-    assert most.value >= found.contact.friction_needed.max() * (1 - 1e-13)
+    assert most.value >= found.contact.friction_needed.max() - 1e-14
     assert least.value == pytest.approx(-MASS * gravity[2], rel=1e-13)
     if not turntable:
         assert found.invariants().energy_drift < 1e-14
@@ -229,12 +229,11 @@ def test_where_a_cone_tips(ratio: float) -> None:
     axial, across = body.inertia[2, 2], body.inertia[0, 0]
     about_line = axial * cos**2 + (across + body.mass * d**2) * sin**2
     turn = np.sqrt((slant - d * cos) * body.mass * g / (about_line * cos / sin))
-    apex, rim = surface.line_of_contact((0, 1, 0))
+    apex, rim = surface.line_of_contact((1, 0, 0))
     along = (rim - apex) / slant
     for factor, tips in ((1 - 1e-9, False), (1 + 1e-9, True)):
         motion = body.rolling_motion(surface, factor * turn * cos / sin * along, gravity=(0, 0, -g))
         found = motion.at([0.0, 5.0])
-        # The default attitude has its line of contact along x, which is not that of (0, 1, 0) in the body.
         assert found.position[0, 2] == pytest.approx(d * sin)
         assert bool(motion.tips(3.0)) is tips
 

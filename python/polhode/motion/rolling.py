@@ -62,8 +62,8 @@ class RollingMotion:
     >>> for rate in (10, 20):
     ...     motion = body.rolling_motion(cone, rate * along)
     ...     print(motion.pressure_at(0.0)[0].round(4), motion.tips(0.0))
-    0.2402 False
-    0.3211 True
+    0.2415 False
+    0.3256 True
     """
 
     body: _core.RigidBody

@@ -658,13 +658,16 @@ pub(crate) fn rolling_states<'py>(
     arrays.set_item("force", write_of(py, &found, |at| at.force)?)?;
     arrays.set_item("pressure", write_of(py, &found, |at| at.pressure)?)?;
     let [from, to] = (times.iter().filter(|t| t.is_finite()))
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[from, to], t| [from.min(*t), to.max(*t)]);
-    if motions.rows.iter().all(|motion| motion.extremes(0.0, 0.0).is_some()) {
-        let of = |motion: &RollingMotion| {
-            (motion.extremes(from, to)).unwrap_or([[f64::NAN; 2]; 2])
-        };
-        let [most, least] =
-            [0, 1].map(|which| write_of(py, &motions, |motion| of(motion)[which]));
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[from, to], t| {
+            [from.min(*t), to.max(*t)]
+        });
+    if motions
+        .rows
+        .iter()
+        .all(|motion| motion.extremes(0.0, 0.0).is_some())
+    {
+        let of = |motion: &RollingMotion| (motion.extremes(from, to)).unwrap_or([[f64::NAN; 2]; 2]);
+        let [most, least] = [0, 1].map(|which| write_of(py, &motions, |motion| of(motion)[which]));
         arrays.set_item("extremes", (most?, least?))?;
     }
     arrays.set_item("tips", write_any_of(py, &found, |at| at.tips)?)?;

@@ -55,7 +55,7 @@ def fingerprint(result: Any) -> Any:
             )
         case polhode.MassAccumulator():
             return pickle.dumps(result)
-        case _core.Load() | _core.Region() | _core.Surface() | _core.Contact():
+        case _core.Load() | _core.Region() | _core.Surface() | _core.RuledSurface() | _core.Contact():
             return repr(result)
         case dict():
             return {key: fingerprint(value) for key, value in result.items()}

@@ -307,7 +307,10 @@ impl RollingBall {
         if rate != 0.0 {
             let start = I * self.start() * rate + self.pull();
             let flat = Complex::new(self.gravity.x, self.gravity.y);
-            let (first, period) = ((-flat / start).arg() / rate, std::f64::consts::TAU / rate.abs());
+            let (first, period) = (
+                (-flat / start).arg() / rate,
+                std::f64::consts::TAU / rate.abs(),
+            );
             let time = first + ((from - first) / period).ceil() * period;
             if time <= to && needed(time) > found[0] {
                 found = [needed(time), time];

@@ -167,10 +167,10 @@ impl LyingBody {
         let attitude = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), start);
         let spin = Vector3::z() * turn;
         let motion = HeavyTop::of(&PivotedTop::of(&bob, TOUCHES)?, &spin, &attitude, &pull)?;
-        // It turns over where it passes through both verticals.
+        // It turns over where its energy is more than that of rest at the top.
         let nutation = motion.nutation();
-        let turns_over =
-            nutation.inclination[0] == 0.0 && nutation.period.is_finite() && turn != 0.0;
+        let energy = 0.5 * turn * turn - pull.dot(&self.line);
+        let turns_over = nutation.period.is_finite() && energy > pull.norm();
         let mean = if turns_over {
             (std::f64::consts::TAU / nutation.period).copysign(turn)
         } else {
