@@ -192,7 +192,7 @@ def test_force_and_pressure_of_lying_bodies(row: Any) -> None:
 @pytest.mark.parametrize("row", LYING)
 def test_motions_of_lying_bodies(row: Any) -> None:
     case, motion = lying(*row)
-    exact = lying_motion(case, flat(motion.at(0.0)), 1.0, 6)
+    exact = lying_motion(case, flat(motion.at(0.0)), 1.0, 12)
     assert off(flat(motion.at(1.0)), exact, 10.0) < 1e-12
 
 
