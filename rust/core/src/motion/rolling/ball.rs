@@ -15,7 +15,7 @@
 
 use nalgebra::{Complex, Quaternion, UnitQuaternion, Vector3};
 
-use super::rolling_motion::{RollingState, TOUCHES, pressing};
+use super::contact::{RollingState, TOUCHES, pressing};
 use super::surface::Surface;
 use crate::error::{Error, MotionFault, finite};
 use crate::mass::RigidBody;

@@ -1,12 +1,16 @@
 //! The contact of a surface with a plane: where the plane is, how it turns, and what follows when the body lifts off.
 
-use nalgebra::{Matrix3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Quaternion, Unit, UnitQuaternion, Vector3};
 
 use super::surface::{Surface, axes_of};
 use crate::error::{Error, MotionFault, all_finite, finite};
 use crate::mass::RigidBody;
 use crate::motion::state::Phase;
 use crate::numerics::power_series::dot;
+
+/// How far from the plane a body may be at the start, relative to its size; and how much it may differ from one with a closed form,
+/// relative to its size or moments.
+pub(super) const TOUCHES: f64 = 1e-9;
 
 /// What follows when the normal force falls through zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,9 +49,6 @@ pub struct Contact {
     /// What follows when the body lifts off.
     pub lift: LiftOff,
 }
-
-/// How far from the plane a body may be at the start, relative to the size of its surface.
-const TOUCHES: f64 = 1e-9;
 
 impl Contact {
     /// Make the contact of a surface that rolls.
@@ -140,6 +141,58 @@ impl Contact {
             internal_state: Box::default(),
         })
     }
+}
+
+/// A state of a body that rolls, and what the plane does to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RollingState {
+    /// `R_NB`.
+    pub attitude: UnitQuaternion<f64>,
+    /// Of B relative to N, in B.
+    pub omega: Vector3<f64>,
+    /// Of C, in N.
+    pub position: Vector3<f64>,
+    /// Of C, in N.
+    pub velocity: Vector3<f64>,
+    /// The resultant force of the plane on the body, in N.
+    pub force: Vector3<f64>,
+    /// The centre of pressure: where the normal force acts, in N.
+    pub pressure: Vector3<f64>,
+    /// Whether the centre of pressure would have to be beyond the ends of the line of contact, so that the body tips over one.
+    pub tips: bool,
+}
+
+impl RollingState {
+    /// A state at a time that is not finite.
+    pub(super) fn unknown() -> Self {
+        let nan = Vector3::repeat(f64::NAN);
+        Self {
+            attitude: UnitQuaternion::new_unchecked(Quaternion::new(
+                f64::NAN,
+                f64::NAN,
+                f64::NAN,
+                f64::NAN,
+            )),
+            omega: nan,
+            position: nan,
+            velocity: nan,
+            force: nan,
+            pressure: nan,
+            tips: false,
+        }
+    }
+}
+
+/// Check that gravity presses a body onto the plane.
+pub(super) fn pressing(gravity: &Vector3<f64>) -> Result<(), Error> {
+    if gravity.z < 0.0 {
+        return Ok(());
+    }
+    Err(Error::OutOfDomain {
+        what: "gravity",
+        law: "one that presses the body onto the plane z = 0: its third component is negative; a plane that leans is a gravity that leans",
+        value: gravity.z,
+    })
 }
 
 #[cfg(test)]

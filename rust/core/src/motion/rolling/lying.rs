@@ -19,7 +19,7 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use super::rolling_motion::{RollingState, TOUCHES, pressing};
+use super::contact::{RollingState, TOUCHES, pressing};
 use super::ruled::{Kind, RuledSurface};
 use crate::error::{Error, MotionFault};
 use crate::mass::RigidBody;

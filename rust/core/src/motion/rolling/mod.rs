@@ -53,7 +53,7 @@ pub mod steady;
 pub mod surface;
 mod torus;
 
-pub use contact::{Contact, LiftOff};
-pub use rolling_motion::{RollingMotion, RollingState};
+pub use contact::{Contact, LiftOff, RollingState};
+pub use rolling_motion::RollingMotion;
 pub use ruled::RuledSurface;
 pub use surface::Surface;

@@ -3,14 +3,12 @@
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::ball::RollingBall;
+use super::contact::RollingState;
 use super::lying::LyingBody;
 use super::ruled::RuledSurface;
 use super::surface::Surface;
 use crate::error::{Error, MotionFault, all_finite};
 use crate::mass::RigidBody;
-
-/// How much a body may differ from one with a closed form, relative to its size or moments, and its start from one that rolls.
-pub(super) const TOUCHES: f64 = 1e-9;
 
 /// What a body has that a motion in closed form is known of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,8 +25,8 @@ pub enum Outside {
 ///
 /// ```
 /// use polhode::mass::{Amount, solids};
-/// use polhode::motion::rolling::rolling_motion::{Outside, RollingMotion, RollingState};
-/// use polhode::motion::rolling::Surface;
+/// use polhode::motion::rolling::rolling_motion::{Outside, RollingMotion};
+/// use polhode::motion::rolling::{RollingState, Surface};
 /// use polhode::nalgebra::Vector3;
 ///
 /// let body = solids::sphere(0.5, Amount::Mass(2.0))?;
@@ -50,46 +48,6 @@ pub struct RollingMotion(Form);
 enum Form {
     Ball(RollingBall),
     Lying(LyingBody),
-}
-
-/// A state of a body that rolls, and what the plane does to it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RollingState {
-    /// `R_NB`.
-    pub attitude: UnitQuaternion<f64>,
-    /// Of B relative to N, in B.
-    pub omega: Vector3<f64>,
-    /// Of C, in N.
-    pub position: Vector3<f64>,
-    /// Of C, in N.
-    pub velocity: Vector3<f64>,
-    /// The resultant force of the plane on the body, in N.
-    pub force: Vector3<f64>,
-    /// The centre of pressure: where the normal force acts, in N.
-    pub pressure: Vector3<f64>,
-    /// Whether the centre of pressure would have to be beyond the ends of the line of contact, so that the body tips over one.
-    pub tips: bool,
-}
-
-impl RollingState {
-    /// A state at a time that is not finite.
-    pub(super) fn unknown() -> Self {
-        let nan = Vector3::repeat(f64::NAN);
-        Self {
-            attitude: UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(
-                f64::NAN,
-                f64::NAN,
-                f64::NAN,
-                f64::NAN,
-            )),
-            omega: nan,
-            position: nan,
-            velocity: nan,
-            force: nan,
-            pressure: nan,
-            tips: false,
-        }
-    }
 }
 
 impl RollingMotion {
@@ -168,16 +126,4 @@ impl RollingMotion {
             Form::Lying(lying) => lying.states(times),
         }
     }
-}
-
-/// Check that gravity presses a body onto the plane.
-pub(super) fn pressing(gravity: &Vector3<f64>) -> Result<(), Error> {
-    if gravity.z < 0.0 {
-        return Ok(());
-    }
-    Err(Error::OutOfDomain {
-        what: "gravity",
-        law: "one that presses the body onto the plane z = 0: its third component is negative; a plane that leans is a gravity that leans",
-        value: gravity.z,
-    })
 }
