@@ -455,7 +455,7 @@ impl PyRuledSurface {
         let shape = [&normals.shape[..], &[2]].concat();
         let ends = (normals.rows.iter()).flat_map(|normal| self.surface.line_of_contact(normal));
         let rows = ends.collect();
-        Ok(write(py, &Stack { rows, shape })?.into_any())
+        Ok(write(py, &Stack { shape, rows })?.into_any())
     }
 }
 
@@ -559,7 +559,7 @@ pub(crate) fn cone(
 fn ruled(
     py: Python<'_>,
     function: &'static str,
-    make: fn(f64, f64, Vector3<f64>, Vector3<f64>) -> Result<RuledSurface, Error>,
+    make: impl FnOnce(f64, f64, Vector3<f64>, Vector3<f64>) -> Result<RuledSurface, Error>,
     [radius, height]: [f64; 2],
     [axis, center]: [&Argument<'_>; 2],
 ) -> PyResult<PyRuledSurface> {
@@ -646,7 +646,7 @@ pub(crate) fn rolling_states<'py>(
         true
     });
     interrupt.finish(py, is_complete)?;
-    let found = Stack { rows, shape };
+    let found = Stack { shape, rows };
     let arrays = PyDict::new(py);
     arrays.set_item("omega", write_of(py, &found, |at| at.omega)?)?;
     arrays.set_item(

@@ -318,7 +318,7 @@ fn size(off: f64, noise: f64, gain: f64, change: f64) -> f64 {
 struct Weights {
     /// Their times since the row, in the order −1, 1, −2, 2, …
     offsets: [f64; MOST],
-    /// For each neighbour j the product of x_k / (x_k − x_j) over the other neighbours k: the sum of the steps to the
+    /// For each neighbour j the product of `x_k / (x_k − x_j)` over the other neighbours k: the sum of the steps to the
     /// neighbours with them is the row itself, as the polynomial of its neighbours has it.
     ratios: [f64; MOST],
     count: usize,
@@ -368,8 +368,8 @@ impl Weights {
     #[inline]
     fn of_derivative(&self) -> [f64; MOST] {
         let mut weights = [0.0; MOST];
-        for k in 0..self.count {
-            weights[k] = self.ratios[k] / self.offsets[k];
+        for (k, weight) in weights.iter_mut().enumerate().take(self.count) {
+            *weight = self.ratios[k] / self.offsets[k];
         }
         weights
     }
@@ -475,7 +475,7 @@ fn spread(last: usize, count: usize, k: usize) -> usize {
 
 fn median(mut values: Vec<f64>) -> f64 {
     let middle = values.len() / 2;
-    let is_even = values.len() % 2 == 0;
+    let is_even = values.len().is_multiple_of(2);
     let (below, upper, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
     let upper = *upper;
     if is_even {
@@ -769,8 +769,8 @@ fn factor(matrix: &mut [[f64; TERMS]; TERMS], terms: usize) {
     for i in 0..terms {
         for j in 0..=i {
             let mut rest = matrix[i][j];
-            for k in 0..j {
-                rest -= matrix[i][k] * matrix[j][k];
+            for (a, b) in matrix[i].iter().zip(&matrix[j]).take(j) {
+                rest -= a * b;
             }
             matrix[i][j] = if i == j {
                 rest.sqrt()

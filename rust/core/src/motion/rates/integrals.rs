@@ -32,7 +32,7 @@ struct Step {
     count: usize,
     /// Their times since the beginning of the step.
     at: [f64; MOST],
-    /// For each the product of 1 / (x - x_j) over the others j.
+    /// For each the product of `1 / (x − x_j)` over the others j.
     factors: [f64; MOST],
     /// The time to the next row.
     width: f64,
@@ -70,13 +70,13 @@ impl Step {
     #[inline]
     fn weights(&self, fraction: f64) -> [f64; MOST] {
         let (mut off, mut all) = ([0.0; MOST], 1.0);
-        for k in 0..self.count {
-            off[k] = fraction * self.width - self.at[k];
-            all *= off[k];
+        for (off, at) in off.iter_mut().zip(&self.at).take(self.count) {
+            *off = fraction * self.width - at;
+            all *= *off;
         }
         let mut weights = [0.0; MOST];
-        for k in 0..self.count {
-            weights[k] = self.factors[k] / off[k] * all;
+        for (k, weight) in weights.iter_mut().enumerate().take(self.count) {
+            *weight = self.factors[k] / off[k] * all;
         }
         weights
     }

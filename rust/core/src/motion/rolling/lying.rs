@@ -46,6 +46,10 @@ pub(super) struct LyingBody {
 
 /// How the angle goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one a motion, which is copied as a value"
+)]
 enum Way {
     /// φ̈ is constant.
     Even { acceleration: f64 },

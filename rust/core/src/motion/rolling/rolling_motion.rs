@@ -45,6 +45,10 @@ pub enum Outside {
 pub struct RollingMotion(Form);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one a motion, which is copied as a value"
+)]
 enum Form {
     Ball(RollingBall),
     Lying(LyingBody),
