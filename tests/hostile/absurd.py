@@ -34,6 +34,8 @@ LOAD = _core.constant_torque(V)
 GYROSTAT = BODY.gyrostat(V)
 LOADS = _core.constant_torque(np.ones((SIDE, 1, 3)))
 REGION = regions.ball(1.0)
+BALL = RigidBody.from_principal(1.0, (0.1, 0.1, 0.1))
+SPHERE = rolling.sphere(0.5)
 CONTACT = rolling.plane(rolling.sphere(0.5))
 
 #: Homogeneous shapes and their lengths.
@@ -96,6 +98,10 @@ ROWS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     "RigidBody.free_motion_from_periods": (
         partial(BODY.free_motion_from_periods, mode="long-axis"),
         {"rotation_period": 10.0, "precession_period": 4.0, "phase": 0.0},
+    ),
+    "RigidBody.rolling_motion": (
+        partial(BALL.rolling_motion, SPHERE),
+        {"omega": V, "attitude": Q, "gravity": WEIGHT},
     ),
     "RigidBody.heavy_top": (TOP.heavy_top, {"omega": V, "attitude": Q, "gravity": WEIGHT}),
     "RigidBody.simulate": (
@@ -234,6 +240,9 @@ OTHERS: dict[str, Callable[[], object]] = {
     "RigidBody.simulate, many loads": lambda: COLUMN.simulate([0.0, 1.0], many(V), load=LOADS),
     "motion_sensitivity, many times": lambda: _core.motion_sensitivity(
         COLUMN, np.linspace(0.0, 1.0, SIDE), V, Q, None, "center_of_mass"
+    ),
+    "rolling_states": lambda: _core.rolling_states(
+        BALL, SPHERE, np.ones((SIDE, 3)), None, WEIGHT, 0.0, np.linspace(0.0, 1.0, SIDE)
     ),
     "RigidBody.__getitem__ of rows": lambda: COLUMN[np.broadcast_to(0, ABSURD)],
     "with_states": lambda: _core.with_states(None, np.broadcast_to(1.0, ABSURD)),

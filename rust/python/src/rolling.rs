@@ -623,6 +623,7 @@ pub(crate) fn rolling_states<'py>(
     })?;
     let times = floats(t, "t")?;
     let shape = [&motions.shape[..], times.shape()].concat();
+    memory::room("t", &shape, 2 * size_of::<RollingState>())?;
     let times = times.as_slice()?;
     for (row, motion) in motions.rows.iter().enumerate() {
         for &t in times {
@@ -631,7 +632,6 @@ pub(crate) fn rolling_states<'py>(
                 .map_err(|error| at_row(&motions.shape, row, &to_py(py, &error), py))?;
         }
     }
-    memory::room("t", &shape, 2 * size_of::<RollingState>())?;
     let interrupt = Interrupt::new(None);
     let mut rows = Vec::new();
     let is_complete = py.detach(|| {
