@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from boxes import at, written
 from command_line import run, write_obj
 from oracles.meshes import box, icosphere
 from polhode import RigidBody, assembly, solids
@@ -260,3 +261,18 @@ def test_refused() -> None:
         body.cut((0, 1))
     with pytest.raises(PolhodeError, match="expected numbers of vertices from 0 to 7"):
         cut_mesh(vertices, faces + 1, (0, 0, 1))
+
+
+def test_components_that_overlap_are_told_of_a_cut_too(tmp_path: Path) -> None:
+    path = written(tmp_path / "two.obj", at((1, 1, 1), (0, 0, 0)), at((1, 0.5, 0.7), (0.6, 0.1, 0.05)))
+    options = ("--length-unit", "m", "--density", "2", "--cut", "0 0 1")
+    for command in (("report",), ("spin", "--omega", "0 0 1")):
+        code, out, _ = run(command[0], path, *options, *command[1:])
+        assert code == 0
+        assert "counts twice" in " ".join(out.split())
+        assert "--union" not in out
+    part = '[[part]]\nname = "a"\nfile = "two.obj"\nlength_unit = "m"\ndensity = 2\n'
+    (tmp_path / "whole.toml").write_text(part + "cut = { normal = [0, 0, 1] }\n")
+    code, out, _ = run("assemble", tmp_path / "whole.toml")
+    assert code == 0
+    assert "counts twice" in " ".join(out.split())

@@ -11,7 +11,7 @@ import pytest
 from mpmath import mp, mpf
 from oracles import load_cases
 from oracles.by_scipy import by_dop853, full_tensor, product
-from oracles.motion_cases import MotionCase, State, angle, apart, load_table, relative_error
+from oracles.motion_cases import MotionCase, State, angle, apart, load_table, named, relative_error
 from oracles.returning import unit
 from oracles.rotation import apply, inverse, turned
 
@@ -22,10 +22,6 @@ SOON = (
     "feedback: generic",
     "six degrees of freedom: thrust",
 )
-
-
-def named(cases: Any) -> pytest.MarkDecorator:
-    return pytest.mark.parametrize("case", tuple(cases), ids=lambda case: case.name)
 
 
 def of_kind(*kinds: str) -> pytest.MarkDecorator:

@@ -12,19 +12,13 @@ from mpmath import mp, mpf
 from oracles import free_cases, top_cases
 from oracles.acting import Weight
 from oracles.jacobi import JacobiMotion
-from oracles.motion_cases import MotionCase, State, angle, apart, load_table, relative_error
+from oracles.motion_cases import MotionCase, State, angle, apart, load_table, named, relative_error
 from oracles.rotation import Rotation, apply, cross, inverse, turned
 from oracles.taylor import steps
 from scipy.integrate import solve_ivp
 
 FREE = load_table(free_cases.NAME)
 TOPS = load_table(top_cases.NAME)
-
-
-def named(cases: tuple[MotionCase, ...], *, long: tuple[str, ...] = ()) -> pytest.MarkDecorator:
-    """Cases by their names, those of `long` with this mark."""
-    params = [pytest.param(one, id=one.name, marks=[pytest.mark.long] * (one.name in long)) for one in cases]
-    return pytest.mark.parametrize("case", params)
 
 
 def tensor(case: MotionCase) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from oracles import load_cases
 from oracles.by_scipy import by_dop853
-from oracles.motion_cases import MotionCase, angle, load_table, relative_error
+from oracles.motion_cases import MotionCase, angle, load_table, named, relative_error
 from polhode import RigidBody, Trajectory, loads, orbits
 
 CASES = load_table(load_cases.NAME)
@@ -70,10 +70,6 @@ def errors(case: MotionCase, trajectory: Trajectory) -> list[float]:
             parts.append(relative_error(trajectory.velocity[i], want.velocity))
         found.append(max(parts))
     return found
-
-
-def named(cases: Any) -> pytest.MarkDecorator:
-    return pytest.mark.parametrize("case", tuple(cases), ids=lambda case: case.name)
 
 
 def is_stiff(case: MotionCase) -> bool:

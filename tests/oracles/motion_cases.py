@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any, Literal, NamedTuple, TypeAlias
 
 import mpmath
+import pytest
 from mpmath import mp, mpf
 
 from oracles.rotation import conjugate
@@ -29,6 +30,7 @@ __all__ = [
     "apart",
     "generate",
     "load_table",
+    "named",
     "relative_error",
     "unit_floats",
     "write_table",
@@ -110,6 +112,12 @@ class MotionCase(NamedTuple):
 def load_table(name: str) -> tuple[MotionCase, ...]:
     """The cases of one table, their expected states as mpmath numbers."""
     return tuple(_case(entry) for entry in json.loads((TABLES / f"{name}.json").read_text("utf-8")))
+
+
+def named(cases: Iterable[MotionCase], *, long: Sequence[str] = ()) -> pytest.MarkDecorator:
+    """Run a test with cases by their names, those of `long` with this mark."""
+    params = [pytest.param(one, id=one.name, marks=[pytest.mark.long] * (one.name in long)) for one in cases]
+    return pytest.mark.parametrize("case", params)
 
 
 def generate(name: str, cases: Iterable[MotionCase], proven: Callable[[MotionCase], MotionCase]) -> None:

@@ -261,14 +261,16 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
             body = body_by_names(loaded, options.pop("density"), scale=metres, **options)
         return Matter(body, metres, notes=(*loaded.notes, *(str(each.message) for each in told)))
     solid = solid_of(loaded, scale=metres, **options)
+    is_whole = options.keys().isdisjoint(("union", "closure", "repair", "weld", "thickness"))
     if plane is not None:
         weights = {key: options.get(key) for key in ("density", "mass")}
         mended = {key: options.get(key) for key in ("closure", *_SWITCHES)}
         weld = options.get("weld", 0.0)
         solid, left = cut_solid(loaded, solid, plane, **weights, scale=metres, weld=weld, mended=mended)
         found = None if left is None or len(left.faces) > MOST_FACES else (left.vertices, left.faces)
-        return Matter(solid.body, metres, notes=loaded.notes, mesh=found)
-    is_whole = options.keys().isdisjoint(("union", "closure", "repair", "weld", "thickness"))
+        is_shown = is_whole and solid.faces <= MOST_FACES
+        lines = overlapping(loaded.mesh.vertices * metres, loaded.mesh.faces) if is_shown else []
+        return Matter(solid.body, metres, notes=(*loaded.notes, *lines), mesh=found)
     if loaded.cad is not None or not is_whole or solid.faces > MOST_FACES:
         return Matter(
             solid.body, metres, notes=loaded.notes

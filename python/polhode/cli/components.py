@@ -90,7 +90,8 @@ def overlaps_beside(loaded: FileContent, solid: MeshSolid, options: BodyOptions,
     if options.union or options.repair or options.closure is not None or options.weld is not None:
         return []
     lines = overlapping(loaded.mesh.vertices * scale, loaded.mesh.faces, _unit(options))
-    return [*lines, _WAY_OUT] if lines else []
+    # What is joined is not cut.
+    return [*lines, _WAY_OUT] if lines and not options.cut else lines
 
 
 def weigh(

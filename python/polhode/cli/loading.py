@@ -142,9 +142,8 @@ def _load_mesh(file: Path, options: BodyOptions, with_shape: bool, with_componen
     notes = [*_note_units(options, unit), *_of_unit(loaded, asked), *loaded.notes]
     if thickness is not None:
         notes.append(f"the mesh is the middle of a sheet {options.thickness} thick (--thickness)")
-    notes += (
-        [] if with_components or thickness is not None else overlaps_beside(loaded, solid, options, scale)
-    )
+    if thickness is None and not (with_components and plane is None):
+        notes += overlaps_beside(loaded, solid, options, scale)
     notes += _unusual(solid.volume, unit, loaded)
     if weld != 0.0 and not options.repair:
         notes.append(f"{solid.welded} corners were joined to others within {weld:g} (--weld)")

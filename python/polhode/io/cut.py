@@ -94,8 +94,7 @@ def cut_mesh(
     -------
     Mesh
         Closed. The section is a fan of triangles about one point: of a section that is not convex they
-        overlap with
-        opposite signs, which changes no integral, but is not meant to be drawn.
+        overlap with opposite signs, which changes no integral, but is not meant to be drawn.
 
     Raises
     ------

@@ -56,9 +56,7 @@ impl PySurface {
         &self,
         py: Python<'py>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let function = py.import("polhode.rolling")?.getattr(self.function)?;
-        let arguments = self.arguments.iter().map(|(_, value)| value.bind(py));
-        Ok((function, PyTuple::new(py, arguments)?))
+        parts_of(py, self.function, &self.arguments)
     }
 
     /// Compute the point of contact with a plane.
@@ -129,6 +127,17 @@ fn call_of(
     });
     let given = given.collect::<PyResult<Vec<_>>>()?.join(", ");
     Ok(format!("rolling.{function}({given})"))
+}
+
+/// A function of `polhode.rolling` and its arguments, for pickle.
+fn parts_of<'py>(
+    py: Python<'py>,
+    function: &str,
+    arguments: &[(&'static str, Py<PyAny>)],
+) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+    let function = py.import("polhode.rolling")?.getattr(function)?;
+    let given = arguments.iter().map(|(_, value)| value.bind(py));
+    Ok((function, PyTuple::new(py, given)?))
 }
 
 /// Directions as unit vectors.
@@ -421,9 +430,7 @@ impl PyRuledSurface {
         &self,
         py: Python<'py>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let function = py.import("polhode.rolling")?.getattr(self.function)?;
-        let arguments = self.arguments.iter().map(|(_, value)| value.bind(py));
-        Ok((function, PyTuple::new(py, arguments)?))
+        parts_of(py, self.function, &self.arguments)
     }
 
     /// Compute the ends of the line on which the surface lies.
