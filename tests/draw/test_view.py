@@ -137,8 +137,9 @@ class TestMotion:
     ) -> None:
         """In a window: here one without a screen."""
         monkeypatch.setattr(pyvista, "OFF_SCREEN", False)
+        small = pyvista.Plotter(off_screen=False, window_size=[96, 64])  # it is drawn up to a hundred times
         with pytest.warns(UserWarning, match="duration: .* turns by up to 96.9 deg"):
-            plotter = view.motion(motion, pyvista.Plotter(off_screen=False), duration=0.2)
+            plotter = view.motion(motion, small, duration=0.2)
         slider = getattr(plotter, "widgets", plotter).slider_widgets[0]
         slider.GetRepresentation().SetValue(float(motion.t[37]))
         slider.InvokeEvent("InteractionEvent")

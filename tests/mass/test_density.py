@@ -164,8 +164,14 @@ def check(case: Case, body: RigidBody, rtol: float) -> None:
 
 
 class TestSuite:
-    @pytest.mark.parametrize("name", SUITE)
-    @pytest.mark.parametrize("rtol", [1e-4, 1e-9, 1e-12])
+    @pytest.mark.parametrize(
+        ("name", "rtol"),
+        [
+            pytest.param(name, rtol, marks=[pytest.mark.long] * ((at + turn) % 3 > 0))
+            for at, name in enumerate(SUITE)
+            for turn, rtol in enumerate([1e-4, 1e-9, 1e-12])
+        ],
+    )
     def test_the_error_is_within_what_is_reported(self, name: str, rtol: float) -> None:
         case = SUITE[name]()
         check(case, RigidBody.from_density(case.density, case.bounds, rtol=rtol), rtol)
