@@ -13,7 +13,7 @@ import pytest
 from boxes import at, written
 from command_line import run, write_obj
 from oracles.meshes import box, icosphere
-from polhode import RigidBody, assembly, solids
+from polhode import RigidBody, Uncertain, assembly, solids
 from polhode.errors import PolhodeError
 from polhode.io import cut_mesh
 
@@ -142,6 +142,27 @@ def test_a_mesh_of_stl_whose_corners_stand_anew() -> None:
     same = cut_mesh(vertices, faces, (1, 2, 3), (0.1, 0.2, 0.3))
     one, other = (RigidBody.from_mesh(each.vertices, each.faces, density=1.0) for each in (part, same))
     assert one.isclose(other, rtol=1e-14)
+
+
+@pytest.mark.parametrize("orient", [False, True])
+@pytest.mark.parametrize("count", [4, 5])  # 5,120 faces, which a body holds, and 20,480, which it does not
+def test_a_file_of_stl_is_cut_as_its_mesh(tmp_path: Path, orient: bool, count: int) -> None:
+    vertices, faces = icosphere(count, 1.0)
+    corners = vertices.astype(np.float32)[faces if not orient else faces[:, ::-1]]
+    rows = np.zeros(len(faces), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")])
+    rows["corners"] = corners
+    path = tmp_path / "ball.stl"
+    path.write_bytes(b"\0" * 80 + np.uint32(len(faces)).tobytes() + rows.tobytes())
+    body = RigidBody.from_file(path, density=Uncertain(2.0, 0.1), orient=orient)
+    if count == 5:
+        with pytest.raises(PolhodeError, match="at most 20,000 faces, and this one holds no shape"):
+            body.cut((1, 2, 3))
+        return
+    assert body.sigma is not None
+    assert float(body.sigma.mass) == pytest.approx(0.05 * float(body.mass))
+    part = cut_mesh(vertices.astype(np.float32).astype(float), faces, (1, 2, 3), (0.1, 0.2, 0.3))
+    whole = RigidBody.from_mesh(part.vertices, part.faces, density=2.0)
+    assert body.cut((1, 2, 3), (0.1, 0.2, 0.3)).isclose(whole, rtol=1e-13)
 
 
 PONTOON = {"name": "hull", "file": "hull.obj", "length_unit": "mm", "density": "1.025 g/cm^3"}

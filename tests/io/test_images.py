@@ -127,7 +127,11 @@ def test_command_line_and_assembly(tmp_path: Path, labels: np.ndarray) -> None:
     assert done[0] == 0, done
     density = np.where(labels == 1, 1000.0, np.where(labels > 1, 2000.0, 0.0))
     expected = RigidBody.from_voxels(density, 1e-3)
-    assert json.loads(done[1])["mass"] == pytest.approx(float(expected.mass), rel=1e-12)
+    told = json.loads(done[1])
+    assert told["mass"] == pytest.approx(float(expected.mass), rel=1e-12)
+    found, bodies = RigidBody.from_labelled_voxels(labels, {1: 1000.0, "*": 2000.0}, spacing=1e-3)
+    assert [row["value"] for row in told["regions"]] == found.tolist() == [1, 2, 3]
+    assert np.allclose([row["mass"] for row in told["regions"]], bodies.mass, rtol=1e-12)
     done = run("report", path)
     assert done[0] == 2
     assert "--density" in done[2]
@@ -150,3 +154,36 @@ def test_refused(tmp_path: Path) -> None:
         (tmp_path / name).write_bytes(b"\0" * 128 + b"DICM" + b"\0" * 400)
         with pytest.raises(FileFormatError, match="dcm2niix -z y -f scan FOLDER"):
             RigidBody.from_file(tmp_path / name, density=1.0)
+
+
+@pytest.mark.parametrize("name", ["a.nii", "a.nrrd"])
+def test_a_scan_without_a_unit(tmp_path: Path, labels: np.ndarray, name: str) -> None:
+    """Python asks for the unit, since scans are in millimetres; a report says that it is not known."""
+    path = tmp_path / name
+    if name.endswith("nrrd"):
+        pytest.importorskip("nrrd").write(str(path), labels)
+    else:
+        write_nifti(path, labels, "unknown")
+    for read in (RigidBody.from_file, RigidBody.from_labelled_voxels):
+        with pytest.raises(PolhodeError, match='states no unit of length; give length_unit="mm"'):
+            read(path, density={1: 1000.0})
+        read(path, density={1: 1000.0}, length_unit="mm")
+    code, out, _ = run("report", path, "--density", "1=1000")
+    assert code == 0
+    assert "unit unknown" in out
+
+
+def test_labels_are_no_factors(tmp_path: Path) -> None:
+    values = np.zeros((3, 3, 3), dtype=np.int16)
+    values[1, 1] = 1
+    path = tmp_path / "a.npy"
+    np.save(path, values)
+    one = RigidBody.from_file(path, density=1000.0)
+    for kind in (np.int16, np.float64):
+        values[0, 1] = 2
+        np.save(path, values.astype(kind))
+        with pytest.raises(PolhodeError, match=r"density: a number multiplies the values, .* up to 2"):
+            RigidBody.from_file(path, density=1000.0)
+    assert RigidBody.from_file(path, density=1.0).mass == 9.0  # they are densities
+    np.save(path, values / 4)
+    assert RigidBody.from_file(path, density=4000.0).mass == pytest.approx(3.0 * float(one.mass))

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from polhode import robots
+from scipy.spatial.transform import Rotation
 
 
 def parse(source: bytes) -> robots.Robot:
@@ -76,6 +77,9 @@ def inertial(tensor: str, place: str = "0.1 0.2 0.3", mass: str = "2") -> str:
         (inertial(MIRRORED, "0.1 -0.2 0.3"), ""),
         (inertial(MIRRORED, "0.1 -0.2 0.3", "2.5"), "its mass is 2.5 kg, that of the other 2 kg"),
         (inertial(TENSOR), "it has the same numbers, which are not those of its mirror image"),
+        (inertial(MIRRORED, "0.1 0.2 0.3"), "its centre of mass c lies otherwise in its inertia I"),
+        (inertial(TENSOR, "0.1 -0.2 0.3"), "its centre of mass c lies otherwise in its inertia I"),
+        (inertial(MIRRORED, "0.3 -0.2 0.1"), "its centre of mass c lies otherwise in its inertia I"),
         (inertial(MIRRORED, "0.1 -0.4 0.3"), "its centre of mass is 0.5099 m from its origin"),
         (inertial(MIRRORED.replace('"6"', '"7"'), "0.1 -0.2 0.3"), "its principal moments are"),
     ],
@@ -95,3 +99,23 @@ def test_links_that_are_no_twins() -> None:
     for names in (("arm", "leg"), ("left_arm", "right_leg"), ("frame", "flame"), ("ball", "barr")):
         robot = parse(two_arms(inertial(TENSOR), inertial(TENSOR), names))
         assert not any("mirror" in note for verdict in robots.check(robot) for note in verdict.notes)
+
+
+def test_frames_of_twins_may_be_any(rng: np.random.Generator) -> None:
+    """A mirror image stays one in axes that are turned; a copied centre or tensor does not become one."""
+    tensor = np.array([(4, -0.5, 0.25), (-0.5, 5, 0.75), (0.25, 0.75, 6.0)])
+    center, signs = np.array([0.1, 0.2, 0.3]), np.array([1.0, -1.0, 1.0])
+    mirrored = np.outer(signs, signs) * tensor
+    for turn in Rotation.random(20, rng=rng).as_matrix():
+        for own, place, is_twin in (
+            (mirrored, signs * center, True),
+            (mirrored, center, False),
+            (tensor, signs * center, False),
+        ):
+            turned = turn @ own @ turn.T
+            names = (("ixx", 0, 0), ("ixy", 0, 1), ("ixz", 0, 2), ("iyy", 1, 1), ("iyz", 1, 2), ("izz", 2, 2))
+            text = " ".join(f'{name}="{turned[i, j]:.6g}"' for name, i, j in names)
+            right = inertial(text, " ".join(f"{x:.6g}" for x in turn @ place))
+            robot = parse(two_arms(inertial(TENSOR), right))
+            notes = [note for verdict in robots.check(robot) for note in verdict.notes if "mirror" in note]
+            assert bool(notes) != is_twin

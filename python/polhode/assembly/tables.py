@@ -57,7 +57,18 @@ FILE: Final = (
     "repair",
     "index_base",
 )
-_MOST_NAMES: Final = 30
+_MOST_NAMES: Final = 40
+_SYNONYMS: Final = {
+    "mesh": "file",
+    "path": "file",
+    "filename": "file",
+    "shape": "solid",
+    "unit": "length_unit",
+    "units": "length_unit",
+    "mirrored": "mirror",
+    "translation": "position",
+}
+"""Words of others for keys."""
 PRINTED: Final = ("mass", "com", "tensor", "products", "about", "rtol")
 """Keys of `inertia`, as CAD programs print it."""
 
@@ -89,7 +100,8 @@ def unknown(key: str, known: Collection[str]) -> str:
 
 def suggest_name(name: str, known: Collection[str]) -> str:
     """Propose the known name that is nearest to a wrong one, or list the known names."""
-    near = difflib.get_close_matches(name, known, n=1)
+    synonym = _SYNONYMS.get(name.lower(), "")
+    near = [synonym] if synonym in known else difflib.get_close_matches(name, known, n=1)
     names = [*known][:_MOST_NAMES]
     more = f" and {len(known) - len(names)} more" if len(known) > len(names) else ""
     return f"is {near[0]!r} meant?" if near else f"give one of {', '.join(names)}{more}"

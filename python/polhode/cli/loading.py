@@ -72,6 +72,8 @@ class LoadedBody:
         What was read where it is neither a mesh nor a molecule: "saved body", "assembly" or "printout".
     crossings : CellCrossings or None
         What crosses the cell of a molecule's file, where it has one.
+    regions : tuple of (int, RigidBody)
+        Of an image: the body of the voxels of each value that has a density of its own.
     """
 
     body: RigidBody
@@ -89,6 +91,7 @@ class LoadedBody:
     states_unit: bool = False
     kind: str = ""
     crossings: CellCrossings | None = None
+    regions: tuple[tuple[int, RigidBody], ...] = ()
 
     @property
     def moment_unit(self) -> str:

@@ -8,9 +8,11 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+
 from polhode.cli.components import has_names
 from polhode.cli.files import label
-from polhode.cli.layout import Field, Report
+from polhode.cli.layout import Column, Field, Report, Table
 from polhode.cli.loading import LoadedBody, load_body
 from polhode.cli.options import BodyOptions
 from polhode.cli.tables import (
@@ -24,13 +26,17 @@ from polhode.cli.tables import (
 )
 from polhode.errors import PolhodeError
 from polhode.io.formats import check_arguments
-from polhode.io.images import body_of_image, is_image, read_image, unit_of
+from polhode.io.images import bodies_of_labels, body_of_image, is_image, read_image, unit_of
 from polhode.io.mesh_solid import naming_file
 from polhode.io.read import is_whole, read_whole
 from polhode.units import amount, has_unit, metres_per, quantities, quantity, split, vector
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
+
+    from polhode import RigidBody
+    from polhode.io.images import Image
 
 __all__ = [
     "any_body",
@@ -96,6 +102,7 @@ def _image_body(file: Path, options: BodyOptions) -> LoadedBody:
     names = [item.partition("=")[::2] for item in weight.split(",")] if has_names(options.density) else []
     if unit is None and has_unit(names[0][1] if names else weight):
         raise PolhodeError("--density, --mass: the file states no unit of length; state --length-unit too")
+    scale = 1.0 if unit is None else metres_per(unit)
     density: float | dict[float | str, float] | None = None
     if names:
         density = {name.strip(): quantity(text, "kg/m^3", "--density") for name, text in names}
@@ -103,13 +110,49 @@ def _image_body(file: Path, options: BodyOptions) -> LoadedBody:
         density = quantity(options.density, "kg/m^3", "--density")
     mass = None if options.mass is None else quantity(options.mass, "kg", "--mass")
     with naming_file(file):
-        body = body_of_image(image, density, mass, 1.0 if unit is None else metres_per(unit))
+        body = body_of_image(image, density, mass, scale)
+        parts = _bodies_by_value(image, density, scale) if isinstance(density, dict) else ()
     sides = " x ".join(map(str, image.values.shape))
     notes = [f"{sides} voxels, each a homogeneous cell; its axes are those of the file"]
     if unit is None:
         notes.append("unit unknown: all results are in the file's own unit of length")
     mass_unit, length = ("kg", "m") if unit else ("mass", "unit")
-    return LoadedBody(body, [], mass_unit, length, notes=(*notes,), kind="image", length_unit=unit)
+    return LoadedBody(
+        body, [], mass_unit, length, notes=(*notes,), kind="image", length_unit=unit, regions=parts
+    )
+
+
+def _bodies_by_value(
+    image: Image, density: Mapping[Any, float], scale: float
+) -> tuple[tuple[int, RigidBody], ...]:
+    """Return the body of the voxels of each value, where the values are labels."""
+    if image.values.dtype.kind == "f" and not (image.values == np.round(image.values)).all():
+        return ()
+    affine = image.affine.copy()
+    affine[:3] *= scale
+    found, bodies = bodies_of_labels(image.values, density, affine=affine)
+    return tuple((int(value), bodies[k]) for k, value in enumerate(found))
+
+
+def _regions(loaded: LoadedBody) -> Table:
+    """List the voxels of each value."""
+    moments = f"{loaded.moment_unit}"
+    columns = (
+        Column("value", "value"),
+        Column("mass", "mass", loaded.mass_unit),
+        Column("center_of_mass", "centre of mass", loaded.length),
+        Column("principal_moments", "principal moments", moments),
+    )
+    rows = [
+        {
+            "value": value,
+            "mass": body.mass,
+            "center_of_mass": body.center_of_mass,
+            "principal_moments": body.principal_moments,
+        }
+        for value, body in loaded.regions
+    ]
+    return Table("regions", columns, rows)
 
 
 def _read_printout(file: Path | None, options: BodyOptions) -> LoadedBody:
@@ -169,8 +212,14 @@ def whole_report(
         "",
         Field("file", "file", "(inertia)" if file is None else label(file)),
         Field("format", "format", loaded.kind),
-        Field("length_unit", "length unit", "m" if loaded.length == "m" else "unit unknown"),
+        Field(
+            "length_unit",
+            "length unit",
+            "unit unknown" if loaded.length != "m" else loaded.length_unit or "m",
+        ),
     )
+    if loaded.regions:
+        report.section("voxels of each value", _regions(loaded))
     body_sections(report, loaded, FileUnits("m", mass_unit), about)
     return report
 

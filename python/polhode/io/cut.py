@@ -230,7 +230,10 @@ def cut_solid(
     whole = triangles.sum(axis=0)
     is_simple = bool((triangles @ whole >= 0.0).all())
     area = _core.surface_area(parts.corners, parts.surface) + float(np.linalg.norm(whole))
-    return CutSolid(solid._replace(body=body, volume=volume, area=area), left if is_simple else None)
+    found = solid._replace(
+        body=body, volume=volume, area=area, vertices=len(left.vertices), faces=len(left.faces)
+    )
+    return CutSolid(found, left if is_simple else None)
 
 
 def _mesh_of(body: RigidBody) -> tuple[Floats, Integers]:

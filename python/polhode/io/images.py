@@ -35,6 +35,7 @@ __all__ = [
     "body_of_image",
     "grey_value_density",
     "is_image",
+    "metres_per_unit",
     "read_image",
     "unit_of",
 ]
@@ -303,6 +304,7 @@ def body_of_image(
     if density is None or not (callable(density) or isinstance(density, Mapping)):
         found: Any = values
         weight = 1.0 if density is None else density
+        _check_factors(values, weight)
     elif callable(density):
         found = np.asarray(density(values), dtype=np.float64)
         if found.shape != values.shape:
@@ -322,6 +324,20 @@ def body_of_image(
     if mass is not None:
         return body.scaled(mass=1.0 / float(body.mass)).scaled(mass=mass)
     return body if isinstance(weight, float) and weight == 1.0 else body.scaled(mass=weight)
+
+
+def _check_factors(values: NDArray[Any], weight: Number) -> None:
+    """Refuse to multiply labels and grey values, which are whole numbers above 1."""
+    highest = values.max(initial=0)
+    if isinstance(weight, float | int) and weight == 1.0:  # the values are densities themselves
+        return
+    if highest > 1 and (values.dtype.kind in "biu" or bool((values == np.round(values)).all())):
+        raise PolhodeError(
+            Argument("density"),
+            f": a number multiplies the values, and these are whole numbers up to {highest:g}, such as "
+            "labels and grey values; give the density of each value, of '*' for all but 0, or a function of "
+            "them",
+        )
 
 
 def _by_value(density: Mapping[Any, Any], present: list[Any]) -> dict[Any, float]:
@@ -358,6 +374,21 @@ def unit_of(image: Image, path: str | os.PathLike[str], length_unit: str | None)
     )
 
 
+def metres_per_unit(image: Image, path: str | os.PathLike[str], length_unit: str | None) -> float:
+    """Return the metres in a unit of an image for Python, where a scan without a unit is refused."""
+    unit = unit_of(image, path, length_unit)
+    if unit is not None:
+        return metres_per(unit)
+    if not os.fspath(path).lower().endswith(".npy"):
+        raise PolhodeError(
+            Argument("length_unit"),
+            f": {os.fspath(path)} states no unit of length; give ",
+            Argument("length_unit", "mm"),
+            ", as scanners have it, or the one it is in",
+        )
+    return 1.0
+
+
 def bodies_of_labels(
     labels: ArrayLike | os.PathLike[str],
     density: ArrayLike | Mapping[int | str, float],
@@ -375,9 +406,8 @@ def bodies_of_labels(
                 Argument(name), f": {os.fspath(labels)} says itself where its voxels are; leave it out"
             )
         image = read_image(labels)
-        unit = unit_of(image, labels, length_unit)
         step = image.affine.copy()
-        step[:3] *= 1.0 if unit is None else metres_per(unit)
+        step[:3] *= metres_per_unit(image, labels, length_unit)
         from polhode.io.mesh_solid import naming_file
 
         with naming_file(labels):

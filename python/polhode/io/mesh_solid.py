@@ -30,6 +30,8 @@ __all__ = ["MeshSolid", "naming_file", "solid_of"]
 _SMALL_FILE: Final = 1 << 28
 """Bytes of a file that is read whole for a hint in an error."""
 _MOST_TRIED: Final = 300_000
+_MOST_HELD: Final = 20_000
+"""Faces of a mesh that its body holds, for pictures and cuts, as that of ``RigidBody.from_mesh`` does."""
 _CLOSURES: Final[tuple[Literal["caps", "hull"], ...]] = ("caps", "hull")
 """Faces of a mesh that is repaired for a hint in an error."""
 _CHECKS, _WELDED, _CLOSURE, _CHANGE = 27, 28, 29, 30
@@ -134,6 +136,8 @@ def solid_of(
                     is_welded = is_welded and _offer_weld(error, loaded.mesh)
                     _offer_repair(error, loaded.mesh, scale, is_welded=is_welded)
             raise
+        if faces <= _MOST_HELD:
+            body = _hold_mesh(body, loaded.mesh, scale, orient=orient)
         return MeshSolid(body, loaded.format, None, faces, volume, area, 0)
     mesh = loaded.mesh
     corners = len(mesh.vertices)
@@ -156,6 +160,13 @@ def solid_of(
     welded = joined + corners - len(mesh.vertices)
     count = len(mesh.vertices)
     return MeshSolid(body._welded(welded), mesh.format, count, len(mesh.faces), volume, area, welded)
+
+
+def _hold_mesh(body: _core.RigidBody, mesh: Mesh, scale: float, *, orient: bool) -> _core.RigidBody:
+    """Return the body of a file that was summed as a stream, with its mesh."""
+    held, _ = _core.RigidBody._from_mesh(mesh.vertices * scale, mesh.faces, density=1.0, orient=orient)
+    numbers = np.array(body.__reduce__()[1][0], dtype=np.float64)
+    return _core.RigidBody._from_numbers(numbers, body._doubts(), held._figures())
 
 
 def _sheet(
@@ -336,7 +347,7 @@ def _name_arguments(error: MeshError) -> None:
 
 def _end_open(error: MeshError, closures: Sequence[str]) -> None:
     close = ("close the mesh (", Argument("closure", tuple(closures)), "), or ") if closures else ()
-    error.end_with(*close, "model a thin shell instead")
+    error.end_with(*close, "model a thin shell with ", Argument("thickness"))
 
 
 def _serving(mesh: Mesh, scale: float) -> list[str]:

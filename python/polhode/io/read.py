@@ -24,7 +24,7 @@ from polhode.io.formats import (
     read_saved,
     warn,
 )
-from polhode.io.images import body_of_image, is_image, read_image, unit_of
+from polhode.io.images import body_of_image, is_image, metres_per_unit, read_image
 from polhode.io.mesh_solid import naming_file, solid_of
 from polhode.units import metres_per
 
@@ -80,9 +80,9 @@ def body_from_file(
     )
     if is_image(path):
         image = read_image(path)
-        unit = unit_of(image, path, length_unit)
+        scale = metres_per_unit(image, path, length_unit)
         with naming_file(path):
-            return body_of_image(image, density, mass, 1.0 if unit is None else metres_per(unit))
+            return body_of_image(image, density, mass, scale)
     if is_whole(path):
         whole = read_whole(path, length_unit)
         warn(path, whole.overlaps)

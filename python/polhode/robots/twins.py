@@ -32,7 +32,8 @@ def twin_notes(links: Sequence[Link]) -> Iterator[tuple[int, str]]:
     """Return the number of each link that is no mirror image of its twin, and what differs.
 
     Twins are links whose names differ by left and right. What no choice of their frames changes is compared:
-    mass, principal moments, the distance of the centre of mass from the origin. Where these agree, the second
+    mass, principal moments, the distance of the centre of mass from the origin, and how it lies in the
+    ellipsoid of inertia. Where these agree, the second
     one must be the mirror image of the first, in axes that may each run the other way, and not its copy.
     """
     places = {link.name: place for place, link in enumerate(links)}
@@ -86,11 +87,36 @@ def _difference(one: RigidBody, other: RigidBody) -> str:
     c, d = (float(np.linalg.norm(body.center_of_mass)) for body in (one, other))
     if abs(c - d) > _ALIKE * size:
         return f"its centre of mass is {c:.4g} m from its origin, that of the other {d:.4g} m"
+    reason = _relation(one, other, size)
+    if reason:
+        return reason
     is_copy = _agree(one, other, np.ones(3), size)
     is_mirrored = any(_agree(one, other, signs, size) for signs in _FRAMES if signs.prod() < 0.0)
     if is_copy and not is_mirrored:
         return "it has the same numbers, which are not those of its mirror image"
     return ""
+
+
+def _relation(one: RigidBody, other: RigidBody, size: float) -> str:
+    """Compare how the centre of mass lies in the tensor: numbers that no choice of frames changes."""
+    i = float(other.principal_moments.max())
+    away = float(np.linalg.norm(other.center_of_mass))
+    # By so much such a number may change where the centre and the tensor are known to 1 %.
+    change = _ALIKE * away * (2.0 * size + away)
+    for power, name in ((1, "c·I c"), (2, "c·I² c")):
+        first, second = (_form(body, power) for body in (one, other))
+        if abs(first - second) > power * change * i**power:
+            return (
+                "its centre of mass c lies otherwise in its inertia I than in a mirror image: "
+                f"{name} is {first:.4g}, that of the other {second:.4g}; the products or the centre have "
+                "signs of the other side"
+            )
+    return ""
+
+
+def _form(body: RigidBody, power: int) -> float:
+    c = body.center_of_mass
+    return float(c @ np.linalg.matrix_power(body.inertia, power) @ c)
 
 
 def _agree(one: RigidBody, other: RigidBody, signs: np.ndarray, size: float) -> bool:
