@@ -1,8 +1,8 @@
 """Least squares among the possible bodies: a convex problem, solved by a barrier method with a certificate.
 
-A body is possible where a matrix that is linear in its parameters is positive semidefinite: the pseudo-inertia
-of Wensing, Kim and Slotine (IEEE Robot. Autom. Lett. 3, 2018, 60), or the second moment about a known centre of
-mass. Boyd and Vandenberghe, Convex Optimization (2004), chapter 11.
+A body is possible where a matrix that is linear in its parameters is positive semidefinite: the
+pseudo-inertia of Wensing, Kim and Slotine (IEEE Robot. Autom. Lett. 3, 2018, 60), or the second moment about
+a known centre of mass. Boyd and Vandenberghe, Convex Optimization (2004), chapter 11.
 """
 
 from __future__ import annotations
@@ -67,11 +67,11 @@ def fit_possible(
 
     Notes
     -----
-    On the central path Z = P⁻¹/t is feasible in the dual problem. For any Z ≥ 0 the difference between the sum
-    of squares and the value of the dual function is ``|R x − c − R⁻ᵀ M*(Z)/2|² + ⟨Z, P(x)⟩``, a sum of two
-    positive terms, so it is known without cancellation wherever the path is left.
+    On the central path Z = P⁻¹/t is feasible in the dual problem. For any Z ≥ 0 the difference between the
+    sum of squares and the value of the dual function is ``|R x − c − R⁻ᵀ M*(Z)/2|² + ⟨Z, P(x)⟩``, a sum of
+    two positive terms, so it is known without cancellation wherever the path is left.
     """
-    free = np.linalg.solve(triangle, target)
+    free: Floats = np.asarray(np.linalg.solve(triangle, target), dtype=np.float64)
     if _is_definite(np.tensordot(free, maps, 1)):
         return free, 0.0, False
     unit = np.abs(start).max()
@@ -125,8 +125,8 @@ def _is_definite(matrix: Floats) -> bool:
 def along_the_edge(covariance: Floats, maps: Floats, x: Floats) -> Floats:
     """Return the matrix that takes changes of x to the changes along the edge on which x lies, shape (p, p).
 
-    On the edge the matrix P has a null space V; bodies along it keep ``Vᵀ P V = 0``. Of changes with the given
-    covariance those remain that their conditional distribution has.
+    On the edge the matrix P has a null space V; bodies along it keep ``Vᵀ P V = 0``. Of changes with the
+    given covariance those remain that their conditional distribution has.
     """
     moments, vectors = np.linalg.eigh(np.tensordot(x, maps, 1))
     empty = vectors[:, moments < 1e-5 * moments[-1]]

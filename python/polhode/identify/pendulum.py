@@ -39,6 +39,9 @@ _STEP: Final = 1e-30
 """Imaginary step of derivatives, which are exact to rounding."""
 _DOUBLINGS: Final = 14
 """Doublings of the number of points of a quadrature."""
+_PASSES: Final = 60
+_ROUNDING: Final = 2e-15
+"""Of a tensor: what `RigidBody` takes for one, relative to the trace."""
 _BASIS: Final = np.array(tensor_of(np.eye(6)))
 
 
@@ -51,8 +54,8 @@ class Pendulum:
     Attributes
     ----------
     device : str
-        ``"compound"``, ``"torsional"`` or ``"bifilar"``; a trifilar pendulum is a bifilar one with the distance
-        of two radii.
+        ``"compound"``, ``"torsional"`` or ``"bifilar"``; a trifilar pendulum is a bifilar one with the
+        distance of two radii.
     numbers : dict of str
         What was measured, by the names of the arguments.
     """
@@ -90,7 +93,7 @@ class Pendulum:
         >>> from polhode import identify, rods
         >>> swing = identify.compound((0, 1, 0), (0, 0, 0.5), period=1.7, amplitude=np.deg2rad(40))
         >>> round(swing.exact_period(rods.rod(1.0, mass=1.0), gravity=9.81), 4)
-        1.6892
+        1.6893
         """
         check_kind(body, "body", "RigidBody")
         if body.shape != ():
@@ -104,9 +107,7 @@ class Pendulum:
         return float(np.sqrt(square))
 
 
-def compound(
-    axis: Any, about: Any, period: Any, amplitude: Any = 0.0, *, decrement: Any = 0.0
-) -> Pendulum:
+def compound(axis: Any, about: Any, period: Any, amplitude: Any = 0.0, *, decrement: Any = 0.0) -> Pendulum:
     """Return the period of a body that swings about a horizontal axis.
 
     Each number may be uncertain: an `Uncertain`, or a ``ufloat`` of the package *uncertainties*.
@@ -122,8 +123,8 @@ def compound(
     amplitude : float
         Largest angle from rest, in radians.
     decrement : float
-        Logarithmic decrement: the logarithm of the ratio of two amplitudes that follow one another. A linearly
-        damped swing takes longer by the factor ``√(1 + (decrement/2π)²)``.
+        Logarithmic decrement: the logarithm of the ratio of two amplitudes that follow one another. A
+        linearly damped swing takes longer by the factor ``√(1 + (decrement/2π)²)``.
 
     Returns
     -------
@@ -162,8 +163,8 @@ def torsional(
         Direction of the wire in the body frame; it passes through the centre of mass.
     period : float
     stiffness : float, optional
-        Torque per radian. Without it the wire is one of unknown stiffness, the same in all rows that have none;
-        rows with `known` measure it in the same fit.
+        Torque per radian. Without it the wire is one of unknown stiffness, the same in all rows that have
+        none; rows with `known` measure it in the same fit.
     fixture : float
         Moment of inertia of what holds the body.
     known : float, optional
@@ -258,8 +259,8 @@ def trifilar(
     Parameters
     ----------
     axis : array_like, shape (3,)
-        Direction of the vertical in the body frame. It passes through the centre of mass and the middle of the
-        wires.
+        Direction of the vertical in the body frame. It passes through the centre of mass and the middle of
+        the wires.
     period, length : float
         As of :func:`bifilar`.
     radius : float
@@ -279,7 +280,8 @@ def trifilar(
     Examples
     --------
     >>> from polhode import identify
-    >>> swing = identify.trifilar((0, 0, 1), 1.31, length=0.8, radius=0.15, plate_mass=0.4, plate_moment=0.005)
+    >>> swing = identify.trifilar((0, 0, 1), 1.31, length=0.8, radius=0.15, plate_mass=0.4,
+    plate_moment=0.005)
     >>> swing.numbers["radius"]
     0.15
     """
@@ -367,7 +369,9 @@ def _mean_by_sums(gyration: Any, length: Any, share: Any, top: Any) -> Any:
     return found
 
 
-def _square(device: str, x: dict[str, Any], mass: Any, center: Any, tensor: Any, stiffness: Any, g: Any) -> Any:
+def _square(
+    device: str, x: dict[str, Any], mass: Any, center: Any, tensor: Any, stiffness: Any, g: Any
+) -> Any:
     """Compute the square of the period, of real or complex numbers."""
     damped = 4.0 * np.pi**2 * (1.0 + (x["decrement"] / (2.0 * np.pi)) ** 2)
     n = x["axis"] / np.sqrt(np.sum(x["axis"] ** 2))
@@ -409,7 +413,8 @@ def from_pendulum(
     mass : float, optional
         Without it the mass is estimated too, which takes pendulums of both kinds: on wires, and on an axis.
     center_of_mass : array_like, shape (3,), optional
-        In the body frame, by default its origin. None to estimate it, from compound pendulums about several axes.
+        In the body frame, by default its origin. None to estimate it, from compound pendulums about several
+        axes.
     normal : array_like, shape (3,), optional
         Normal of a plane through the centre of mass that mirrors the body: it is a principal axis.
     axis : array_like, shape (3,), optional
@@ -420,9 +425,9 @@ def from_pendulum(
     Returns
     -------
     Identified
-        Its body depends on the same sources as the measurements: two parts that were measured with one wire are
-        correlated. `residuals`, shape (k, 1), are the errors of the sources. Where no number has a sigma, every
-        period is taken to have the same relative sigma, ``noise``, from the residuals.
+        Its body depends on the same sources as the measurements: two parts that were measured with one wire
+        are correlated. `residuals`, shape (k, 1), are the errors of the sources. Where no number has a sigma,
+        every period is taken to have the same relative sigma, ``noise``, from the residuals.
 
     Raises
     ------
@@ -464,8 +469,8 @@ class _Task:
     """The unknown numbers, the measured ones, and the equations between them.
 
     Each row is an equation: the square of its exact period over the square of the measured one is 1. The
-    measured numbers x are their values plus a linear form of independent errors u. The most likely unknowns are
-    those of the smallest |u|² with which all equations hold.
+    measured numbers x are their values plus a linear form of independent errors u. The most likely unknowns
+    are those of the smallest |u|² with which all equations hold.
     """
 
     def __init__(
@@ -497,8 +502,8 @@ class _Task:
 
         for row in rows:
             self.places.append({name: put(one) for name, one in row.numbers.items() if one is not None})
-        self.at_gravity = put(gravity)
-        self.at_mass = None if mass is None else put(mass)
+        self.at_gravity: Any = put(gravity)
+        self.at_mass: Any = None if mass is None else put(mass)
         self.at_center: Any = None
         if center_of_mass is not None:
             if np.shape(_value(center_of_mass)) != (3,):
@@ -540,53 +545,45 @@ class _Task:
         tensor = np.tensordot(z[self.first : self.first + len(self.basis)], self.basis, 1)
         return mass, center, tensor
 
-    def equations(self, z: Any, x: Any) -> Any:
-        """Compute the square of each exact period over that of the measured one, minus 1."""
-        body = self.numbers_of(z, x)
-        found = []
-        for row, places in zip(self.rows, self.places, strict=True):
-            given = {name: x[at] for name, at in places.items()}
-            stiffness = given.get("stiffness", z[-1] if self.wire else None)
-            square = _square(row.device, given, *body, stiffness, x[self.at_gravity])
-            found.append(square / given["period"] ** 2 - 1.0)
-        return np.array(found)
+    def equation(self, k: int, z: Any, x: Any) -> Any:
+        """Compute the square of an exact period over that of the measured one, minus 1."""
+        mass, center, tensor = self.numbers_of(z, x)
+        given = {name: x[at] for name, at in self.places[k].items()}
+        stiffness = given.get("stiffness", z[-1] if self.wire else None)
+        square = _square(self.rows[k].device, given, mass, center, tensor, stiffness, x[self.at_gravity])
+        return square / given["period"] ** 2 - 1.0
 
-    def slopes(self, z: Floats, x: Floats) -> tuple[Floats, Floats]:
-        """Compute the derivatives of the equations by the unknowns and by the measured numbers."""
-
-        def by(point: Floats, others: Any) -> Floats:
-            columns = np.zeros((len(self.rows), len(point)))
-            for k in range(len(point)):
-                moved = point.astype(complex)
-                moved[k] += 1j * _STEP * max(abs(point[k]), 1e-3)
-                columns[:, k] = others(moved).imag / (_STEP * max(abs(point[k]), 1e-3))
-            return columns
-
-        by_x = np.zeros((len(self.rows), len(x)))
-        moving = (self.forms != 0.0).any(axis=1) if self.forms.size else np.zeros(len(x), dtype=bool)
-        if moving.any():
-            which = np.flatnonzero(moving)
-
-            def at(part: Any) -> Any:
-                whole = x.astype(complex)
-                whole[which] = part
-                return self.equations(z, whole)
-
-            by_x[:, which] = by(x[which], at)
-        return by(z, lambda point: self.equations(point, x)), by_x
+    def equations(self, z: Floats, x: Floats) -> tuple[Floats, Floats, Floats]:
+        """Compute the equations, and their derivatives by the unknowns and by the measured numbers."""
+        found = np.array([self.equation(k, z, x) for k in range(len(self.rows))])
+        by_z, by_x = np.zeros((len(found), len(z))), np.zeros((len(found), len(x)))
+        moving = (self.forms != 0.0).any(axis=1)
+        for k, places in enumerate(self.places):
+            shared = [self.at_gravity, self.at_mass, self.at_center]
+            own = np.concatenate(
+                [np.arange(len(x))[at].ravel() for at in (*places.values(), *shared) if at is not None]
+            )
+            for point, which, columns in ((z, range(len(z)), by_z), (x, own[moving[own]], by_x)):
+                for place in which:
+                    step, moved = _STEP * max(abs(point[place]), 1e-3), point.astype(complex)
+                    moved[place] += 1j * step
+                    value = self.equation(k, *((moved, x) if point is z else (z, moved)))
+                    columns[k, place] = np.imag(value) / step
+        return found, by_z, by_x
 
     def start(self) -> tuple[Floats, Floats]:
         """Return unknowns to begin with, and their sizes."""
-        mass = self.x[self.at_mass] if self.at_mass is not None else 1.0
+        mass = float(self.x[self.at_mass]) if self.at_mass is not None else 1.0
         wires = [
             4.0 * np.pi**2 * (self.x[at["known"]] + self.x[at["fixture"]]) / self.x[at["period"]] ** 2
             for row, at in zip(self.rows, self.places, strict=True)
             if "known" in at and "stiffness" not in at
         ]
         stiffness = float(np.mean(wires)) if wires else 1.0
-        gravity, moments = self.x[self.at_gravity], []
-        for row, at in zip(self.rows, self.places, strict=True):
-            given = {name: self.x[place] for name, place in at.items()}
+        gravity = float(self.x[self.at_gravity])
+        moments: list[float] = []
+        for row, place in zip(self.rows, self.places, strict=True):
+            given: dict[str, Any] = {name: self.x[one] for name, one in place.items()}
             if "known" in given:
                 continue
             turn = (given["period"] / (2.0 * np.pi)) ** 2
@@ -598,8 +595,14 @@ class _Task:
                 moments.append(whole * gravity * distance**2 * turn / (4.0 * given["length"]))
             else:
                 center = np.zeros(3) if self.at_center is None else self.x[self.at_center]
-                arm = float(np.linalg.norm(center - given["about"])) or 1.0
-                moments.append(mass * max(gravity * arm * turn - arm**2, 0.04 * arm**2))
+                n = given["axis"] / np.linalg.norm(given["axis"])
+                arm = float(np.linalg.norm(np.cross(center - given["about"], n)))
+                if self.at_center is not None and arm <= 1e-12 * float(np.abs(given["about"]).max()):
+                    raise ValueError(
+                        f"about: the axis through {given['about'].tolist()} meets the centre of mass, "
+                        "and the body does not swing; check about= and center_of_mass="
+                    )
+                moments.append(mass * max(float(gravity * arm * turn) - arm**2, 0.04 * arm**2))
         moment = float(np.mean([one for one in moments if one > 0.0] or [mass]))
         z = np.zeros(len(self.unknown))
         z[self.first : self.first + len(self.basis)] = np.linalg.lstsq(
@@ -609,8 +612,8 @@ class _Task:
         if self.at_mass is None:
             z[0] = sizes[0] = mass
         if self.at_center is None:
-            at = 0 if self.at_mass is not None else 1
-            sizes[at : at + 3] = math.sqrt(moment / mass)
+            first = 0 if self.at_mass is not None else 1
+            sizes[first : first + 3] = math.sqrt(moment / mass)
         if self.wire:
             z[-1] = sizes[-1] = stiffness
         return z, sizes
@@ -640,13 +643,12 @@ class _Task:
     def solve(self) -> Identified:
         z, sizes = self.start()
         count, u = len(z), np.zeros(0)
-        for step in range(100):
+        for _ in range(_PASSES):
             prior = None if self.prior is None else self.prior_rows(z)
             forms = np.pad(self.forms, ((0, 0), (0, len(self.columns) - self.forms.shape[1])))
             u = np.pad(u, (0, max(0, len(self.columns) - len(u)))) if not self.exact else u
             x = self.x + forms @ u if not self.exact else self.x
-            g = self.equations(z, x)
-            by_z, by_x = self.slopes(z, x)
+            g, by_z, by_x = self.equations(z, x)
             # Where nothing has a sigma every period has the same relative one.
             by_u = 2.0 * np.eye(len(g)) if self.exact else by_x @ forms
             if self.exact and not u.size:
@@ -668,21 +670,15 @@ class _Task:
             free = rest @ by_u
             back = np.linalg.pinv(free, rcond=1e-12) if free.size else np.zeros((by_u.shape[1], len(rest)))
             new = -back @ (rest @ target)
-            left_over = rest @ target + free @ new
-            if free.size and np.abs(left_over).max(initial=0.0) > 1e-9 * (1.0 + np.abs(target).max()):
-                if step > 20:
-                    raise IdentificationError(
-                        "measurements: rows without a sigma contradict one another by ",
-                        f"{np.abs(left_over).max():.2g}",
-                        " of the square of a period; give their numbers sigmas: Uncertain(period, sigma)",
-                        kind="contradiction",
-                    )
+            left_over = float(np.abs(rest @ target + free @ new).max(initial=0.0))
             change = -inverse @ (target + by_u @ new) * sizes
             limit = self._within(z, change, sizes)
             z, moved = z + limit * change, float(np.abs(change / sizes).max(initial=0.0))
-            settled = float(np.abs(new - u).max(initial=0.0)) < 1e-9 * (1.0 + float(np.abs(new).max(initial=0.0)))
+            settled = float(np.abs(new - u).max(initial=0.0)) < 1e-9 * (
+                1.0 + float(np.abs(new).max(initial=0.0))
+            )
             u = new
-            if limit == 1.0 and moved < 1e-13 or (moved < 1e-11 and settled and step > 3):
+            if moved < 1e-11 and settled:
                 break
         else:
             raise IdentificationError(
@@ -693,17 +689,25 @@ class _Task:
             )
         # What the equations leave of the errors; the truth is the estimate plus `spread` times them.
         left_of = np.eye(by_u.shape[1]) - back @ free
+        if left_over > 1e-9:
+            raise IdentificationError(
+                "measurements: rows without a sigma contradict one another by ",
+                f"{left_over:.2g}",
+                " of the square of a period; give their numbers sigmas: Uncertain(period, sigma)",
+                kind="contradiction",
+            )
         spread = -inverse @ by_u @ left_of * sizes[:, None]
-        return self._result(z, u, spread, forms @ left_of if not self.exact else forms, forms, sizes, len(jacobian))
+        return self._result(
+            z, u, spread, forms @ left_of if not self.exact else forms, forms, sizes, len(jacobian)
+        )
 
     def _within(self, z: Floats, change: Floats, sizes: Floats) -> float:
         """Return the share of a step that keeps every moment and the stiffness positive."""
-        share, (old, _, before) = 1.0, self.numbers_of(z, self.x)
+        share, old = 1.0, self.numbers_of(z, self.x)[0]
         for _ in range(40):
             mass, _, tensor = self.numbers_of(z + share * change, self.x)
             wire = z[-1] + share * change[-1] > 0.1 * z[-1] if self.wire else True
-            least = np.linalg.eigvalsh(before)[0]
-            if mass > 0.1 * old and wire and np.linalg.eigvalsh(tensor)[0] > 0.0 * least - 1e-3 * sizes[self.first]:
+            if mass > 0.1 * old and wire and np.linalg.eigvalsh(tensor)[0] > -1e-3 * sizes[self.first]:
                 break
             share *= 0.5
         return share
@@ -712,9 +716,7 @@ class _Task:
         """Raise the error that names what the rows leave open."""
         names, to_numbers, own = self._names(sizes)
         remedy = "let it swing about further axes, or give what is known by normal=, axis= or prior="
-        found, _ = find_directions(
-            (jacobian / sizes) @ np.linalg.pinv(to_numbers), own, names, remedy
-        )
+        found, _ = find_directions((jacobian / sizes) @ np.linalg.pinv(to_numbers), own, names, remedy)
         open_ones = tuple(one for one in found if not math.isfinite(one.relative))
         # Directions that a symmetry excludes are none.
         allowed = to_numbers @ np.linalg.pinv(to_numbers)
@@ -760,20 +762,31 @@ class _Task:
                 u = u / level if level > 0.0 else u
                 chi2 = float(u @ u)
                 noise = Uncertain(level, level / math.sqrt(2.0 * freedom))
+        p_value = math.nan if self.exact else p_value_of(chi2, freedom)
+        if p_value < 1e-6:
+            raise IdentificationError(
+                f"measurements: chi2 is {chi2:.6g} with {freedom} degrees of freedom; ",
+                "errors of these sigmas do not explain the periods; ",
+                "check which row has which axis and amplitude, or enlarge the sigmas",
+                kind="no fit",
+            )
         names, to_numbers, own = self._names(sizes)
         x = self.x if self.exact else self.x + forms @ u
         tensor_at = slice(self.first, self.first + len(self.basis))
         maps = second_moment_maps(self.basis)
         covariance = spread @ spread.T
         crlb, edge, gap = covariance, False, 0.0
-        if np.linalg.eigvalsh(np.tensordot(z[tensor_at], maps, 1))[0] < 0.0:
+        second = np.tensordot(z[tensor_at], maps, 1)
+        if np.linalg.eigvalsh(second)[0] < -_ROUNDING * float(np.trace(second)):
             edge = True
             inner = covariance[tensor_at, tensor_at]
             size = float(np.trace(np.tensordot(z[tensor_at], self.basis, 1))) / 3.0
             inner = inner + 1e-24 * size**2 * np.eye(len(inner))
-            factor = np.linalg.inv(np.linalg.cholesky(inner))
-            ball = np.linalg.lstsq(self.basis.reshape(len(self.basis), -1).T, (size * np.eye(3)).ravel(), rcond=None)
-            best, gap, _ = fit_possible(factor, factor @ z[tensor_at], maps, ball[0], chi2)
+            factor: Floats = np.asarray(np.linalg.inv(np.linalg.cholesky(inner)), dtype=np.float64)
+            ball: Floats = np.linalg.lstsq(
+                self.basis.reshape(len(self.basis), -1).T, (size * np.eye(3)).ravel(), rcond=None
+            )[0]
+            best, gap, _ = fit_possible(factor, factor @ z[tensor_at], maps, ball, chi2)
             chi2 += float(np.sum((factor @ (best - z[tensor_at])) ** 2))
             # The other unknowns go with the tensor.
             follow = covariance[:, tensor_at] @ np.linalg.solve(inner, best - z[tensor_at])
@@ -807,7 +820,7 @@ class _Task:
         return Identified(
             body=body, parameters=tuple(names), estimate=estimate, covariance=whole, crlb=bound,
             residuals=u[:, None], chi2=chi2, degrees_of_freedom=freedom,
-            p_value=math.nan if self.exact else p_value_of(chi2, freedom),
+            p_value=p_value,
             noise=noise, bias=None, at_edge=edge, linear=not edge, gap=gap,
             observability=observability, scale_known=True, dropped={},
         )  # fmt: skip
@@ -818,7 +831,10 @@ class _Task:
             body = RigidBody(mass=mass, inertia=tensor, center_of_mass=center)
             return body.with_covariance(columns @ columns.T) if columns.any() else body
         variables = list(self.columns)
-        forms = [[(pair, float(step)) for pair, step in zip(variables, one, strict=True) if step] for one in columns]
+        forms = [
+            [(pair, float(step)) for pair, step in zip(variables, one, strict=True) if step]
+            for one in columns
+        ]
         places = {pair: k for k, pair in enumerate(ELEMENTS)}
         order = [4 + places[min(i, j), max(i, j)] for i in range(3) for j in range(3)]
         return RigidBody(

@@ -19,7 +19,16 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["ELEMENTS", "NUMBERS", "Direction", "Identified", "find_directions", "p_value_of", "spread_directions", "tensor_of"]
+__all__ = [
+    "ELEMENTS",
+    "NUMBERS",
+    "Direction",
+    "Identified",
+    "find_directions",
+    "p_value_of",
+    "spread_directions",
+    "tensor_of",
+]
 
 NUMBERS: Final = ("mass", "cx", "cy", "cz", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz")
 """Names of the ten numbers of a body."""
@@ -44,8 +53,8 @@ class Direction:
         What it is: ``"the moment about y"``.
     parameters : numpy.ndarray, shape (P,)
         The direction: the change of each parameter, in units of that parameter. Its length is one when each
-        parameter is measured by its own size: the mass, the mass times the radius of gyration, the mean of the
-        principal moments.
+        parameter is measured by its own size: the mass, the mass times the radius of gyration, the mean of
+        the principal moments.
     sigma : float
         Standard deviation along the direction, in units of the largest of these changes; infinite where the
         data say nothing.
@@ -208,7 +217,7 @@ def find_directions(
 def spread_directions(
     spread: Floats, sizes: Floats, names: Sequence[str], remedy: str
 ) -> tuple[Direction, ...]:
-    """Find the directions of large sigma, the worst first, of estimates that are linear in independent errors."""
+    """Find the directions of large sigma, the worst first, of estimates linear in independent errors."""
     vectors, values = np.linalg.svd(spread / sizes[:, None], full_matrices=False)[:2]
     large = values > _UNCERTAIN
     found = _weak(vectors[:, large].T, values[large])
@@ -227,12 +236,15 @@ def _direction(
 ) -> Direction:
     signed = vector * np.sign(vector[np.argmax(np.abs(vector))])
     changes = signed * sizes
-    return Direction(_words(signed, names), changes, relative * float(np.abs(changes).max()), relative, remedy)
+    return Direction(
+        _words(signed, names), changes, relative * float(np.abs(changes).max()), relative, remedy
+    )
 
 
 def _echelon(rows: Floats) -> list[Floats]:
     """Return a basis of the same space with few components each, so that each has a name."""
-    rows, pivots = rows.copy(), []
+    rows = rows.copy()
+    pivots: list[int] = []
     for k in range(len(rows)):
         left = np.abs(rows[k:])
         left[:, pivots] = 0.0
@@ -242,7 +254,7 @@ def _echelon(rows: Floats) -> list[Floats]:
         others = np.arange(len(rows)) != k
         rows[others] -= np.outer(rows[others, column], rows[k])
         pivots.append(int(column))
-    return [row / np.linalg.norm(row) for row in rows]
+    return [rows[k] / np.linalg.norm(rows[k]) for k in np.argsort(pivots)]
 
 
 def _words(vector: Floats, names: Sequence[str]) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
+from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 
 import numpy as np
 
@@ -20,12 +20,15 @@ if TYPE_CHECKING:
 
 __all__ = ["from_wrench"]
 
+_ONE: Final = np.eye(3)
 _BASIS: Final = np.array(tensor_of(np.eye(6)))
 _MAPS: Final = pseudo_inertia_maps(_BASIS)
 _FEATURES: Final = 13
 """Of the motion: specific force, angular acceleration, six products of angular velocities, and 1."""
 _FUNCTIONS: Final = 8
 """Number of functions by which momentum is balanced in each window."""
+_SMOOTH: Final = 7
+"""Lines of a spectrum over which it is smoothed."""
 _BLOCK: Final = 65536
 _NU: Final = 4.0
 """Degrees of freedom of Student's distribution."""
@@ -40,7 +43,9 @@ class _Sums(NamedTuple):
     features: list[Floats]
     triangles: list[Floats]
     shares: list[tuple[float, float]]
-    """Of each group: how much of the variance of the wrench and of ω is in it."""
+    """Of each group: how much of the variance of the wrench, and of ω in its acceleration, is in it."""
+    spins: Floats
+    """Three vectors u with Σ u uᵀ the mean of ω ωᵀ."""
 
 
 def from_wrench(
@@ -82,7 +87,8 @@ def from_wrench(
     force_sigma, torque_sigma : float or array_like, shape (3,), optional
         Standard deviations of white noise; without one it is estimated from the residuals.
     omega_sigma : float, optional
-        Of the angular velocity, for windows; without it the high end of its spectrum tells it.
+        Of the angular velocity. For windows the high end of its spectrum tells it where it is not given;
+        beside an angular acceleration it is zero then.
     bias : bool
         Whether constant offsets of force and torque are estimated too.
     at : array_like, shape (3,)
@@ -103,14 +109,15 @@ def from_wrench(
     ------
     IdentificationError
         ``"undetermined"`` with the directions that the motion tells nothing of; ``"clock"`` for times that do
-        not ascend; ``"no fit"`` where given sigmas cannot explain the residuals, with a probability below 1e-6.
+        not ascend; ``"no fit"`` where given sigmas cannot explain the residuals, with a probability below
+        1e-6.
     ValueError
         For arrays whose shapes do not agree.
 
     Notes
     -----
-    A row with a number that is not finite is left out, and so is a window with such a row or a gap of time;
-    ``dropped`` counts them. Noise of `specific_force`, and that of `omega` in products, is not modelled.
+    A row with a number that is not finite is left out, and so is a window with a gap of time; ``dropped``
+    counts the rows. Noise of `specific_force` is not modelled.
 
     Examples
     --------
@@ -135,7 +142,10 @@ def from_wrench(
     >>> found.at_edge, [one.words for one in found.observability]
     (False, [])
     """
-    times, rows = _times(t), {"force": force, "torque": torque, "omega": omega, "specific_force": specific_force}
+    times, rows = (
+        _times(t),
+        {"force": force, "torque": torque, "omega": omega, "specific_force": specific_force},
+    )
     if angular_acceleration is not None:
         rows["angular_acceleration"] = angular_acceleration
     data = {name: _columns(name, one, len(times)) for name, one in rows.items()}
@@ -157,21 +167,24 @@ def from_wrench(
     dropped = {"not finite": int((~good).sum())} if not good.all() else {}
     if angular_acceleration is not None:
         if window is not None:
-            raise ValueError("window: with angular_acceleration each row is an equation; give only one of them")
+            raise ValueError(
+                "window: with angular_acceleration each row is an equation; give only one of them"
+            )
         whole = {name: one[good] for name, one in data.items()}
         features = [_features(whole, whole["angular_acceleration"])]
-        shares, spin_sigma = [(1.0, 0.0)], 0.0
+        shares, spin_sigma = [(1.0, 0.0)], spin_sigma or 0.0
     else:
-        if window is not None and (int(window) != window or not 2 * _FUNCTIONS <= window <= len(times)):
+        if window is not None and (int(window) != window or not 4 * _FUNCTIONS <= window <= len(times)):
             raise ValueError(
-                f"window: expected a whole number from {2 * _FUNCTIONS} to the {len(times)} rows, got {window}"
+                f"window: expected a whole number from {4 * _FUNCTIONS} to {len(times)} rows, got {window}"
             )
-        cutoff, level = _spectrum(times[good], data["omega"][good])
+        whole = {name: one[good] for name, one in data.items()}
+        cutoff, level = _spectrum(whole["omega"])
         spin_sigma = level if spin_sigma is None else spin_sigma
         window = int(window) if window is not None else cutoff
-        features, shares, lost = _windows(times, data, good, window)
+        features, shares, lost = _windows(times[good], whole, window)
         if lost:
-            dropped["in windows with a gap"] = lost
+            dropped["outside windows"] = lost
     least = 4 + 2 * bias
     if len(features[0]) * len(features) < least:
         raise IdentificationError(
@@ -180,7 +193,10 @@ def from_wrench(
             "; record longer, or choose a smaller window",
             kind="undetermined",
         )
-    sums = _Sums(features, [_triangle(one) for one in features], shares)
+    mean = whole["omega"].T @ whole["omega"] / len(whole["omega"])
+    values, vectors = np.linalg.eigh(mean)
+    spins = (vectors * np.sqrt(np.maximum(values, 0.0))).T
+    sums = _Sums(features, [_triangle(one) for one in features], shares, spins)
     fit = _Fit(sums, sigmas, spin_sigma, bias, prior, loss == "student")
     return fit.solve(origin, dropped, window)
 
@@ -230,49 +246,47 @@ def _features(data: dict[str, Floats], turn: Floats) -> Floats:
 
 def _triangle(features: Floats) -> Floats:
     """Return the triangle of the QR of the features: all that least squares need of any number of rows."""
-    found = np.zeros((0, features.shape[1]))
+    found: Floats = np.zeros((0, features.shape[1]))
     for first in range(0, len(features), _BLOCK):
-        found = np.linalg.qr(np.vstack([found, features[first : first + _BLOCK]]), mode="r")
+        found = np.asarray(np.linalg.qr(np.vstack([found, features[first : first + _BLOCK]]), mode="r"))
     return found
 
 
-def _spectrum(t: Floats, omega: Floats) -> tuple[int, float]:
+def _spectrum(omega: Floats) -> tuple[int, float]:
     """Return the window that resolves what moves, in samples, and the level of the white noise of ω."""
-    n = len(t)
-    if n < 2 * _FUNCTIONS:
+    n = len(omega)
+    if n < 4 * _FUNCTIONS:
         return max(n, 2), 0.0
     taper = np.sin(np.pi * (np.arange(n) + 0.5) / n) ** 2
     line = omega - omega.mean(axis=0)
     power = np.sum(np.abs(np.fft.rfft(line * taper[:, None], axis=0)) ** 2, axis=1)[1:]
     floor = float(power[-len(power) // 4 :].mean())
+    power = np.convolve(power, np.full(_SMOOTH, 1.0 / _SMOOTH), mode="same")  # else noise passes for motion
     frequency = np.arange(1, len(power) + 1) / n  # in cycles per sample
     moving = np.cumsum(np.maximum(power - 4.0 * floor, 0.0) * frequency**2)
     level = math.sqrt(floor / (3.0 * float(np.sum(taper**2))))
     if moving[-1] <= 0.0:
-        return max(n // 4, min(n, 2 * _FUNCTIONS)), level
+        return max(n // 4, min(n, 4 * _FUNCTIONS)), level
     highest = float(frequency[np.searchsorted(moving, 0.99 * moving[-1])])
-    longest = max(n // 4, min(n, 2 * _FUNCTIONS))
-    return int(min(max((_FUNCTIONS + 1) / (2.0 * highest), 2 * _FUNCTIONS), longest)), level
+    longest = max(n // 4, min(n, 4 * _FUNCTIONS))
+    return int(min(max((_FUNCTIONS + 1) / (2.0 * highest), 4 * _FUNCTIONS), longest)), level
 
 
 def _windows(
-    t: Floats, data: dict[str, Floats], good: NDArray[np.bool_], window: int
+    t: Floats, data: dict[str, Floats], window: int
 ) -> tuple[list[Floats], list[tuple[float, float]], int]:
-    """Return features of functions φ over windows: ∫φ of all that is measured, and −∫φ̇ω for the acceleration.
+    """Return features of functions φ over windows: ∫φ of what is measured, and −∫φ̇ω for the acceleration.
 
     φ and φ̇ vanish at both ends of a window. The functions are combined so that white noise of the wrench is
-    independent in all of them, and white noise of ω too.
+    independent in all of them, and white noise of ω too. The last result is the number of rows in no window.
     """
-    count = len(t) // window
-    usual = float(np.median(np.diff(t[good]))) if good.sum() > 1 else 1.0
-    firsts = np.arange(count) * window
-    index = firsts[:, None] + np.arange(window)
-    whole = good[index].all(axis=1)
-    whole &= (np.diff(t[index], axis=1) < _GAP * usual).all(axis=1)
-    index = index[whole]
-    local = t[index]
+    index = (np.arange(len(t) // window) * window)[:, None] + np.arange(window)
+    if len(index):
+        steps = np.diff(t[index], axis=1)
+        index = index[(steps < _GAP * np.median(steps)).all(axis=1)]
     if not len(index):
-        return [np.zeros((0, 19))], [(1.0, 0.0)], int(good.sum())
+        return [np.zeros((0, 19))], [(1.0, 0.0)], len(t)
+    local = t[index]
     # The quadrature is that of samples in the middle of their steps.
     step = np.gradient(local, axis=1)
     span = local[:, -1] - local[:, 0] + 0.5 * (step[:, 0] + step[:, -1])
@@ -288,7 +302,7 @@ def _windows(
         size = math.sqrt(float(np.mean(np.sum(phi[..., k] ** 2, axis=1))))
         groups.append(found / size)
         shares.append((1.0, float(np.mean(np.sum(slope[..., k] ** 2, axis=1))) / size**2))
-    return groups, shares, int(good.sum()) - int(index.size) if len(index) < count else 0
+    return groups, shares, len(t) - int(index.size)
 
 
 def _functions(place: Floats) -> tuple[Floats, Floats]:
@@ -322,7 +336,11 @@ def _regressor() -> Floats:
         found[:3, 6 + p, 1:4] = products - np.trace(products) * one  # ω × (ω × mc)
         for q, tensor in enumerate(_BASIS):
             mixed = products @ tensor
-            found[3:, 6 + p, 4 + q] = [mixed[1, 2] - mixed[2, 1], mixed[2, 0] - mixed[0, 2], mixed[0, 1] - mixed[1, 0]]
+            found[3:, 6 + p, 4 + q] = [
+                mixed[1, 2] - mixed[2, 1],
+                mixed[2, 0] - mixed[0, 2],
+                mixed[0, 1] - mixed[1, 0],
+            ]
     return found
 
 
@@ -351,7 +369,13 @@ class _Fit:
     """Weights, the convex problem in their units, and the result."""
 
     def __init__(
-        self, sums: _Sums, sigmas: Floats, spin_sigma: float, bias: bool, prior: RigidBody | None, student: bool
+        self,
+        sums: _Sums,
+        sigmas: Floats,
+        spin_sigma: float,
+        bias: bool,
+        prior: RigidBody | None,
+        student: bool,
     ) -> None:
         self.sums, self.given, self.spin_sigma = sums, sigmas, spin_sigma
         self.columns = np.arange(16 if bias else 10)
@@ -377,7 +401,7 @@ class _Fit:
     def solve(self, origin: Floats, dropped: dict[str, int], window: int | None) -> Identified:
         x = np.zeros(len(self.columns))
         sigmas = np.where(np.isnan(self.given), np.repeat([self.unit[10], self.unit[13]], 3), self.given)
-        jacobian = inverse = np.zeros((0, 0))
+        jacobian: Floats = np.zeros((0, 0))
         for trial in range(_PASSES):
             whiten = [np.linalg.inv(np.linalg.cholesky(one)) for one in self.covariances(x, sigmas)]
             jacobian, target, rest = self.least_squares(whiten)
@@ -396,14 +420,24 @@ class _Fit:
             self.weights = [np.ones(len(one)) for one in self.weights]
             jacobian = self.least_squares(whiten)[0]
             jacobian = jacobian * math.sqrt((_NU + 6.0) / (_NU + 8.0))
-        inverse = np.linalg.inv(jacobian)
-        return self._result(x, jacobian, inverse, np.vstack(white), gap, edge, sigmas, origin, dropped, window)
+        inverse: Floats = np.asarray(np.linalg.inv(jacobian), dtype=np.float64)
+        return self._result(
+            x, jacobian, inverse, np.vstack(white), gap, edge, sigmas, origin, dropped, window
+        )
 
     def covariances(self, x: Floats, sigmas: Floats) -> list[Floats]:
         """Return the covariance of the six equations of a row of each group: noise of the wrench and of ω."""
-        turn = np.einsum("efp,p->ef", _REGRESSOR[:, 3:6, :10], (x * self.unit[self.columns])[:10])
+        by_features = np.einsum("efp,p->ef", _REGRESSOR[:, :, :10], x[:10] * self.unit[:10])
+        turn, products = by_features[:, 3:6], np.zeros((6, 6))
+        for u in self.sums.spins:
+            slopes = np.array([u[i] * _ONE[j] + (i != j) * u[j] * _ONE[i] for i, j in ELEMENTS])
+            slopes[:3] *= 2.0  # of squares
+            by_spin = by_features[:, 6:12] @ slopes
+            products += by_spin @ by_spin.T
+        noise = self.spin_sigma**2
         return [
-            np.diag(own * sigmas**2) + spin * self.spin_sigma**2 * turn @ turn.T for own, spin in self.sums.shares
+            own * (np.diag(sigmas**2) + noise * products) + spin * noise * turn @ turn.T
+            for own, spin in self.sums.shares
         ]
 
     def least_squares(self, whiten: list[Floats]) -> tuple[Floats, Floats, float]:
@@ -413,12 +447,14 @@ class _Fit:
             slopes = np.einsum("se,efp->sfp", own, _REGRESSOR[:, :, self.columns] * self.unit[self.columns])
             lines = np.einsum("rf,sfp->srp", triangle[:, :_FEATURES], slopes)
             sides = np.einsum("rf,sf->sr", triangle[:, _FEATURES:], own)
-            blocks.append(np.concatenate([lines, sides[..., None]], axis=2).reshape(-1, len(self.columns) + 1))
+            blocks.append(
+                np.concatenate([lines, sides[..., None]], axis=2).reshape(-1, len(self.columns) + 1)
+            )
         if self.prior is not None:
             blocks.append(self._prior_rows())
         stacked = np.vstack(blocks)
         order = np.roll(self.columns, len(self.columns) - 10)  # offsets first
-        both = np.linalg.qr(stacked[:, np.append(order, len(order))], mode="r")
+        both: Floats = np.asarray(np.linalg.qr(stacked[:, np.append(order, len(order))], mode="r"))
         count = len(order)
         if len(both) < count + 1:
             both = np.pad(both, ((0, count + 1 - len(both)), (0, 0)))
@@ -457,7 +493,7 @@ class _Fit:
         return np.concatenate([body, np.linalg.solve(jacobian[:extra, :extra], upper)]), gap, edge
 
     def residuals(self, x: Floats, features: list[Floats]) -> list[Floats]:
-        """Return measured minus predicted wrenches of each group, of rows or of their triangle, shape (n, 6)."""
+        """Return measured minus predicted wrenches of each group, of rows or of a triangle, shape (n, 6)."""
         slopes = np.einsum("efp,p->fe", _REGRESSOR[:, :, self.columns], x * self.unit[self.columns])
         return [one[:, _FEATURES:] - one[:, :_FEATURES] @ slopes for one in features]
 
@@ -512,14 +548,16 @@ class _Fit:
         window: int | None,
     ) -> Identified:
         extra = len(self.columns) - 10
-        inner = (inverse @ inverse.T)[extra:, extra:]
+        spread = inverse[extra:]
+        inner = spread @ spread.T
         numbers, slopes = _to_numbers(x[:10] * self.unit[:10])
         slopes = slopes * self.unit[:10]
         bound = slopes @ inner @ slopes.T
         if edge:
             kept = along_the_edge(inner, _MAPS, x[:10])
-            inner = kept @ inner @ kept.T
-        covariance = slopes @ inner @ slopes.T
+            spread = kept @ spread
+        spread = slopes @ spread
+        covariance = spread @ spread.T
         moment = float(np.sum(numbers[4:7])) / 3.0
         sizes = np.repeat([numbers[0], math.sqrt(moment / numbers[0]), moment], [1, 3, 6])
         remedy = "turn the payload about all axes, faster, and in several attitudes"
@@ -533,13 +571,13 @@ class _Fit:
             raise IdentificationError(
                 f"force_sigma, torque_sigma: chi2 is {chi2:.6g} with {freedom} degrees of freedom; ",
                 "noise of these sigmas does not explain the residuals; ",
-                "leave the sigmas out to estimate them, or look for offsets (bias=True), the sign of the wrench ",
-                "(of the sensor on the payload) and the frame of the accelerometer",
+                "leave the sigmas out to estimate them, or look for offsets (bias=True), the sign of the ",
+                "wrench (of the sensor on the payload) and the frame of the accelerometer",
                 kind="no fit",
             )
         numbers[1:4] -= origin
         body = RigidBody(mass=numbers[0], inertia=tensor_of(numbers[4:]), center_of_mass=numbers[1:4])
-        body = body.with_covariance(0.5 * (covariance + covariance.T))
+        body = body.with_covariance(covariance)
         offsets = None
         if extra:
             unit = self.unit[10:]
