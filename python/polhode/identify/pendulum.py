@@ -280,8 +280,8 @@ def trifilar(
     Examples
     --------
     >>> from polhode import identify
-    >>> swing = identify.trifilar((0, 0, 1), 1.31, length=0.8, radius=0.15, plate_mass=0.4,
-    plate_moment=0.005)
+    >>> plate = {"plate_mass": 0.4, "plate_moment": 0.005}
+    >>> swing = identify.trifilar((0, 0, 1), 1.31, length=0.8, radius=0.15, **plate)
     >>> swing.numbers["radius"]
     0.15
     """
@@ -449,9 +449,9 @@ def from_pendulum(
     ...     rows.append(identify.torsional(a, Uncertain(period, 0.001)))
     >>> found = identify.from_pendulum(rows, gravity=9.81, mass=Uncertain(2.0, 0.01))
     >>> found.body.principal_moments.round(4)
-    array([0.0661, 0.1202, 0.1531])
+    array([0.0661, 0.1201, 0.1531])
     >>> found.body.sigma.inertia.diagonal().round(5)
-    array([0.00009, 0.00014, 0.00017])
+    array([9.0e-05, 1.4e-04, 1.8e-04])
     """
     rows = list(measurements)
     for row in rows:
@@ -783,9 +783,12 @@ class _Task:
             size = float(np.trace(np.tensordot(z[tensor_at], self.basis, 1))) / 3.0
             inner = inner + 1e-24 * size**2 * np.eye(len(inner))
             factor: Floats = np.asarray(np.linalg.inv(np.linalg.cholesky(inner)), dtype=np.float64)
-            ball: Floats = np.linalg.lstsq(
-                self.basis.reshape(len(self.basis), -1).T, (size * np.eye(3)).ravel(), rcond=None
-            )[0]
+            ball = np.asarray(
+                np.linalg.lstsq(
+                    self.basis.reshape(len(self.basis), -1).T, (size * np.eye(3)).ravel(), rcond=None
+                )[0],
+                dtype=np.float64,
+            )
             best, gap, _ = fit_possible(factor, factor @ z[tensor_at], maps, ball, chi2)
             chi2 += float(np.sum((factor @ (best - z[tensor_at])) ** 2))
             # The other unknowns go with the tensor.

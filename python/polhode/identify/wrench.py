@@ -138,7 +138,7 @@ def from_wrench(
     ...     t, force + noisy[..., 0], torque + noisy[..., 1], omega, down, angular_acceleration=turn
     ... )
     >>> round(found.body.mass, 2), found.body.center_of_mass.round(3)
-    (2.0, array([0.  , 0.02, 0.1 ]))
+    (2.0, array([-0.  ,  0.02,  0.1 ]))
     >>> found.at_edge, [one.words for one in found.observability]
     (False, [])
     """
