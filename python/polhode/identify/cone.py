@@ -74,7 +74,6 @@ def fit_possible(
     free: Floats = np.asarray(np.linalg.solve(triangle, target), dtype=np.float64)
     if _is_definite(np.tensordot(free, maps, 1)):
         return free, 0.0, False
-    unit = np.abs(start).max()
     # In units in which the first matrix is the unit matrix.
     factor = np.linalg.inv(np.linalg.cholesky(np.tensordot(start, maps, 1)))
     own = factor @ maps @ factor.T
@@ -85,9 +84,14 @@ def fit_possible(
     weight = len(own[0]) / max(float(np.sum((triangle @ x - target) ** 2)), 1e-300)
     gap, best, floor, again = np.inf, x, 1e-30 * float(target @ target), 0
     for _ in range(_STEPS):
-        lower = np.linalg.inv(np.linalg.cholesky(np.tensordot(x, own, 1)))
+        try:
+            lower = np.linalg.inv(np.linalg.cholesky((x @ flat).reshape(own[0].shape)))
+        except np.linalg.LinAlgError:  # rounding errors: the last point is the best
+            break
         local = (lower @ own @ lower.T).reshape(len(own), -1)
-        gradient = 2.0 * weight * triangle.T @ (triangle @ x - target) - local @ np.eye(len(own[0])).ravel()
+        gradient = 2.0 * weight * triangle.T @ (triangle @ x - target) - local[:, :: len(own[0]) + 1].sum(
+            axis=1
+        )
         hessian = 2.0 * weight * squares + local @ local.T
         unit = np.sqrt(np.diagonal(hessian))
         step = np.linalg.solve(hessian / np.outer(unit, unit), -gradient / unit) / unit
@@ -109,8 +113,6 @@ def fit_possible(
                 weight, again = weight * _FACTOR, 0
                 continue
         x = x + step / (1.0 + decrement) if decrement > 0.25 else x + step
-        if not _is_definite(np.tensordot(x, own, 1)):
-            break
     return best, gap, True
 
 

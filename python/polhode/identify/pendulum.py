@@ -427,7 +427,8 @@ def from_pendulum(
     Identified
         Its body depends on the same sources as the measurements: two parts that were measured with one wire
         are correlated. `residuals`, shape (k, 1), are the errors of the sources. Where no number has a sigma,
-        every period is taken to have the same relative sigma, ``noise``, from the residuals.
+        every period is taken to have the same relative sigma, ``noise``, from the residuals. If there are no
+        more rows than unknowns, the covariance is NaN then, and the body carries none.
 
     Raises
     ------
