@@ -14,11 +14,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from polhode._core import RigidBody
+    from polhode.identify.results import Direction
     from polhode.motion.trajectory import Trajectory
 
 __all__ = [
     "ContactError",
     "FileFormatError",
+    "IdentificationError",
     "IntegrationError",
     "InvalidInertiaError",
     "MeshError",
@@ -127,6 +129,24 @@ class MeshError(PolhodeError):
 
 class FileFormatError(PolhodeError):
     """The content of a file does not fit its name or header, or is damaged."""
+
+
+class IdentificationError(PolhodeError):
+    """Measurements from which no body can be identified.
+
+    Attributes
+    ----------
+    kind : str
+        ``"undetermined"``, ``"no fit"``, ``"contradiction"`` or ``"clock"``.
+    observability : tuple of Direction
+        The directions that the measurements leave undetermined.
+    """
+
+    observability: tuple[Direction, ...] = ()
+
+    def __init__(self, *pieces: object, kind: str = "", observability: tuple[Direction, ...] = ()) -> None:
+        super().__init__(*pieces)
+        self.kind, self.observability = kind, observability
 
 
 class IntegrationError(PolhodeError):

@@ -14,6 +14,7 @@ MODULES = [
     "polhode",
     "polhode.assembly",
     "polhode.distributions",
+    "polhode.identify",
     "polhode.images",
     "polhode.interop",
     "polhode.laminae",

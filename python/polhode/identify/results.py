@@ -1,0 +1,283 @@
+"""What an identification returns, and which directions its data determine."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from polhode._format import one_line
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from polhode._core import RigidBody, Uncertain
+
+    Floats = NDArray[np.float64]
+
+__all__ = [
+    "ELEMENTS",
+    "NUMBERS",
+    "Direction",
+    "Identified",
+    "find_directions",
+    "p_value_of",
+    "spread_directions",
+    "tensor_of",
+]
+
+NUMBERS: Final = ("mass", "cx", "cy", "cz", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz")
+"""Names of the ten numbers of a body."""
+ELEMENTS: Final = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+"""Places in the tensor of the last six."""
+_UNCERTAIN: Final = 0.1
+"""Share of its own size beyond which the sigma of a direction is told."""
+_RANK: Final = 1e-11
+"""Share of the largest singular value, per unit of size, below which nothing is left of a direction."""
+_SHARE: Final = 0.15
+"""Share of the largest component below which a component has no part in a direction."""
+_AXES: Final = "xyz"
+
+
+@dataclass(frozen=True, eq=False)
+class Direction:
+    """A combination of parameters that the data hardly determine.
+
+    Attributes
+    ----------
+    words : str
+        What it is: ``"the moment about y"``.
+    parameters : numpy.ndarray, shape (P,)
+        The direction: the change of each parameter, in units of that parameter. Its length is one when each
+        parameter is measured by its own size: the mass, the mass times the radius of gyration, the mean of
+        the principal moments.
+    sigma : float
+        Standard deviation along the direction, in units of the largest of these changes; infinite where the
+        data say nothing.
+    relative : float
+        The same relative to the size.
+    remedy : str
+        The measurement that would determine it.
+    """
+
+    words: str
+    parameters: Floats
+    sigma: float
+    relative: float
+    remedy: str
+
+    def __repr__(self) -> str:
+        return one_line(self, {"words": self.words, "sigma": self.sigma, "relative": self.relative})
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Identified:
+    """A body that was identified from measurements, and how well the measurements determine it.
+
+    Attributes
+    ----------
+    body : RigidBody
+        The most likely body that is possible. It carries the covariance, so sigmas, ledgers and
+        :func:`polhode.uncertainty.propagate` go on from it.
+    parameters : tuple of str
+        Names of the numbers that were estimated. ``cx``, ``cy``, ``cz`` are the components of the centre of
+        mass, ``Ixx`` to ``Iyz`` those of the tensor about it.
+    estimate : numpy.ndarray, shape (P,)
+        Their values.
+    covariance : numpy.ndarray, shape (P, P)
+        Their covariance. At the edge of what is possible, that of bodies along this edge.
+    crlb : numpy.ndarray, shape (P, P)
+        Bound of Cramér and Rao at the estimate, as if every set of parameters were possible.
+    residuals : numpy.ndarray, shape (n, k)
+        In units of their standard deviations.
+    chi2 : float
+        Sum of their squares at the estimate.
+    degrees_of_freedom : int
+    p_value : float
+        Probability that noise alone gives a larger sum of squares; NaN where the level of the noise was
+        estimated from the residuals.
+    noise : Uncertain or None
+        Standard deviations that were estimated from the residuals, if the data had none.
+    bias : Uncertain or None
+        Constant offsets that were estimated.
+    at_edge : bool
+        Whether the most likely set of parameters is that of no body. The body is then the most likely among
+        the possible ones and lies on their edge: it is flat, thin, or has mass in one point only. Intervals
+        are one-sided there.
+    linear : bool
+        Whether the covariance tells the uncertainty: False at the edge.
+    gap : float
+        Certificate of a fit at the edge: no possible body has a sum of squares below ``chi2 - gap``.
+    observability : tuple of Direction
+        Every direction whose standard deviation exceeds 10 % of its size, the worst first.
+    scale_known : bool
+        Whether the data determine the scale of the tensor.
+    dropped : dict of str and int
+        Number of rows that were left out, by reason.
+    window : int or None
+        Number of samples of a window, where momentum was balanced over windows.
+    """
+
+    body: RigidBody
+    parameters: tuple[str, ...]
+    estimate: Floats
+    covariance: Floats
+    crlb: Floats
+    residuals: Floats
+    chi2: float
+    degrees_of_freedom: int
+    p_value: float
+    noise: Uncertain | None
+    bias: Uncertain | None
+    at_edge: bool
+    linear: bool
+    gap: float
+    observability: tuple[Direction, ...]
+    scale_known: bool
+    dropped: dict[str, int]
+    window: int | None = None
+
+    def __repr__(self) -> str:
+        told = {
+            "mass": self.body.mass,
+            "principal_moments": self.body.principal_moments,
+            "chi2": self.chi2,
+            "degrees_of_freedom": self.degrees_of_freedom,
+            "at_edge": self.at_edge,
+            "observability": [one.words for one in self.observability],
+        }
+        return one_line(self, told)
+
+
+def tensor_of(elements: Any) -> Any:
+    """Return the symmetric matrix, shape (..., 3, 3), of elements xx, yy, zz, xy, xz, yz."""
+    xx, yy, zz, xy, xz, yz = np.moveaxis(np.asarray(elements), -1, 0)
+    return np.moveaxis(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]), (0, 1), (-2, -1))
+
+
+def p_value_of(chi2: float, degrees_of_freedom: int) -> float:
+    """Compute the probability that chi-square exceeds a value: the regularized incomplete gamma Q(k/2, x/2).
+
+    A series of the complement below the mean, the continued fraction of Lentz above it
+    (https://dlmf.nist.gov/8.11).
+    """
+    if degrees_of_freedom <= 0:
+        return math.nan
+    a, x = 0.5 * degrees_of_freedom, 0.5 * chi2
+    if x <= 0.0:
+        return 1.0
+    front = math.exp(a * math.log(x) - x - math.lgamma(a))
+    if x < a + 1.0:
+        term = total = 1.0 / a
+        k = a
+        while term > 1e-17 * total:
+            k += 1.0
+            term *= x / k
+            total += term
+        return min(1.0, max(0.0, 1.0 - front * total))
+    b = x + 1.0 - a
+    c, d = 1e300, 1.0 / b
+    value, step, i = d, 0.0, 0
+    while abs(step - 1.0) > 1e-15 and i < 1_000_000:
+        i += 1
+        an = -i * (i - a)
+        b += 2.0
+        d = 1.0 / (an * d + b)
+        c = b + an / c
+        step = c * d
+        value *= step
+    return min(1.0, front * value)
+
+
+def find_directions(
+    jacobian: Floats, sizes: Floats, names: Sequence[str], remedy: str
+) -> tuple[tuple[Direction, ...], int]:
+    """Find the directions that data hardly determine, the worst first, and how many they do not at all.
+
+    The Jacobian is in units of the sigmas of the data, a triangle of its QR as well. Its singular values are
+    those per unit of each parameter's size: a direction of the singular value s has the relative sigma 1/s. A
+    ratio of singular values does not matter, but for rounding.
+    """
+    scaled = jacobian * sizes
+    values, rows = np.linalg.svd(scaled, full_matrices=True)[1:]
+    values = np.append(values, np.zeros(len(sizes) - len(values)))
+    # What is left of nothing after rounding; and where all sigmas are huge, nothing is determined by itself.
+    lost = values <= _RANK * max(float(values.max(initial=0.0)), 1e-300)
+    found = [(math.inf, one) for one in _echelon(rows[lost])]
+    weak = ~lost & (values * _UNCERTAIN < 1.0)
+    found += _weak(rows[weak], 1.0 / values[weak])
+    directions = (_direction(relative, vector, sizes, names, remedy) for relative, vector in found)
+    return tuple(directions), int(lost.sum())
+
+
+def spread_directions(
+    spread: Floats, sizes: Floats, names: Sequence[str], remedy: str
+) -> tuple[Direction, ...]:
+    """Find the directions of large sigma, the worst first, of estimates linear in independent errors."""
+    vectors, values = np.linalg.svd(spread / sizes[:, None], full_matrices=False)[:2]
+    large = values > _UNCERTAIN
+    found = _weak(vectors[:, large].T, values[large])
+    return tuple(_direction(relative, vector, sizes, names, remedy) for relative, vector in found)
+
+
+def _weak(rows: Floats, sigmas: Floats) -> list[tuple[float, Floats]]:
+    """Return directions of large sigma that have names, with their sigmas, the worst first."""
+    named = _echelon(rows)
+    found = [(float(np.linalg.norm((rows @ one) * sigmas)), one) for one in named]
+    return sorted(found, key=lambda one: -one[0])
+
+
+def _direction(
+    relative: float, vector: Floats, sizes: Floats, names: Sequence[str], remedy: str
+) -> Direction:
+    signed = vector * np.sign(vector[np.argmax(np.abs(vector))])
+    changes = signed * sizes
+    return Direction(
+        _words(signed, names), changes, relative * float(np.abs(changes).max()), relative, remedy
+    )
+
+
+def _echelon(rows: Floats) -> list[Floats]:
+    """Return a basis of the same space with few components each, so that each has a name."""
+    rows = rows.copy()
+    pivots: list[int] = []
+    for k in range(len(rows)):
+        left = np.abs(rows[k:])
+        left[:, pivots] = 0.0
+        row, column = np.unravel_index(int(np.argmax(left)), left.shape)
+        rows[[k, k + int(row)]] = rows[[k + int(row), k]]
+        rows[k] /= rows[k, column]
+        others = np.arange(len(rows)) != k
+        rows[others] -= np.outer(rows[others, column], rows[k])
+        pivots.append(int(column))
+    return [rows[k] / np.linalg.norm(rows[k]) for k in np.argsort(pivots)]
+
+
+def _words(vector: Floats, names: Sequence[str]) -> str:
+    """Return the name of a direction: that of the parameters with a part in it."""
+    parts = {name: float(x) for name, x in zip(names, vector, strict=True)}
+    most = max(abs(x) for x in parts.values())
+    large = [name for name, x in parts.items() if abs(x) > _SHARE * most]
+    if len(large) > 1 and all(name.startswith("I") for name in large):
+        tensor = tensor_of([parts.get(name, 0.0) for name in NUMBERS[4:]])
+        moments, axes = np.linalg.eigh(tensor)
+        if (np.abs(moments[:2]) < _SHARE * abs(moments[2])).all():
+            axis = axes[:, 2] * np.sign(axes[np.argmax(np.abs(axes[:, 2])), 2])
+            x, y, z = (f"{one + 0.0:.2g}" for one in axis.round(2))
+            return f"the moment about ({x}, {y}, {z})"
+    named = [_named(name) for name in large]
+    return named[0] if len(named) == 1 else f"a combination of {', '.join(named[:-1])} and {named[-1]}"
+
+
+def _named(name: str) -> str:
+    if name in NUMBERS[1:4]:
+        return f"the centre of mass along {name[1]}"
+    if name in NUMBERS[4:7]:
+        return f"the moment about {name[1]}"
+    if name in NUMBERS[7:]:
+        return f"the product of inertia {name[1:]}"
+    return f"the {name}"

@@ -1,0 +1,594 @@
+"""From the wrench of a sensor and the motion of a payload to its ten inertial parameters."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final, Literal, NamedTuple
+
+import numpy as np
+
+from polhode._core import RigidBody, Uncertain
+from polhode._hints import check_kind
+from polhode.errors import IdentificationError
+from polhode.identify.cone import along_the_edge, fit_possible, pseudo_inertia_maps
+from polhode.identify.results import ELEMENTS, NUMBERS, Identified, find_directions, p_value_of, tensor_of
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["from_wrench"]
+
+_ONE: Final = np.eye(3)
+_BASIS: Final = np.array(tensor_of(np.eye(6)))
+_MAPS: Final = pseudo_inertia_maps(_BASIS)
+_FEATURES: Final = 13
+"""Of the motion: specific force, angular acceleration, six products of angular velocities, and 1."""
+_FUNCTIONS: Final = 8
+"""Number of functions by which momentum is balanced in each window."""
+_SMOOTH: Final = 7
+"""Lines of a spectrum over which it is smoothed."""
+_BLOCK: Final = 65536
+_NU: Final = 4.0
+"""Degrees of freedom of Student's distribution."""
+_GAP: Final = 3.0
+"""A step of time is a gap if it is longer than so many usual ones."""
+_PASSES: Final = 50
+
+
+class _Sums(NamedTuple):
+    """Triangles of the features of groups of rows, and what their noise is made of."""
+
+    features: list[Floats]
+    triangles: list[Floats]
+    shares: list[tuple[float, float]]
+    """Of each group: how much of the variance of the wrench, and of ω in its acceleration, is in it."""
+    spins: Floats
+    """Three vectors u with Σ u uᵀ the mean of ω ωᵀ."""
+
+
+def from_wrench(
+    t: ArrayLike,
+    force: ArrayLike,
+    torque: ArrayLike,
+    omega: ArrayLike,
+    specific_force: ArrayLike,
+    *,
+    angular_acceleration: ArrayLike | None = None,
+    force_sigma: ArrayLike | None = None,
+    torque_sigma: ArrayLike | None = None,
+    omega_sigma: float | None = None,
+    bias: bool = False,
+    at: ArrayLike = (0.0, 0.0, 0.0),
+    prior: RigidBody | None = None,
+    window: int | None = None,
+    loss: Literal["gaussian", "student"] = "gaussian",
+) -> Identified:
+    """Find the most likely payload from a log of its wrench and its motion.
+
+    All vectors are in the axes of the sensor frame S. The equations, about its origin O, are
+    ``f = m a + ω̇ × mc + ω × (ω × mc)`` and ``τ = mc × a + I_O ω̇ + ω × I_O ω``. They are linear in the ten
+    parameters m, mc and I_O, and these are those of a body where the pseudo-inertia is positive semidefinite.
+    The fit among these is a convex problem and is solved with a certificate.
+
+    Parameters
+    ----------
+    t : array_like, shape (n,)
+        Ascending times.
+    force, torque : array_like, shape (n, 3)
+        Of the sensor on the payload, about O. Many sensors report those of the payload on them: negate these.
+    omega : array_like, shape (n, 3)
+        Angular velocity of S.
+    specific_force : array_like, shape (n, 3)
+        Acceleration of O minus gravity, as an accelerometer at O reads: −g at rest.
+    angular_acceleration : array_like, shape (n, 3), optional
+        Without it momentum is balanced over windows, so that nothing is differentiated.
+    force_sigma, torque_sigma : float or array_like, shape (3,), optional
+        Standard deviations of white noise; without one it is estimated from the residuals.
+    omega_sigma : float, optional
+        Of the angular velocity. For windows the high end of its spectrum tells it where it is not given;
+        beside an angular acceleration it is zero then.
+    bias : bool
+        Whether constant offsets of force and torque are estimated too.
+    at : array_like, shape (3,)
+        Origin of the body frame, in S.
+    prior : RigidBody, optional
+        What is known of the payload beforehand, in the body frame: a body with a covariance.
+    window : int, optional
+        Number of samples of a window; by default from the spectrum of `omega`.
+    loss : {"gaussian", "student"}
+        The second bears outliers: noise by Student's distribution with 4 degrees of freedom.
+
+    Returns
+    -------
+    Identified
+        The axes of its body are those of S.
+
+    Raises
+    ------
+    IdentificationError
+        ``"undetermined"`` with the directions that the motion tells nothing of; ``"clock"`` for times that do
+        not ascend; ``"no fit"`` where given sigmas cannot explain the residuals, with a probability below
+        1e-6.
+    ValueError
+        For arrays whose shapes do not agree.
+
+    Notes
+    -----
+    A row with a number that is not finite is left out, and so is a window with a gap of time; ``dropped``
+    counts the rows. Noise of `specific_force` is not modelled.
+
+    Examples
+    --------
+    A payload of 2 kg that a wrist turns about all axes:
+
+    >>> import numpy as np
+    >>> from polhode import identify, solids
+    >>> box = solids.box((0.1, 0.2, 0.3), mass=2.0).translated((0.0, 0.02, 0.1))
+    >>> t = np.linspace(0.0, 10.0, 500)
+    >>> phases = np.outer(t, (1.0, 1.3, 1.7))
+    >>> omega, turn = np.sin(phases), np.cos(phases) * (1.0, 1.3, 1.7)
+    >>> down = 9.81 * np.stack([np.sin(t), np.cos(t) * np.sin(2 * t), np.cos(t) * np.cos(2 * t)], axis=1)
+    >>> mc, about = 2.0 * box.center_of_mass, box.inertia_about("origin")
+    >>> force = 2.0 * down + np.cross(turn, mc) + np.cross(omega, np.cross(omega, mc))
+    >>> torque = np.cross(mc, down) + turn @ about + np.cross(omega, omega @ about)
+    >>> noisy = np.random.default_rng(1).normal(0.0, (0.1, 0.01), (500, 3, 2))
+    >>> found = identify.from_wrench(
+    ...     t, force + noisy[..., 0], torque + noisy[..., 1], omega, down, angular_acceleration=turn
+    ... )
+    >>> round(found.body.mass, 2), found.body.center_of_mass.round(3)
+    (2.0, array([-0.  ,  0.02,  0.1 ]))
+    >>> found.at_edge, [one.words for one in found.observability]
+    (False, [])
+    """
+    times, rows = (
+        _times(t),
+        {"force": force, "torque": torque, "omega": omega, "specific_force": specific_force},
+    )
+    if angular_acceleration is not None:
+        rows["angular_acceleration"] = angular_acceleration
+    data = {name: _columns(name, one, len(times)) for name, one in rows.items()}
+    sigmas = np.concatenate([_sigma("force_sigma", force_sigma), _sigma("torque_sigma", torque_sigma)])
+    spin_sigma = None if omega_sigma is None else float(_sigma("omega_sigma", omega_sigma)[0])
+    origin = np.asarray(at, dtype=float)
+    if origin.shape != (3,) or not np.isfinite(origin).all():
+        raise ValueError(f"at: expected a point of shape (3,), got {at!r}")
+    if loss not in ("gaussian", "student"):
+        raise ValueError(f"loss: expected 'gaussian' or 'student', got {loss!r}")
+    if prior is not None:
+        check_kind(prior, "prior", "RigidBody")
+        if prior.shape != () or prior.covariance is None:
+            raise ValueError("prior: expected one body with a covariance; give it one by with_covariance")
+        prior = prior.translated(origin)
+    good = np.isfinite(times)
+    for one in data.values():
+        good = good & np.isfinite(one).all(axis=1)
+    dropped = {"not finite": int((~good).sum())} if not good.all() else {}
+    if angular_acceleration is not None:
+        if window is not None:
+            raise ValueError(
+                "window: with angular_acceleration each row is an equation; give only one of them"
+            )
+        whole = {name: one[good] for name, one in data.items()}
+        features = [_features(whole, whole["angular_acceleration"])]
+        shares, spin_sigma = [(1.0, 0.0)], spin_sigma or 0.0
+    else:
+        if window is not None and (int(window) != window or not 4 * _FUNCTIONS <= window <= len(times)):
+            raise ValueError(
+                f"window: expected a whole number from {4 * _FUNCTIONS} to {len(times)} rows, got {window}"
+            )
+        whole = {name: one[good] for name, one in data.items()}
+        cutoff, level = _spectrum(whole["omega"])
+        spin_sigma = level if spin_sigma is None else spin_sigma
+        window = int(window) if window is not None else cutoff
+        features, shares, lost = _windows(times[good], whole, window)
+        if lost:
+            dropped["outside windows"] = lost
+    least = 4 + 2 * bias
+    if len(features[0]) * len(features) < least:
+        raise IdentificationError(
+            f"t: {int(good.sum())} rows without a gap are too few: ",
+            f"at least {least} equations are needed",
+            "; record longer, or choose a smaller window",
+            kind="undetermined",
+        )
+    mean = whole["omega"].T @ whole["omega"] / len(whole["omega"])
+    values, vectors = np.linalg.eigh(mean)
+    spins = (vectors * np.sqrt(np.maximum(values, 0.0))).T
+    sums = _Sums(features, [_triangle(one) for one in features], shares, spins)
+    fit = _Fit(sums, sigmas, spin_sigma, bias, prior, loss == "student")
+    return fit.solve(origin, dropped, window)
+
+
+def _times(t: ArrayLike) -> Floats:
+    times = np.asarray(t, dtype=float)
+    if times.ndim != 1 or len(times) < 2:
+        raise ValueError(f"t: expected shape (n,) of at least two times, got {times.shape}")
+    finite = times[np.isfinite(times)]
+    back = np.flatnonzero(np.diff(finite) <= 0.0)
+    if len(back):
+        k = int(back[0])
+        raise IdentificationError(
+            f"t: time does not ascend from row {k} to the next: {finite[k]}, {finite[k + 1]}",
+            "; sort the rows, and keep each once",
+            kind="clock",
+        )
+    return times
+
+
+def _columns(name: str, given: ArrayLike, n: int) -> Floats:
+    found = np.asarray(given, dtype=float)
+    if found.shape != (n, 3):
+        raise ValueError(f"{name}: expected shape ({n}, 3), a row for each time, got {found.shape}")
+    if np.abs(found[np.isfinite(found)]).max(initial=0.0) > 1e100:
+        raise ValueError(f"{name}: numbers beyond 1e100 are none of a sensor; check the file")
+    return found
+
+
+def _sigma(name: str, given: ArrayLike | None) -> Floats:
+    """Return three sigmas; NaN where none is given."""
+    if given is None:
+        return np.full(3, np.nan)
+    found = np.asarray(given, dtype=float)
+    if found.shape not in ((), (3,)) or not ((found > 1e-100) & (found < 1e100)).all():
+        raise ValueError(f"{name}: expected a positive number or three, got {given!r}")
+    return np.broadcast_to(found, 3).astype(float)
+
+
+def _features(data: dict[str, Floats], turn: Floats) -> Floats:
+    """Return what the equations are linear in, shape (n, 19): 13 numbers of the motion, then the wrench."""
+    omega = data["omega"]
+    products = np.stack([omega[:, i] * omega[:, j] for i, j in ELEMENTS], axis=1)
+    one = np.ones((len(omega), 1))
+    return np.hstack([data["specific_force"], turn, products, one, data["force"], data["torque"]])
+
+
+def _triangle(features: Floats) -> Floats:
+    """Return the triangle of the QR of the features: all that least squares need of any number of rows."""
+    found: Floats = np.zeros((0, features.shape[1]))
+    for first in range(0, len(features), _BLOCK):
+        found = np.asarray(np.linalg.qr(np.vstack([found, features[first : first + _BLOCK]]), mode="r"))
+    return found
+
+
+def _spectrum(omega: Floats) -> tuple[int, float]:
+    """Return the window that resolves what moves, in samples, and the level of the white noise of ω."""
+    n = len(omega)
+    if n < 4 * _FUNCTIONS:
+        return max(n, 2), 0.0
+    taper = np.sin(np.pi * (np.arange(n) + 0.5) / n) ** 2
+    line = omega - omega.mean(axis=0)
+    power = np.sum(np.abs(np.fft.rfft(line * taper[:, None], axis=0)) ** 2, axis=1)[1:]
+    floor = float(power[-len(power) // 4 :].mean())
+    power = np.convolve(power, np.full(_SMOOTH, 1.0 / _SMOOTH), mode="same")  # else noise passes for motion
+    frequency = np.arange(1, len(power) + 1) / n  # in cycles per sample
+    moving = np.cumsum(np.maximum(power - 4.0 * floor, 0.0) * frequency**2)
+    level = math.sqrt(floor / (3.0 * float(np.sum(taper**2))))
+    if moving[-1] <= 0.0:
+        return max(n // 4, min(n, 4 * _FUNCTIONS)), level
+    highest = float(frequency[np.searchsorted(moving, 0.99 * moving[-1])])
+    longest = max(n // 4, min(n, 4 * _FUNCTIONS))
+    return int(min(max((_FUNCTIONS + 1) / (2.0 * highest), 4 * _FUNCTIONS), longest)), level
+
+
+def _windows(
+    t: Floats, data: dict[str, Floats], window: int
+) -> tuple[list[Floats], list[tuple[float, float]], int]:
+    """Return features of functions φ over windows: ∫φ of what is measured, and −∫φ̇ω for the acceleration.
+
+    φ and φ̇ vanish at both ends of a window. The functions are combined so that white noise of the wrench is
+    independent in all of them, and white noise of ω too. The last result is the number of rows in no window.
+    """
+    index = (np.arange(len(t) // window) * window)[:, None] + np.arange(window)
+    if len(index):
+        steps = np.diff(t[index], axis=1)
+        index = index[(steps < _GAP * np.median(steps)).all(axis=1)]
+    if not len(index):
+        return [np.zeros((0, 19))], [(1.0, 0.0)], len(t)
+    local = t[index]
+    # The quadrature is that of samples in the middle of their steps.
+    step = np.gradient(local, axis=1)
+    span = local[:, -1] - local[:, 0] + 0.5 * (step[:, 0] + step[:, -1])
+    place = (local - (local[:, 0] - 0.5 * step[:, 0])[:, None]) / span[:, None]
+    mix = _independent(window)
+    phi, slope = (one @ mix for one in _functions(place))
+    phi, slope = phi * step[..., None], slope * (step / span[:, None])[..., None]
+    rows = _features(data, np.zeros_like(data["omega"]))
+    groups, shares = [], []
+    for k in range(_FUNCTIONS):
+        found = np.einsum("wj,wjc->wc", phi[..., k], rows[index])
+        found[:, 3:6] = -np.einsum("wj,wjc->wc", slope[..., k], data["omega"][index])
+        size = math.sqrt(float(np.mean(np.sum(phi[..., k] ** 2, axis=1))))
+        groups.append(found / size)
+        shares.append((1.0, float(np.mean(np.sum(slope[..., k] ** 2, axis=1))) / size**2))
+    return groups, shares, len(t) - int(index.size)
+
+
+def _functions(place: Floats) -> tuple[Floats, Floats]:
+    """Return sin²(πx) cos(kπx) and the derivatives by x, shape (..., 8)."""
+    x, k = np.pi * place[..., None], np.arange(_FUNCTIONS)
+    hump, wave = np.sin(x) ** 2, np.cos(k * x)
+    return hump * wave, np.pi * (np.sin(2.0 * x) * wave - k * hump * np.sin(k * x))
+
+
+def _independent(window: int) -> Floats:
+    """Return combinations of the functions that are orthogonal, and whose derivatives are orthogonal."""
+    phi, slope = _functions((np.arange(window) + 0.5) / window)
+    whiten = np.linalg.inv(np.linalg.qr(phi, mode="r"))
+    vectors = np.linalg.svd(slope @ whiten, full_matrices=False)[2]
+    return np.asarray(whiten @ vectors.T)
+
+
+def _regressor() -> Floats:
+    """Return the derivatives of the six equations by features and parameters, shape (6, 13, 16)."""
+    found = np.zeros((6, _FEATURES, 16))
+    one = np.eye(3)
+    for k in range(3):
+        found[k, k, 0] = 1.0  # m a
+        found[:3, 3 + k, 1:4] = np.cross(one[k], one).T  # ω̇ × mc
+        found[3:, k, 1:4] = np.cross(one, one[k]).T  # mc × a
+        found[3:, 3 + k, 4:10] = _BASIS[:, :, k].T  # I ω̇
+        found[k, 12, 10 + k] = found[3 + k, 12, 13 + k] = 1.0
+    for p, (i, j) in enumerate(ELEMENTS):
+        products = np.zeros((3, 3))
+        products[i, j] = products[j, i] = 1.0
+        found[:3, 6 + p, 1:4] = products - np.trace(products) * one  # ω × (ω × mc)
+        for q, tensor in enumerate(_BASIS):
+            mixed = products @ tensor
+            found[3:, 6 + p, 4 + q] = [
+                mixed[1, 2] - mixed[2, 1],
+                mixed[2, 0] - mixed[0, 2],
+                mixed[0, 1] - mixed[1, 0],
+            ]
+    return found
+
+
+_REGRESSOR: Final = _regressor()
+
+
+def _to_numbers(theta: Floats) -> tuple[Floats, Floats]:
+    """Return mass, centre and tensor about it for m, mc and I_O, and their derivatives, shape (10, 10)."""
+    mass, center = theta[0], theta[1:4] / theta[0]
+    slopes = np.zeros((10, 10))
+    slopes[0, 0] = 1.0
+    slopes[1:4, 0], slopes[1:4, 1:4] = -center / mass, np.eye(3) / mass
+    square = float(center @ center)
+    shift = np.array([mass * ((i == j) * square - center[i] * center[j]) for i, j in ELEMENTS])
+    numbers = np.concatenate([[mass], center, theta[4:10] - shift])
+    for row, (i, j) in enumerate(ELEMENTS):
+        slopes[4 + row, 4 + row] = 1.0
+        # I_C = I_O − (|mc|² 1 − mc mcᵀ)/m
+        slopes[4 + row, 0] = (i == j) * square - center[i] * center[j]
+        for k in range(3):
+            slopes[4 + row, 1 + k] = -2.0 * (i == j) * center[k] + (i == k) * center[j] + (j == k) * center[i]
+    return numbers, slopes
+
+
+class _Fit:
+    """Weights, the convex problem in their units, and the result."""
+
+    def __init__(
+        self,
+        sums: _Sums,
+        sigmas: Floats,
+        spin_sigma: float,
+        bias: bool,
+        prior: RigidBody | None,
+        student: bool,
+    ) -> None:
+        self.sums, self.given, self.spin_sigma = sums, sigmas, spin_sigma
+        self.columns = np.arange(16 if bias else 10)
+        self.prior, self.student = prior, student
+        self.weights = [np.ones(len(one)) for one in sums.features]
+        self.rows = sum(len(one) for one in sums.features)
+        force, torque = (
+            math.sqrt(sum(float(np.sum(one[:, part] ** 2)) for one in sums.triangles) / self.rows)
+            for part in (slice(13, 16), slice(16, 19))
+        )
+        push = math.sqrt(sum(float(np.sum(one[:, :3] ** 2)) for one in sums.triangles) / self.rows)
+        if not min(force, torque, push) > 0.0:
+            raise IdentificationError(
+                "force, torque, specific_force: one of them is zero in all rows; no payload is there, ",
+                "or the columns are not those of the sensor",
+                kind="undetermined",
+            )
+        mass, radius = force / push, torque / force
+        # Units of m, mc, I_O and of the offsets.
+        self.mass, self.radius = mass, radius
+        self.unit = np.repeat([mass, mass * radius, mass * radius**2, force, torque], [1, 3, 6, 3, 3])
+
+    def solve(self, origin: Floats, dropped: dict[str, int], window: int | None) -> Identified:
+        x = np.zeros(len(self.columns))
+        sigmas = np.where(np.isnan(self.given), np.repeat([self.unit[10], self.unit[13]], 3), self.given)
+        jacobian: Floats = np.zeros((0, 0))
+        for trial in range(_PASSES):
+            whiten = [np.linalg.inv(np.linalg.cholesky(one)) for one in self.covariances(x, sigmas)]
+            jacobian, target, rest = self.least_squares(whiten)
+            self._check_rank(jacobian)
+            before, x, gap, edge = x, *self.possible(jacobian, target, rest)
+            old, sigmas = sigmas, self.levels(x, sigmas)
+            if self.student:
+                self.reweigh(x, whiten)
+            change = np.abs(x - before).max(initial=0.0) + np.abs(sigmas / old - 1.0).max()
+            settled = not np.isnan(self.given).any() and self.spin_sigma == 0.0 and not self.student
+            if settled or (trial and change < 1e-9):
+                break
+        both = zip(self.residuals(x, self.sums.features), whiten, strict=True)
+        white = [one @ own.T for one, own in both]
+        if self.student:
+            self.weights = [np.ones(len(one)) for one in self.weights]
+            jacobian = self.least_squares(whiten)[0]
+            jacobian = jacobian * math.sqrt((_NU + 6.0) / (_NU + 8.0))
+        inverse: Floats = np.asarray(np.linalg.inv(jacobian), dtype=np.float64)
+        return self._result(
+            x, jacobian, inverse, np.vstack(white), gap, edge, sigmas, origin, dropped, window
+        )
+
+    def covariances(self, x: Floats, sigmas: Floats) -> list[Floats]:
+        """Return the covariance of the six equations of a row of each group: noise of the wrench and of ω."""
+        by_features = np.einsum("efp,p->ef", _REGRESSOR[:, :, :10], x[:10] * self.unit[:10])
+        turn, products = by_features[:, 3:6], np.zeros((6, 6))
+        for u in self.sums.spins:
+            slopes = np.array([u[i] * _ONE[j] + (i != j) * u[j] * _ONE[i] for i, j in ELEMENTS])
+            slopes[:3] *= 2.0  # of squares
+            by_spin = by_features[:, 6:12] @ slopes
+            products += by_spin @ by_spin.T
+        noise = self.spin_sigma**2
+        return [
+            own * (np.diag(sigmas**2) + noise * products) + spin * noise * turn @ turn.T
+            for own, spin in self.sums.shares
+        ]
+
+    def least_squares(self, whiten: list[Floats]) -> tuple[Floats, Floats, float]:
+        """Return triangle, target and rest of the weighted problem, in scaled parameters, offsets first."""
+        blocks = []
+        for triangle, own in zip(self._triangles(), whiten, strict=True):
+            slopes = np.einsum("se,efp->sfp", own, _REGRESSOR[:, :, self.columns] * self.unit[self.columns])
+            lines = np.einsum("rf,sfp->srp", triangle[:, :_FEATURES], slopes)
+            sides = np.einsum("rf,sf->sr", triangle[:, _FEATURES:], own)
+            blocks.append(
+                np.concatenate([lines, sides[..., None]], axis=2).reshape(-1, len(self.columns) + 1)
+            )
+        if self.prior is not None:
+            blocks.append(self._prior_rows())
+        stacked = np.vstack(blocks)
+        order = np.roll(self.columns, len(self.columns) - 10)  # offsets first
+        both: Floats = np.asarray(np.linalg.qr(stacked[:, np.append(order, len(order))], mode="r"))
+        count = len(order)
+        if len(both) < count + 1:
+            both = np.pad(both, ((0, count + 1 - len(both)), (0, 0)))
+        return both[:count, :count], both[:count, count], float(both[count, count] ** 2)
+
+    def _triangles(self) -> list[Floats]:
+        if not self.student:
+            return self.sums.triangles
+        both = zip(self.sums.features, self.weights, strict=True)
+        return [_triangle(one * np.sqrt(w)[:, None]) for one, w in both]
+
+    def _prior_rows(self) -> Floats:
+        """Return the rows of what is known beforehand, to first order about it."""
+        assert self.prior is not None
+        body, unit = self.prior, self.unit[:10]
+        mass, center = float(body.mass), body.center_of_mass
+        about = body.inertia_about("origin")
+        theta = np.concatenate([[mass], mass * center, [about[i, j] for i, j in ELEMENTS]])
+        back = np.linalg.inv(_to_numbers(theta)[1]) / unit[:, None]
+        covariance = back @ np.asarray(body.covariance) @ back.T
+        # A number without a sigma is known to nine digits of its size.
+        values, vectors = np.linalg.eigh(covariance + 1e-18 * np.eye(10))
+        white = (vectors / np.sqrt(values)).T
+        rows = np.zeros((10, len(self.columns) + 1))
+        rows[:, :10], rows[:, -1] = white, white @ (theta / unit)
+        return rows
+
+    def possible(self, jacobian: Floats, target: Floats, rest: float) -> tuple[Floats, float, bool]:
+        """Return the best possible parameters in the order m, mc, I_O, offsets."""
+        extra = len(self.columns) - 10
+        start = np.concatenate([[1.0], np.zeros(3), [2.0, 2.0, 2.0], np.zeros(3)])
+        body, gap, edge = fit_possible(jacobian[extra:, extra:], target[extra:], _MAPS, start, rest)
+        if not extra:
+            return body, gap, edge
+        upper = target[:extra] - jacobian[:extra, extra:] @ body
+        return np.concatenate([body, np.linalg.solve(jacobian[:extra, :extra], upper)]), gap, edge
+
+    def residuals(self, x: Floats, features: list[Floats]) -> list[Floats]:
+        """Return measured minus predicted wrenches of each group, of rows or of a triangle, shape (n, 6)."""
+        slopes = np.einsum("efp,p->fe", _REGRESSOR[:, :, self.columns], x * self.unit[self.columns])
+        return [one[:, _FEATURES:] - one[:, :_FEATURES] @ slopes for one in features]
+
+    def levels(self, x: Floats, sigmas: Floats) -> Floats:
+        """Return the sigmas, those that are unknown from the residuals."""
+        unknown = np.isnan(self.given)
+        if not unknown.any():
+            return sigmas
+        spin = [np.diag(one) for one in self.covariances(x, np.zeros(6))]
+        total = np.zeros(6)
+        both = zip(self.residuals(x, self._triangles()), spin, self.weights, strict=True)
+        for one, noise, w in both:
+            total += np.maximum(np.sum(one**2, axis=0) - len(w) * noise, 0.0)
+        total = total / max(self.rows - len(self.columns) / 6.0, 1.0)
+        # One level for the three components of a kind, and never below rounding.
+        total = np.repeat([total[:3].mean(), total[3:].mean()], 3)
+        least = (1e-13 * np.repeat([self.unit[10], self.unit[13]], 3)) ** 2
+        return np.where(unknown, np.sqrt(np.maximum(total, least)), sigmas)
+
+    def reweigh(self, x: Floats, whiten: list[Floats]) -> None:
+        """Set the weights of Student's distribution with six components."""
+        both = zip(self.residuals(x, self.sums.features), whiten, strict=True)
+        squares = [np.sum((one @ own.T) ** 2, axis=1) for one, own in both]
+        self.weights = [(_NU + 6.0) / (_NU + one) for one in squares]
+
+    def _check_rank(self, jacobian: Floats) -> None:
+        extra = len(self.columns) - 10
+        remedy = "turn the payload about all axes, faster, and in several attitudes; or give a prior"
+        found, lost = find_directions(jacobian[extra:, extra:], np.ones(10), NUMBERS, remedy)
+        # An offset that is not determined lies in the part before.
+        if lost or (extra and np.abs(np.diagonal(jacobian)[:extra]).min() <= 1e-11 * np.abs(jacobian).max()):
+            lost_ones = tuple(one for one in found if not math.isfinite(one.relative))
+            raise IdentificationError(
+                "omega, specific_force: the motion leaves undetermined: ",
+                "; ".join(one.words for one in lost_ones) or "offsets of the sensor",
+                f"; {remedy}",
+                kind="undetermined",
+                observability=lost_ones,
+            )
+
+    def _result(
+        self,
+        x: Floats,
+        jacobian: Floats,
+        inverse: Floats,
+        white: Floats,
+        gap: float,
+        edge: bool,
+        sigmas: Floats,
+        origin: Floats,
+        dropped: dict[str, int],
+        window: int | None,
+    ) -> Identified:
+        extra = len(self.columns) - 10
+        spread = inverse[extra:]
+        inner = spread @ spread.T
+        numbers, slopes = _to_numbers(x[:10] * self.unit[:10])
+        slopes = slopes * self.unit[:10]
+        bound = slopes @ inner @ slopes.T
+        if edge:
+            kept = along_the_edge(inner, _MAPS, x[:10])
+            spread = kept @ spread
+        spread = slopes @ spread
+        covariance = spread @ spread.T
+        moment = float(np.sum(numbers[4:7])) / 3.0
+        sizes = np.repeat([numbers[0], math.sqrt(moment / numbers[0]), moment], [1, 3, 6])
+        remedy = "turn the payload about all axes, faster, and in several attitudes"
+        by_numbers = jacobian[extra:, extra:] @ np.linalg.inv(slopes)
+        observability, _ = find_directions(by_numbers, sizes, NUMBERS, remedy)
+        estimated = np.isnan(self.given).any()
+        chi2 = float(np.sum(white**2))
+        freedom = white.size - len(self.columns) + (10 if self.prior is not None else 0)
+        p_value = math.nan if estimated or self.student else p_value_of(chi2, freedom)
+        if p_value < 1e-6:
+            raise IdentificationError(
+                f"force_sigma, torque_sigma: chi2 is {chi2:.6g} with {freedom} degrees of freedom; ",
+                "noise of these sigmas does not explain the residuals; ",
+                "leave the sigmas out to estimate them, or look for offsets (bias=True), the sign of the ",
+                "wrench (of the sensor on the payload) and the frame of the accelerometer",
+                kind="no fit",
+            )
+        numbers[1:4] -= origin
+        body = RigidBody(mass=numbers[0], inertia=tensor_of(numbers[4:]), center_of_mass=numbers[1:4])
+        body = body.with_covariance(covariance)
+        offsets = None
+        if extra:
+            unit = self.unit[10:]
+            own = (inverse @ inverse.T)[:extra, :extra] * np.outer(unit, unit)
+            offsets = Uncertain(x[10:] * unit, covariance=0.5 * (own + own.T))
+        noise = None
+        if estimated:
+            noise = Uncertain(sigmas, sigmas / math.sqrt(2.0 * 3.0 * self.rows))
+        return Identified(
+            body=body, parameters=NUMBERS, estimate=numbers, covariance=covariance, crlb=bound,
+            residuals=white, chi2=chi2, degrees_of_freedom=freedom, p_value=p_value, noise=noise,
+            bias=offsets, at_edge=edge, linear=not edge, gap=gap, observability=observability,
+            scale_known=True, dropped=dropped, window=window,
+        )  # fmt: skip

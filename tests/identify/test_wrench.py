@@ -1,0 +1,337 @@
+"""A payload from a log of its wrench: the cone of possible bodies, certificates, windows, what is not
+told."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from polhode import RigidBody, identify, laminae, rods, solids
+from polhode.errors import IdentificationError
+from polhode.identify import cone
+from polhode.interop import to_pseudo_inertia
+
+Floats = NDArray[np.float64]
+BOX = solids.box((0.1, 0.2, 0.3), mass=2.0).translated((0.0, 0.02, 0.1))
+PLATE = laminae.rectangle((0.2, 0.3), mass=1.0).translated((0.01, 0.0, 0.05))
+ROD = rods.rod(0.5, mass=1.0).translated((0.0, 0.1, 0.0))
+ELEMENTS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+
+
+def fitted(*args: Any, **given: Any) -> Any:
+    """Return the result; whether its body has sigmas is what the tests ask."""
+    return identify.from_wrench(*args, **given)
+
+
+def record(body: RigidBody, n: int = 800, seed: int = 0, **given: float) -> dict[str, Any]:
+    """A log by the equations of Newton and Euler, written out here, with noise."""
+    rng = np.random.default_rng(seed)
+    t = np.linspace(0.0, given.get("end", 10.0), n)
+    rate = given.get("rate", 1.0) * np.array([[1.0, 1.9, 2.6], [1.3, 2.3, 3.1], [0.7, 1.6, 3.0]])
+    phase = np.multiply.outer(t, rate) + rng.uniform(0.0, 6.0, (3, 3))
+    omega = given.get("swing", 1.0) * np.sin(phase).sum(axis=2)
+    turn = given.get("swing", 1.0) * (rate * np.cos(phase)).sum(axis=2)
+    push = 9.81 * np.stack(
+        [np.sin(0.7 * t), np.cos(0.7 * t) * np.sin(1.1 * t), np.cos(0.7 * t) * np.cos(1.1 * t)], 1
+    )
+    wrench = predicted(body, omega, turn, push) + rng.normal(0.0, 1.0, (n, 6)) * np.repeat(
+        [given.get("force", 0.1), given.get("torque", 0.01)], 3
+    )
+    return {
+        "t": t,
+        "force": wrench[:, :3],
+        "torque": wrench[:, 3:],
+        "omega": omega + rng.normal(0.0, 1.0, omega.shape) * given.get("spin", 0.0),
+        "specific_force": push,
+        "angular_acceleration": turn,
+    }
+
+
+def predicted(body: RigidBody, omega: Floats, turn: Floats, push: Floats) -> Floats:
+    mc, about = body.mass * body.center_of_mass, body.inertia_about("origin")
+    force = body.mass * push + np.cross(turn, mc) + np.cross(omega, np.cross(omega, mc))
+    torque = np.cross(mc, push) + turn @ about + np.cross(omega, omega @ about)
+    return np.hstack([force, torque])
+
+
+def numbers(body: RigidBody) -> Floats:
+    return np.concatenate([[body.mass], body.center_of_mass, [body.inertia[i, j] for i, j in ELEMENTS]])
+
+
+SIGMAS: dict[str, Any] = {"force_sigma": 0.1, "torque_sigma": 0.01}
+
+
+class TestInside:
+    def test_errors_are_as_large_as_the_covariance_says(self) -> None:
+        squares, p_values = [], []
+        for seed in range(60):
+            found = fitted(**record(BOX, 200, seed), **SIGMAS)
+            off = found.estimate - numbers(BOX)
+            squares.append(off @ np.linalg.solve(found.covariance, off))
+            p_values.append(found.p_value)
+        assert 8.6 < np.mean(squares) < 11.6  # of chi-square with 10 degrees: 10 ± 0.58
+        assert 0.38 < np.mean(p_values) < 0.62
+
+    def test_the_covariance_goes_into_the_body(self) -> None:
+        found = fitted(**record(BOX), **SIGMAS)
+        assert np.allclose(found.body.covariance, found.covariance, rtol=1e-9, atol=1e-18)
+        assert np.allclose(found.covariance, found.crlb, rtol=1e-12, atol=0.0)
+
+    def test_unknown_noise_and_offsets(self) -> None:
+        data = record(BOX, 3000)
+        data["force"] = data["force"] + (1.0, -2.0, 0.5)
+        data["torque"] = data["torque"] + (0.1, 0.0, -0.2)
+        found = fitted(**data, bias=True)
+        assert found.noise is not None
+        assert np.allclose(found.noise.value, np.repeat([0.1, 0.01], 3), rtol=0.05)
+        assert found.bias is not None
+        off = (found.bias.value - (1.0, -2.0, 0.5, 0.1, 0.0, -0.2)) / found.bias.sigma
+        assert np.abs(off).max() < 4.0
+        off = (found.estimate - numbers(BOX)) / np.sqrt(np.diagonal(found.covariance))
+        assert np.abs(off).max() < 4.0
+
+    def test_at_moves_the_origin(self) -> None:
+        data = record(BOX)
+        here, there = fitted(**data), fitted(**data, at=(0.0, 0.0, 0.1))
+        moved = here.body.translated((0.0, 0.0, -0.1))
+        assert np.allclose(there.body.center_of_mass, moved.center_of_mass, atol=1e-14)
+        assert np.allclose(there.body.covariance, moved.covariance, rtol=1e-9, atol=1e-20)
+
+    def test_a_prior_is_weighed(self) -> None:
+        data = record(BOX)
+        alone = fitted(**data, **SIGMAS)
+        prior = BOX.with_covariance(alone.covariance)
+        both = fitted(**data, **SIGMAS, prior=prior)
+        assert np.allclose(both.covariance, 0.5 * alone.covariance, rtol=0.05, atol=1e-12)
+        assert np.allclose(both.estimate, 0.5 * (alone.estimate + numbers(BOX)), atol=1e-3)
+
+    def test_student_bears_outliers(self) -> None:
+        data = record(BOX)
+        data["force"][::40] += 30.0
+        squares = fitted(**data)
+        robust = fitted(**data, loss="student")
+        assert abs(robust.body.mass - 2.0) < 4.0 * robust.body.sigma.mass
+        assert robust.body.sigma.mass < 0.1 * squares.body.sigma.mass
+
+    def test_rows_that_are_not_finite_are_counted(self) -> None:
+        data = record(BOX)
+        data["omega"][5] = np.nan
+        data["force"][7:9] = np.inf
+        found = fitted(**data, **SIGMAS)
+        assert found.dropped == {"not finite": 3}
+        assert len(found.residuals) == 797
+
+
+class TestEdge:
+    CASES: Any = (
+        (PLATE, {}),
+        (ROD, {}),
+        (BOX, {"swing": 0.02}),
+        (BOX.scaled(mass=0.02), {}),
+    )
+
+    def problems(self, seeds: int) -> Any:
+        """Every fit of the cases, with the problem that the cone was given."""
+        for body, given in self.CASES:
+            for seed in range(seeds):
+                asked: list[Any] = []
+
+                def spy(*args: Any, asked: list[Any] = asked) -> Any:
+                    asked.append((args, cone.fit_possible(*args)))
+                    return asked[-1][1]
+
+                with pytest.MonkeyPatch.context() as patch:
+                    patch.setattr("polhode.identify.wrench.fit_possible", spy)
+                    found = fitted(**record(body, 200, seed, **given), **SIGMAS)
+                yield found, asked[-1][0], asked[-1][1][0]
+
+    def check(self, seeds: int) -> int:
+        edges = 0
+        for found, (triangle, target, maps, _, rest), x in self.problems(seeds):
+            least = np.linalg.eigvalsh(to_pseudo_inertia(found.body))[0]
+            assert least > -1e-15 * found.body.mass
+            if not found.at_edge:
+                assert found.gap == 0.0
+                continue
+            edges += 1
+            assert not found.linear
+            assert found.gap <= 1e-9 * found.chi2
+            # The conditions of Karush, Kuhn and Tucker, from the solution alone: the gradient is ⟨Z, M_k⟩ of
+            # a Z ≥ 0 that the body has nothing to do with.
+            gradient = 2.0 * triangle.T @ (triangle @ x - target)
+            values, vectors = np.linalg.eigh(np.tensordot(x, maps, 1))
+            empty = vectors[:, values < 1e-5 * values[-1]]
+            pairs = np.triu_indices(empty.shape[1])
+            lines = (empty.T @ maps @ empty)[:, pairs[0], pairs[1]] * np.where(pairs[0] == pairs[1], 1.0, 2.0)
+            dual, *_ = np.linalg.lstsq(lines, gradient, rcond=None)
+            multiplier = np.zeros((empty.shape[1], empty.shape[1]))
+            multiplier[pairs] = multiplier.T[pairs] = dual
+            assert np.linalg.eigvalsh(multiplier)[0] > -1e-6 * np.abs(dual).max()
+            # Bound of the dual problem with it: no possible body is better by more.
+            z = empty @ multiplier @ empty.T
+            off = triangle @ x - target - 0.5 * np.linalg.solve(triangle.T, np.tensordot(maps, z, 2))
+            slack = np.tensordot(z, np.tensordot(x, maps, 1), 2)
+            assert off @ off + abs(slack) <= 1e-6 * found.chi2
+            assert rest >= 0.0
+        return edges
+
+    def test_the_best_body_is_possible_and_certified(self) -> None:
+        assert self.check(4) >= 6
+
+    @pytest.mark.long
+    def test_the_best_body_is_possible_and_certified_in_many_logs(self) -> None:
+        assert self.check(60) >= 90
+
+    @pytest.mark.skipif(find_spec("cvxpy") is None, reason="cvxpy is not installed")
+    def test_the_optimum_of_another_solver(self) -> None:
+        import cvxpy  # type: ignore[import-not-found]  # in environments that have it
+
+        for found, (triangle, target, maps, _, rest), x in self.problems(3):
+            if not found.at_edge:
+                continue
+            y, size = cvxpy.Variable(10), np.abs(triangle).max()
+            matrix = sum(y[k] * maps[k] for k in range(10))
+            goal = cvxpy.Minimize(cvxpy.norm(triangle / size @ y - target / size))
+            cvxpy.Problem(goal, [matrix >> 0]).solve(solver=cvxpy.CLARABEL)
+            ours, theirs = (float(np.sum((triangle @ one - target) ** 2)) + rest for one in (x, y.value))
+            assert ours <= theirs * (1.0 + 1e-9)
+
+    def test_a_tiny_problem_in_closed_form(self) -> None:
+        """The nearest nonnegative numbers: the cone of diagonal matrices."""
+        maps = np.array([np.diag([1.0, 0.0]), np.diag([0.0, 1.0])])
+        x, gap, edge = cone.fit_possible(np.eye(2), np.array([3.0, -2.0]), maps, np.ones(2))
+        assert edge
+        assert gap < 1e-10
+        assert np.allclose(x, (3.0, 0.0), atol=1e-6)
+
+    def test_sigmas_along_the_edge(self) -> None:
+        found = next(one for one, *_ in self.problems(4) if one.at_edge)
+        ratio = np.diagonal(found.covariance) / np.diagonal(found.crlb)
+        assert (ratio < 1.0 + 1e-9).all()
+        assert ratio.min() < 0.9
+
+
+class TestWindows:
+    def test_without_noise_the_body_comes_back(self) -> None:
+        data = record(BOX, 2000, force=0.0, torque=0.0)
+        del data["angular_acceleration"]
+        found = fitted(**data)
+        assert found.window is not None
+        assert np.allclose(found.estimate, numbers(BOX), atol=2e-5)
+
+    def test_errors_are_as_large_as_the_covariance_says(self) -> None:
+        squares = []
+        for seed in range(40):
+            data = record(BOX, 800, seed, spin=0.02, rate=2.0)
+            del data["angular_acceleration"]
+            found = fitted(**data, **SIGMAS)
+            off = found.estimate - numbers(BOX)
+            squares.append(off @ np.linalg.solve(found.crlb, off))
+        assert 8.0 < np.mean(squares) < 13.0
+
+    def test_a_noisy_gyro_beats_differences(self) -> None:
+        """Wrenches predicted on another motion, beside central differences with the best smoothing."""
+        signal = pytest.importorskip("scipy.signal")
+        ours: list[float] = []
+        theirs: dict[int, list[float]] = {window: [] for window in (11, 21, 41, 61, 81)}
+        weights = np.repeat([10.0, 100.0], 3)
+        for seed in range(8):
+            data, other = record(BOX, 1000, seed, spin=0.1, rate=2.0), record(BOX, 300, 100 + seed)
+            motion = other["omega"], other["angular_acceleration"], other["specific_force"]
+            del data["angular_acceleration"]
+
+            def off(body: RigidBody, motion: Any = motion) -> float:
+                return float(np.mean(((predicted(body, *motion) - predicted(BOX, *motion)) * weights) ** 2))
+
+            ours.append(off(fitted(**data, **SIGMAS).body))
+            for window, errors in theirs.items():
+                smooth = signal.savgol_filter(data["omega"], window, 3, axis=0)
+                turn = np.gradient(smooth, data["t"], axis=0)
+                errors.append(off(fitted(**data | {"omega": smooth}, angular_acceleration=turn).body))
+        best = min(np.mean(errors) for errors in theirs.values())
+        assert np.sqrt(np.mean(ours) / best) < 0.7
+
+    def test_a_gap_ends_no_window_in_its_middle(self) -> None:
+        data = record(BOX, 2000)
+        keep = np.ones(2000, dtype=bool)
+        keep[720:790] = False
+        rows = {name: one[keep] for name, one in data.items() if name != "angular_acceleration"}
+        found = fitted(**rows, **SIGMAS, window=100)
+        assert found.dropped == {"outside windows": 130}
+        off = (found.estimate - numbers(BOX)) / np.sqrt(np.diagonal(found.crlb))
+        assert np.abs(off).max() < 5.0
+
+
+class TestLittleIsTold:
+    def refused(self, **data: Any) -> set[str]:
+        with pytest.raises(IdentificationError, match="undetermined") as caught:
+            fitted(**data, **SIGMAS)
+        assert caught.value.kind == "undetermined"
+        return {one.words for one in caught.value.observability}
+
+    TENSOR = ("the moment about x", "the moment about y", "the moment about z")
+    PRODUCTS = tuple(f"the product of inertia {pair}" for pair in ("xy", "xz", "yz"))
+
+    def test_poses_at_rest(self) -> None:
+        assert self.refused(**record(BOX, swing=0.0)) == {*self.TENSOR, *self.PRODUCTS}
+
+    def test_slow_poses_are_told_and_mass_and_centre_are_not(self) -> None:
+        found = fitted(**record(BOX, swing=0.02), **SIGMAS)
+        words = " ".join(one.words for one in found.observability)
+        assert "moment" in words
+        assert "mass" not in words
+        assert abs(found.body.mass - 2.0) < 0.1
+
+    def test_turns_about_one_axis(self) -> None:
+        data = record(BOX)
+        about = np.array([0.0, 0.0, 1.0])
+        spin, turn = data["omega"][:, 2:] * about, data["angular_acceleration"][:, 2:] * about
+        wrench = predicted(BOX, spin, turn, data["specific_force"])
+        data |= {"omega": spin, "angular_acceleration": turn, "force": wrench[:, :3], "torque": wrench[:, 3:]}
+        assert self.refused(**data) == {
+            "the moment about x",
+            "the moment about y",
+            "the product of inertia xy",
+        }
+
+    def test_the_other_sign_and_too_small_sigmas_fit_badly(self) -> None:
+        data = record(BOX)
+        for changed in ({"force_sigma": 0.05}, {"force": -data["force"], "torque": -data["torque"]}):
+            with pytest.raises(IdentificationError, match="chi2 is") as caught:
+                fitted(**data | SIGMAS | changed)
+            assert caught.value.kind == "no fit"
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"force": np.zeros((3, 3))}, "force: expected shape"),
+        ({"t": np.zeros(800)}, "time does not ascend from row 0"),
+        ({"force_sigma": -1.0}, "force_sigma: expected a positive number"),
+        ({"loss": "huber"}, "loss: expected 'gaussian' or 'student'"),
+        ({"window": 100}, "window: with angular_acceleration"),
+        ({"at": (0.0, np.nan, 0.0)}, "at: expected a point"),
+        ({"prior": BOX}, "prior: expected one body with a covariance"),
+        ({"force": np.zeros((800, 3))}, "no payload is there"),
+        ({"angular_acceleration": None, "window": 5}, "window: expected a whole number"),
+    ],
+)
+def test_bad_input(changed: dict[str, Any], words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        fitted(**record(BOX) | changed)
+
+
+def test_a_probability_of_chi_square() -> None:
+    special = pytest.importorskip("scipy.special")
+    from polhode.identify.results import p_value_of
+
+    for freedom in (1, 2, 7, 100, 12_000):
+        for share in (0.01, 0.5, 0.97, 1.0, 1.02, 1.5, 3.0):
+            found, want = (
+                p_value_of(share * freedom, freedom),
+                special.gammaincc(freedom / 2, share * freedom / 2),
+            )
+            assert found == pytest.approx(want, rel=1e-9, abs=1e-12)
