@@ -176,22 +176,22 @@ def page_of(motion: Any, end: float | None = None, **options: Any) -> tuple[str,
 
 
 def animate_motion(
-    motion: FreeMotion | HeavyTop | GyrostatMotion,
-    end: float,
+    motion: Trajectory | FreeMotion | HeavyTop | GyrostatMotion,
+    end: float | None,
     path: str | PathLike[str],
     *,
     shape: GivenShape | None = None,
     title: str = "Motion of a rigid body",
     progress: Callable[[float], object] | None = None,
 ) -> tuple[str, ...]:
-    """Write the motion of one body in closed form as a moving picture, with the frames that it needs.
+    """Write the motion of one body as a moving picture, with the frames that it needs.
 
     Parameters
     ----------
-    motion : FreeMotion, HeavyTop or GyrostatMotion
+    motion : Trajectory, FreeMotion, HeavyTop or GyrostatMotion
         Of one body.
-    end : float
-        What is shown is from 0 s to this time.
+    end : float or None
+        Of a motion in closed form what is shown is from 0 s to this time; None of a trajectory.
     path, shape, title, progress
         As of `animate`.
 
@@ -202,7 +202,7 @@ def animate_motion(
     """
     file = _check_suffix(path)
     is_page = file.suffix.lower() == ".html"
-    scene = Scene.of_motion(motion, end, shape=shape, title=title, is_film=not is_page, is_page=is_page)
+    scene = scene_of(motion, end, is_page=is_page, duration=None, shape=shape, title=title)
     _write(scene, file, progress)
     return scene.notes
 
