@@ -56,7 +56,7 @@ def test_a_coin() -> None:
 
 
 def test_a_ball_with_its_constants(tmp_path: Path) -> None:
-    """A loaded ball keeps Jellett's and Routh's constants; by moments and by a saved body they are the same."""
+    """A loaded ball keeps the constants of Jellett and Routh; by moments and by a saved body alike."""
     moments, center = (8e-7, 8e-7, 9e-7), (0.0, 0.0, -0.003)
     start = ("--surface", "sphere", "--radius", "2 cm", "--omega", 1, 0, 80, "--tilt", 0.3, "--end", 1)
     body = RigidBody.from_principal(0.006, moments, center_of_mass=center)
@@ -103,8 +103,8 @@ def test_surfaces_and_their_axes() -> None:
 
 def test_a_lost_contact_ends_with_1(tmp_path: Path) -> None:
     """A ball loaded at its rim is thrown off; a disk falls flat; the plane may hold the first."""
-    top = ("--surface", "sphere", "--radius", 1, "--mass", 1, "--moments", "0.09 0.09 0.09")
-    top = (*top, "--center-of-mass", "0 0 0.9", "--omega", 0.5, 0, 0, "--end", 3)
+    loaded = ("--surface", "sphere", "--radius", 1, "--mass", 1, "--moments", "0.09 0.09 0.09")
+    top = (*loaded, "--center-of-mass", "0 0 0.9", "--omega", 0.5, 0, 0, "--end", 3)
     code, found = told(*top, "--save", tmp_path / "up.csv", "--save", tmp_path / "up.html")
     assert (code, found["status"]) == (1, "lift-off")
     ((event),) = found["events"]

@@ -84,63 +84,70 @@ def test_a_page_holds_plane_and_contact(tmp_path: Path) -> None:
     assert data(free.animate(tmp_path / "free.html"))["ground"] is None
 
 
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("rolling")
+
+
+@pytest.fixture(scope="module")
+def browser(folder: Path) -> Iterator[Browser]:
+    with Browser(folder) as one:
+        yield one
+
+
 @needs_browser
-class TestInABrowser:
-    @pytest.fixture(scope="class")
-    def folder(self, tmp_path_factory: pytest.TempPathFactory) -> Path:
-        return tmp_path_factory.mktemp("rolling")
+@pytest.mark.parametrize("make", [coin, ball])
+def test_between_the_frames_the_contact_is_that_of_the_motion(
+    browser: Browser, folder: Path, make: Any
+) -> None:
+    page = make(np.linspace(0, 2, 601)).animate(folder / f"{make.__name__}.html")
+    browser.screen(*DESK)
+    browser.open(page, "#t=1.234567")
+    exact: Any = make([0.0, 1.234567])
+    place = browser.run(
+        "(({ place }) => [place.center, place.contact, place.inBody])(polhode.stateAt(1.234567))"
+    )
+    size = float(np.linalg.norm(exact.contact.point_in_body[-1]))
+    known = [exact.position[-1], exact.contact.point[-1], exact.contact.point_in_body[-1]]
+    np.testing.assert_allclose(place, known, atol=2e-3 * size)
+    told = browser.run(TOLD)
+    assert float(told["friction needed"]) == pytest.approx(exact.contact.friction_needed[-1], rel=0.05)
+    words = browser.run("document.getElementById('space-caption').textContent")
+    assert ("on the plane and on the body" in words) == (make is coin)
+    assert ("the plane turns" in words) == (make is ball)
+    assert "T + V" in told if make is coin else "T + V" not in told
 
-    @pytest.fixture(scope="class")
-    def browser(self, folder: Path) -> Iterator[Browser]:
-        with Browser(folder) as one:
-            yield one
 
-    @pytest.mark.parametrize("make", [coin, ball])
-    def test_between_the_frames_the_contact_is_that_of_the_motion(
-        self, browser: Browser, folder: Path, make: Any
-    ) -> None:
-        page = make(np.linspace(0, 2, 601)).animate(folder / f"{make.__name__}.html")
-        browser.screen(*DESK)
-        browser.open(page, "#t=1.234567")
-        exact: Any = make([0.0, 1.234567])
-        place = browser.run("(({ place }) => [place.center, place.contact, place.inBody])(polhode.stateAt(1.234567))")
-        size = float(np.linalg.norm(exact.contact.point_in_body[-1]))
-        known = [exact.position[-1], exact.contact.point[-1], exact.contact.point_in_body[-1]]
-        np.testing.assert_allclose(place, known, atol=2e-3 * size)
-        told = browser.run(TOLD)
-        assert float(told["friction needed"]) == pytest.approx(exact.contact.friction_needed[-1], rel=0.05)
-        words = browser.run("document.getElementById('space-caption').textContent")
-        assert ("on the plane and on the body" in words) == (make is coin)
-        assert ("the plane turns" in words) == (make is ball)
-        assert "T + V" in told if make is coin else "T + V" not in told
+@needs_browser
+@pytest.mark.parametrize("size", [DESK, PHONE, ON_ITS_SIDE])
+def test_both_traces_are_seen(browser: Browser, folder: Path, size: tuple[int, int]) -> None:
+    """In the colour of the contact alone, in both views, and gone with their switch."""
+    page = coin(np.linspace(0, 2, 601)).animate(folder / "coin.html")
+    browser.screen(*size, touch=size == PHONE)
+    browser.open(page, "#t=1.2")
+    assert inside(browser, "space")
+    counted = """((id) => {
+      const canvas = document.getElementById(id), pen = canvas.getContext("2d");
+      const { data } = pen.getImageData(0, 0, canvas.width, canvas.height);
+      let found = 0;
+      for (let i = 0; i < data.length; i += 4)
+        found += Math.hypot(data[i] - 194, data[i + 1] - 65, data[i + 2] - 12) < 40;
+      return found / (globalThis.devicePixelRatio || 1) ** 2;
+    })"""
+    views = ["space"] if size == PHONE else ["space", "second"]
+    shown = [browser.run(f"{counted}('{view}')") for view in views]
+    browser.run("document.getElementById('traces').click(); polhode.draw()")
+    hidden = [browser.run(f"{counted}('{view}')") for view in views]
+    assert min(np.subtract(shown, hidden)) > 150
 
-    @pytest.mark.parametrize("size", [DESK, PHONE, ON_ITS_SIDE])
-    def test_both_traces_are_seen(self, browser: Browser, folder: Path, size: tuple[int, int]) -> None:
-        """In the colour of the contact alone, in both views, and gone with their switch."""
-        page = coin(np.linspace(0, 2, 601)).animate(folder / "coin.html")
-        browser.screen(*size, touch=size == PHONE)
+
+@needs_browser
+def test_nothing_is_in_the_way_of_anyone(browser: Browser, folder: Path) -> None:
+    page = coin(np.linspace(0, 2, 601)).animate(folder / "coin.html")
+    for dark in (False, True):
+        browser.screen(*PHONE, dark=dark, touch=True)
         browser.open(page, "#t=1.2")
-        assert inside(browser, "space")
-        counted = """((id) => {
-          const canvas = document.getElementById(id), pen = canvas.getContext("2d");
-          const { data } = pen.getImageData(0, 0, canvas.width, canvas.height);
-          let found = 0;
-          for (let i = 0; i < data.length; i += 4)
-            found += Math.hypot(data[i] - 194, data[i + 1] - 65, data[i + 2] - 12) < 40;
-          return found / (globalThis.devicePixelRatio || 1) ** 2;
-        })"""
-        views = ["space"] if size == PHONE else ["space", "second"]
-        shown = [browser.run(f"{counted}('{view}')") for view in views]
-        browser.run("document.getElementById('traces').click(); polhode.draw()")
-        hidden = [browser.run(f"{counted}('{view}')") for view in views]
-        assert min(np.subtract(shown, hidden)) > 150
-
-    def test_nothing_is_in_the_way_of_anyone(self, browser: Browser, folder: Path) -> None:
-        page = coin(np.linspace(0, 2, 601)).animate(folder / "coin.html")
-        for dark in (False, True):
-            browser.screen(*PHONE, dark=dark, touch=True)
-            browser.open(page, "#t=1.2")
-            assert browser.serious_faults() == []
+        assert browser.serious_faults() == []
 
 
 def test_a_film_follows_the_body() -> None:
@@ -170,9 +177,9 @@ def test_figures() -> None:
     on_body = np.fmax.reduce([np.array(line.get_data_3d()).T for line in solid.lines[1:3]])
     arms = np.linalg.norm(on_body - on_body.mean(axis=0), axis=1)
     assert np.isfinite(arms).all()  # each point is in one of both parts
-    for call in (lambda: plot.rolling(motion, index=201), lambda: plot.rolling(motion, index=-202)):
-        with pytest.raises(IndexError, match="index: -?20. is none of the 201 times"):
-            call()
+    for index in (201, -202):
+        with pytest.raises(IndexError, match=rf"index: {index} is none of the 201 times"):
+            plot.rolling(motion, index=index)
     for wrong, words in (
         (RigidBody.from_principal(1.0, (1.0, 2.0, 3.0)).simulate([0, 1], (1, 0, 0)), "rolls on nothing"),
         (

@@ -47,6 +47,8 @@ _SIZES: Final = {
 }
 """The options that say how large each surface is."""
 _COUNTS: Final = {"semi_axes": 3, "radii": 2}
+_RUBBER: Final = 1.0
+"""Few materials have a larger coefficient of friction."""
 _NAMES: Final = {"sphere": "ball", "disk": "thin disk", "torus": "ring"}
 _HOMOGENEOUS: Final[dict[str, Callable[..., RigidBody]]] = {
     "sphere": solids.sphere,
@@ -63,11 +65,12 @@ def roll_report(file: Path | None, roll: RollOptions, options: BodyOptions) -> t
     """
     end = _check_options(roll)
     sizes = _sizes(roll)
-    loaded = _body(file, roll, options, sizes)
     surface = _surface(roll, sizes)
+    loaded = _body(file, roll, options, sizes)
     simulate, tilt = _start(loaded.body, surface, roll)
     motion = simulate(np.linspace(0.0, end, roll.times))
-    known = np.isfinite(motion.omega).all(axis=-1)
+    assert motion.contact is not None
+    known = np.asarray(np.isfinite(motion.omega).all(axis=-1))
     is_kept = bool(motion.status == "complete")
     last = end if is_kept else _time_of_loss(motion, known)
     report = Report()
@@ -76,10 +79,7 @@ def roll_report(file: Path | None, roll: RollOptions, options: BodyOptions) -> t
         "",
         *([] if file is None else [Field("file", "file", source)]),
         Field("surface.kind", "surface", str(roll.surface)),
-        *(
-            Field(f"surface.{name}", name.replace("_", " "), size, "m")
-            for name, size in sizes.items()
-        ),
+        *(Field(f"surface.{name}", name.replace("_", " "), size, "m") for name, size in sizes.items()),
     )
     report.section(
         "body",
@@ -99,6 +99,12 @@ def roll_report(file: Path | None, roll: RollOptions, options: BodyOptions) -> t
     report.section("at the end" if is_kept else "when the contact is lost", *_last(motion, known, last))
     report.notes += loaded.notes
     report.notes += [str(error) for error in motion.failures]
+    friction = float(motion.contact.largest_friction_needed.value)
+    if friction > _RUBBER:
+        report.notes.append(
+            f"rolling needs a coefficient of friction of {friction:.3g}: a body on a table slips before, and "
+            "does not move like this"
+        )
     _save(report, motion, simulate, last, roll, printable(Path(source).name) if source else "")
     return report, is_kept
 
@@ -173,16 +179,14 @@ def _naming_options(*names: str) -> Iterator[None]:
         yield
     except PolhodeError as error:
         text = str(error)
-        name = next((name for name in names if text.startswith(f"{name}:")), None)
+        name = next((name for name in names if text.startswith((f"{name}:", f"{name} "))), None)
         if name is None:
             raise
         option = {"center": "--middle"}.get(name, _option(name))
         raise PolhodeError(option + text.removeprefix(name)) from None
 
 
-def _body(
-    file: Path | None, roll: RollOptions, options: BodyOptions, sizes: dict[str, Any]
-) -> LoadedBody:
+def _body(file: Path | None, roll: RollOptions, options: BodyOptions, sizes: dict[str, Any]) -> LoadedBody:
     """Read the body of a file or a printout, or make it from moments or from its surface."""
     if roll.moments and options.inertia:
         raise PolhodeError("--moments and --inertia: both say what the body is; give one of the two")
@@ -233,7 +237,9 @@ def _start(
     if roll.attitude:
         attitude = to_quaternion(vector(roll.attitude, "rad", "--attitude"))
     else:
-        attitude = to_quaternion((0.0, 0.0 if roll.tilt is None else quantity(roll.tilt, "rad", "--tilt"), 0.0))
+        attitude = to_quaternion(
+            (0.0, 0.0 if roll.tilt is None else quantity(roll.tilt, "rad", "--tilt"), 0.0)
+        )
     gravity = quantity(roll.gravity, "m/s^2", "--gravity")
     if not gravity >= 0.0:
         raise PolhodeError(f"--gravity: {gravity:g} is a magnitude less than 0; --slope leans the plane")
@@ -289,9 +295,7 @@ def _contact(motion: Trajectory, known: NDArray[np.bool_]) -> list[Field]:
             hint=f"largest, at {float(most.t):.6g} s",
         ),
         Field("largest_friction_needed_time", "", float(most.t), "s", "when"),
-        Field(
-            "smallest_normal_force", "normal force", float(least.value), "N", "smallest"
-        ),
+        Field("smallest_normal_force", "normal force", float(least.value), "N", "smallest"),
         Field("smallest_normal_force_time", "", float(least.t), "s", "when"),
         Field("residual", "height and slip", off, hint="largest, relative: rounding errors of zero"),
     ]
@@ -343,7 +347,7 @@ def _save(
     roll: RollOptions,
     title: str,
 ) -> None:
-    """Write the files of --save; pictures have as many times as they need, up to where the contact is lost."""
+    """Write the files of --save; pictures have as many times as they need, while the contact lasts."""
     known = np.isfinite(motion.omega).all(axis=-1)
     fastest = float(np.linalg.norm(motion.omega[known], axis=-1).max())
 

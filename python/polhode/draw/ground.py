@@ -85,23 +85,24 @@ def ground_of(trajectory: Trajectory) -> Ground | None:
 
 def surface_shape(surface: _core.Surface, about: Floats) -> Shape:
     """Return the surface itself as it is drawn, from a point of the body; its quarters have two shades."""
-    make, arguments = surface.__reduce__()
-    kind = make.__name__
+    parts: Any = surface.__reduce__()
+    kind, arguments = parts[0].__name__, parts[1]
     if kind == "paraboloid":
-        return _paraboloid(*arguments, about)
-    *sizes, turn, center = arguments if kind in ("disk", "torus") else (*arguments[:1], None, arguments[1])
-    if kind == "ellipsoid":
-        turn = arguments[2]
-    solid: Any = {
-        "sphere": solids.sphere,
-        "ellipsoid": solids.ellipsoid,
-        "disk": lambda radius, mass: solids.cylinder(radius, 0.0, mass=mass),
-        "torus": solids.torus,
-    }[kind](*sizes, mass=1.0)
-    if kind == "ellipsoid" and turn is not None:
-        solid = solid.rotated(np.asarray(turn))
-    elif turn is not None:
-        solid = solid.rotated(_from_z(np.asarray(turn, dtype=np.float64)))
+        radii, apex, axes = arguments
+        return _paraboloid(radii, apex, axes, about)
+    solid: Any
+    if kind == "sphere":
+        radius, center = arguments
+        solid = solids.sphere(radius, mass=1.0)
+    elif kind == "ellipsoid":
+        semi_axes, center, axes = arguments
+        solid = solids.ellipsoid(semi_axes, mass=1.0)
+        solid = solid if axes is None else solid.rotated(np.asarray(axes))
+    else:
+        *sizes, axis, center = arguments
+        made: Any = solids.torus if kind == "torus" else solids.cylinder
+        solid = made(sizes[0], sizes[1] if kind == "torus" else 0.0, mass=1.0)
+        solid = solid.rotated(_from_z(np.asarray(axis, dtype=np.float64)))
     return body_shape(solid.translated(center), about)[0]
 
 

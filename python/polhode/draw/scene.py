@@ -218,9 +218,10 @@ class Scene:
         momentum = trajectory.angular_momentum().spin[chosen]
         gyrostat = motion if isinstance(motion, _core.GyrostatMotion) else None
         ground = ground_of(trajectory)
+        notes: tuple[str, ...] = ()
         if ground is not None and shape is None:  # what touches the plane, which another shape may not
             assert trajectory._contact is not None
-            drawn, notes = surface_shape(trajectory._contact.surface, about), ()
+            drawn = surface_shape(trajectory._contact.surface, about)
         elif shape is None:
             drawn, notes = body_shape(trajectory.body, about, is_cut=is_cut)
         else:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -29,12 +29,11 @@ if TYPE_CHECKING:
 
 __all__ = ["contact", "draw_ground", "rolling"]
 
-_CELLS: Final = 8
-"""Lines of the grid on the plane, to each side of the middle."""
-
 
 @with_hints
-def rolling(trajectory: Trajectory, ax: Axes3D | None = None, *, index: int = -1) -> Axes3D:
+def rolling(
+    trajectory: Trajectory, ax: Axes3D | None = None, *, index: int = -1, length_label: str = "m"
+) -> Axes3D:
     """Draw a body that rolls on its plane, with the traces of the contact on the plane and on the body.
 
     Parameters
@@ -47,6 +46,9 @@ def rolling(trajectory: Trajectory, ax: Axes3D | None = None, *, index: int = -1
     index : int
         At which of the times the body is drawn; the last by default. Traces are those up to this time. The
         trace on the far side of the body is faint.
+    length_label : str
+        Word for the unit of lengths; it converts no number. The picture says how long a cell of the grid on
+        the plane is.
 
     Returns
     -------
@@ -77,8 +79,20 @@ def rolling(trajectory: Trajectory, ax: Axes3D | None = None, *, index: int = -1
     middle = 0.5 * (low + high)
     middle = middle - ground.normal * (ground.normal @ (middle - ground.contact[k]))
     half = float(0.5 * np.linalg.norm(high - low) + 1.2 * size)
+    decade = 10.0 ** np.floor(np.log10(half / 4.0))
+    cell = float(decade * max(part for part in (1.0, 2.0, 5.0) if part * decade <= half / 4.0))
     draw_ground(
-        ax, ground, shape, trajectory.quaternion[k], k, float(trajectory.t[k]), (middle, 1.0 / half, 1.0)
+        ax,
+        ground,
+        shape,
+        trajectory.quaternion[k],
+        k,
+        float(trajectory.t[k]),
+        (middle, 1.0 / half, 1.0),
+        cell=cell / half,
+    )
+    ax.text2D(
+        0.02, 0.02, f"a cell of the grid: {cell:g} {length_label}", transform=ax.transAxes, parse_math=False
     )
     show_around(ax, 0.3 * ground.normal, 0.8)
     ax.set_box_aspect((1.0, 1.0, 1.0), zoom=1.25)
@@ -95,6 +109,7 @@ def draw_ground(
     t: float,
     place: tuple[Floats, float, float],
     shift: Floats | float = 0.0,
+    cell: float = 0.25,
 ) -> None:
     """Draw a plane with a grid, and on it the body at a sample and the traces up to it.
 
@@ -117,6 +132,8 @@ def draw_ground(
         of the plane that is drawn, in the picture.
     shift : numpy.ndarray, shape (3,)
         By which everything is moved in the picture.
+    cell : float
+        Side of a cell of the grid, in the picture.
     """
     art3d: Any = require("mpl_toolkits.mplot3d.art3d", extra="plot", purpose="drawing")
     origin, scale, half = place
@@ -126,7 +143,6 @@ def draw_ground(
     ax.add_collection3d(
         art3d.Poly3DCollection([np.array(corners)], facecolors="#eef0f4", edgecolors="0.7", zorder=0)
     )
-    cell = 2.0 * half / _CELLS
     offset = np.array([along, across]) @ (ground.middle - origin) * scale % cell
     lines = []
     for one, other, first in ((along, across, offset[0]), (across, along, offset[1])):
@@ -195,7 +211,9 @@ def contact(trajectory: Trajectory, ax: Axes | None = None, *, length_label: str
     ax.plot(*touched[0], "o", color=CONTACT_COLOR, markersize=5.0, label="start")
     is_level = bool(np.abs(along[:, 2]).max() == 0.0 and along[0, 0] == 1.0)
     for name, words in zip("xy", ("x", "y") if is_level else ("first", "second"), strict=True):
-        getattr(ax, f"set_{name}label")(f"{words}{'' if is_level else ' direction of the plane'} ({length_label})")
+        getattr(ax, f"set_{name}label")(
+            f"{words}{'' if is_level else ' direction of the plane'} ({length_label})"
+        )
     ax.set_aspect("equal", adjustable="datalim")
     ax.grid(color="0.9", linewidth=0.6)
     ax.set_axisbelow(True)
@@ -209,11 +227,11 @@ def _ground(trajectory: Trajectory) -> tuple[Ground, int]:
     trajectory._check_series("plot")
     if trajectory.omega.ndim != 2:
         raise ValueError(
-            f"trajectory: expected the motion of one body, got a stack of shape {trajectory.omega.shape[:-2]}; "
-            "simulate one of them"
+            "trajectory: expected the motion of one body, got a stack of shape "
+            f"{trajectory.omega.shape[:-2]}; simulate one of them"
         )
     ground = ground_of(trajectory)
     if ground is None:
         raise ValueError("trajectory: the body rolls on nothing; simulate it with contact=rolling.plane(...)")
-    known = np.isfinite(ground.contact).all(axis=-1)
-    return ground, len(known) if known.all() else int(known.argmin())
+    unknown = np.flatnonzero(~np.isfinite(ground.contact[:, 0]))
+    return ground, int(unknown[0]) if len(unknown) else len(ground.contact)
