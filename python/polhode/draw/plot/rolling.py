@@ -11,7 +11,14 @@ from polhode import _core
 from polhode._hints import check_kind, with_hints
 from polhode._optional import require
 from polhode.draw.ground import ground_of, surface_shape
-from polhode.draw.plot.axes import axes_2d, axes_3d, show_around, toward_viewer
+from polhode.draw.plot.axes import (
+    axes_2d,
+    axes_3d,
+    columns_that_fit,
+    room,
+    show_around,
+    toward_viewer,
+)
 from polhode.draw.shape import longest
 from polhode.draw.style import AXIS_COLORS, CONTACT_COLOR
 from polhode.draw.triangles import unit_normals
@@ -217,7 +224,16 @@ def contact(trajectory: Trajectory, ax: Axes | None = None, *, length_label: str
     ax.set_aspect("equal", adjustable="datalim")
     ax.grid(color="0.9", linewidth=0.6)
     ax.set_axisbelow(True)
-    ax.legend(loc="best", frameon=False)
+    labels = [line.get_label() for line in ax.lines]
+    columns = columns_that_fit(room(ax)[0], [str(label) for label in labels], 10.0, 3)
+    ax.legend(
+        loc="lower center",
+        bbox_to_anchor=(0.5, 1.0),
+        ncols=columns,
+        frameon=False,
+        fontsize=10.0,
+        borderaxespad=0.3,
+    )
     return ax
 
 
