@@ -41,7 +41,7 @@ def draw() -> Figure:
     for k, (run, title) in enumerate(((level, "level"), (leaning, "leaning by 0.2°"))):
         ax = figure.add_subplot(1, 3, 2 + k)
         plot.contact(run, ax)
-        ax.set_title(title, fontsize=10, pad=24)
+        ax.text(0.5, 0.04, title, transform=ax.transAxes, ha="center")
     return figure
 
 

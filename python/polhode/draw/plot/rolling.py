@@ -98,9 +98,8 @@ def rolling(
         (middle, 1.0 / half, 1.0),
         cell=cell / half,
     )
-    ax.text2D(
-        0.02, 0.02, f"a cell of the grid: {cell:g} {length_label}", transform=ax.transAxes, parse_math=False
-    )
+    words = f"a cell of the grid: {cell:g} {length_label}"
+    ax.text2D(0.02, 0.98, words, transform=ax.transAxes, va="top", parse_math=False)
     show_around(ax, 0.3 * ground.normal, 0.8)
     ax.set_box_aspect((1.0, 1.0, 1.0), zoom=1.25)
     ax.set_axis_off()
