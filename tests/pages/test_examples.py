@@ -20,7 +20,10 @@ EXAMPLES = ROOT / "examples"
 PRINTED = {
     "apophis": [r"before: 0\.[67]\d to 1\.[34]\d", r"short-axis: 9\d % after"],
     "asteroid": [r"rotation 5\.4100 d, precession 7\.3500 d", r"relative change [0-9]e-1[5-7]|0e\+00"],
-    "ball_on_turntable": [r"takes 10\.9956 s; .* off by \d\.\de-1\d", r"simulation differ by \de-1\d"],  # 7π/Ω
+    "ball_on_turntable": [
+        r"takes 10\.9956 s; .* off by \d\.\de-1\d",
+        r"simulation differ by \de-1\d",
+    ],  # 7π/Ω
     "chandler_wobble": [r"rigid Earth wobbles in 303\.6 days of 24 hours", r"A/\(C - A\) = 304\.5 turns"],
     "coin": [r"stably from 16\.51 rad/s on", r"circle of 35\.\d mm"],  # √(g/3a)
     "detumbling": [r"25\.1°/s at first, 0\.12\d°/s after"],  # twice the rate of the orbit: 720°/5851 s

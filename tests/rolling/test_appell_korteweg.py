@@ -1,10 +1,10 @@
-"""The two constants of Appell and Korteweg: a disk that rolls has a Legendre function of its inclination as spin.
+"""The two constants of Appell and Korteweg: the spin of a disk is a Legendre function of its inclination.
 
-With θ from the axis to the normal, ω₁ = θ' along the level line of the disk, ω₂ along its line of steepest slope
-and ω₃ along its axis, Newton's and Euler's equations divided by θ' are ``dω₃/dθ = m a²/(C + m a²) ω₂`` and
-``dω₂/dθ = C/A ω₃ − ω₂ cot θ``. So ω₃ = c₁ P(cos θ) + c₂ P(−cos θ) with Legendre's function P of the degree ν for
-which ν(ν + 1) = −C m a²/(A (C + m a²)): complex for a disk, and for a hoop. Appell, Rendiconti del Circolo
-Matematico di Palermo 14 (1900) 1; Korteweg, ibid. 2.
+With θ from the axis to the normal, ω₁ = θ' along the level line of the disk, ω₂ along its line of steepest
+slope and ω₃ along its axis, Newton's and Euler's equations divided by θ' are
+``dω₃/dθ = m a²/(C + m a²) ω₂`` and ``dω₂/dθ = C/A ω₃ − ω₂ cot θ``. So ω₃ = c₁ P(cos θ) + c₂ P(−cos θ) with
+Legendre's function P of the degree ν for which ν(ν + 1) = −C m a²/(A (C + m a²)): complex for a disk and for a
+hoop. Source: Appell and Korteweg, Rendiconti del Circolo Matematico di Palermo 14 (1900) 1 and 7.
 """
 
 from __future__ import annotations
@@ -19,7 +19,11 @@ from polhode import RigidBody, loads, rolling
 G = loads.uniform_gravity((0, 0, -9.81))
 MASS, RADIUS = 0.4, 0.5
 SQUARE = MASS * RADIUS**2
-BODIES = {"disk": (SQUARE / 4, SQUARE / 2), "hoop": (SQUARE / 2, SQUARE), "thick": (SQUARE / 3, SQUARE * 0.45)}
+BODIES = {
+    "disk": (SQUARE / 4, SQUARE / 2),
+    "hoop": (SQUARE / 2, SQUARE),
+    "thick": (SQUARE / 3, SQUARE * 0.45),
+}
 STARTS = [(0.9, (0.4, 1.5, 6.0)), (1.3, (-1.0, 0.5, 9.0)), (0.5, (0.2, 4.0, -3.0)), (1.9, (0.3, -2.0, 7.0))]
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from polhode import _core, solids
+from polhode import _core
 from polhode.draw.shape import Shape, body_shape
 
 if TYPE_CHECKING:
@@ -93,14 +93,14 @@ def surface_shape(surface: _core.Surface, about: Floats) -> Shape:
     solid: Any
     if kind == "sphere":
         radius, center = arguments
-        solid = solids.sphere(radius, mass=1.0)
+        solid = _core.sphere(radius, mass=1.0)
     elif kind == "ellipsoid":
         semi_axes, center, axes = arguments
-        solid = solids.ellipsoid(semi_axes, mass=1.0)
+        solid = _core.ellipsoid(semi_axes, mass=1.0)
         solid = solid if axes is None else solid.rotated(np.asarray(axes))
     else:
         *sizes, axis, center = arguments
-        made: Any = solids.torus if kind == "torus" else solids.cylinder
+        made: Any = _core.torus if kind == "torus" else _core.cylinder
         solid = made(sizes[0], sizes[1] if kind == "torus" else 0.0, mass=1.0)
         solid = solid.rotated(_from_z(np.asarray(axis, dtype=np.float64)))
     return body_shape(solid.translated(center), about)[0]
