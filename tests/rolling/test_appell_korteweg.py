@@ -3,7 +3,7 @@
 With θ from the axis to the normal, ω₁ = θ' along the level line of the disk, ω₂ along its line of steepest
 slope and ω₃ along its axis, Newton's and Euler's equations divided by θ' are
 ``dω₃/dθ = m a²/(C + m a²) ω₂`` and ``dω₂/dθ = C/A ω₃ − ω₂ cot θ``. So ω₃ = c₁ P(cos θ) + c₂ P(−cos θ) with
-Legendre's function P of the degree ν for which ν(ν + 1) = −C m a²/(A (C + m a²)): complex for a disk and for a
+Legendre's function P of the degree ν for which ν(ν + 1) = −C m a²/(A (C + m a²)): complex for a disk and a
 hoop. Source: Appell and Korteweg, Rendiconti del Circolo Matematico di Palermo 14 (1900) 1 and 7.
 """
 
