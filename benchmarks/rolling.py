@@ -51,10 +51,12 @@ def equations(_t: float, y: Any) -> Any:
     inward = np.cross(omega, arm_rate + np.cross(omega, arm))
     torque = np.cross(arm, MASS * (-inward - frame.T @ GRAVITY)) - np.cross(omega, INERTIA @ omega)
     about = INERTIA + MASS * (arm @ arm * np.eye(3) - np.outer(arm, arm))
-    turn = np.linalg.solve(about, torque)
-    return np.concatenate(
-        [(np.cross(u, omega) + w * omega) / 2, [-u @ omega / 2], turn, (frame @ arm_rate)[:2]]
-    )
+    rates = np.empty(9)
+    rates[:3] = (np.cross(u, omega) + w * omega) / 2
+    rates[3] = -(u @ omega) / 2
+    rates[4:7] = np.linalg.solve(about, torque)
+    rates[7:] = (frame @ arm_rate)[:2]
+    return rates
 
 
 def same_ends(ours: Any, theirs: Any) -> None:
