@@ -65,6 +65,10 @@ def animate(
         the path of L is shown on this sphere alone. If a torque acts from outside, the path of ω is shown
         without a surface.
 
+        For a body that rolls, pages and films show its surface on its plane, which the view follows, and the
+        traces of the contact on the plane and on the body. The second view shows the trace on the body, and
+        the page the friction that rolling needs. On a turntable the first trace is that in space.
+
         The page shows the speeds of wheels, and kinetic energy T, potential energy V and their sum if the
         load has a potential; these are in the units of the input. A wheel that turns by more than 20 degrees
         from picture to picture is drawn 2, 5, 10, … times slower, and the page says so.
@@ -74,7 +78,8 @@ def animate(
         A mesh of the body in its frame, (n, 3) and (m, 3); or a list of parts, each a mesh or a body. By
         default the shape is that from which the body was made: solids, sheets, wires, a mesh of up to 20,000
         triangles, up to 256 particles, or up to 256 parts of these kinds. If only the inertia is known, or
-        the body was read from a saved file, it is the uniform box with the same inertia. In a given mesh with
+        the body was read from a saved file, it is the uniform box with the same inertia. For a body that
+        rolls it is the surface that touches the plane. In a given mesh with
         more than 20,000 triangles, nearby corners are joined, and a message says so.
     frames : int, optional
         Number of states shown, evenly chosen. By default there are as many as needed for a free body, or for
@@ -176,22 +181,22 @@ def page_of(motion: Any, end: float | None = None, **options: Any) -> tuple[str,
 
 
 def animate_motion(
-    motion: FreeMotion | HeavyTop | GyrostatMotion,
-    end: float,
+    motion: Trajectory | FreeMotion | HeavyTop | GyrostatMotion,
+    end: float | None,
     path: str | PathLike[str],
     *,
     shape: GivenShape | None = None,
     title: str = "Motion of a rigid body",
     progress: Callable[[float], object] | None = None,
 ) -> tuple[str, ...]:
-    """Write the motion of one body in closed form as a moving picture, with the frames that it needs.
+    """Write the motion of one body as a moving picture, with the frames that it needs.
 
     Parameters
     ----------
-    motion : FreeMotion, HeavyTop or GyrostatMotion
+    motion : Trajectory, FreeMotion, HeavyTop or GyrostatMotion
         Of one body.
-    end : float
-        What is shown is from 0 s to this time.
+    end : float or None
+        Of a motion in closed form what is shown is from 0 s to this time; None of a trajectory.
     path, shape, title, progress
         As of `animate`.
 
@@ -202,7 +207,7 @@ def animate_motion(
     """
     file = _check_suffix(path)
     is_page = file.suffix.lower() == ".html"
-    scene = Scene.of_motion(motion, end, shape=shape, title=title, is_film=not is_page, is_page=is_page)
+    scene = scene_of(motion, end, is_page=is_page, duration=None, shape=shape, title=title)
     _write(scene, file, progress)
     return scene.notes
 

@@ -18,6 +18,7 @@ from polhode.draw.plot.ellipsoid import ellipsoid, poinsot, polhode, polhodes
 from polhode.draw.plot.flyby import flyby
 from polhode.draw.plot.motion import angular_momentum, angular_velocity, euler_angles, invariants
 from polhode.draw.plot.portrait import portrait, portraits
+from polhode.draw.plot.rolling import contact, rolling
 from polhode.draw.plot.top import effective_potential, nutation
 from polhode.draw.style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, OUTLINE_COLOR
 
@@ -30,6 +31,7 @@ __all__ = [
     "angular_velocity",
     "body",
     "cones",
+    "contact",
     "effective_potential",
     "ellipsoid",
     "euler_angles",
@@ -42,6 +44,7 @@ __all__ = [
     "portrait",
     "portraits",
     "principal_axes",
+    "rolling",
 ]
 
 if not TYPE_CHECKING:

@@ -100,6 +100,9 @@ def test_an_option_is_in_a_group_and_explained() -> None:
         ("check", "save", "fix FILE"),
         ("demo", "output-dir", "save FOLDER"),
         ("report", "center", "center-of-mass"),
+        ("roll", "inclination", "tilt 52deg"),
+        ("roll", "incline", "slope 10deg"),
+        ("roll", "disk", "surface disk"),
         ("report", "save", "output FILE"),
     ],
 )
@@ -128,6 +131,7 @@ def test_other_names_lead_to_the_option(command: str, old: str, meant: str) -> N
         ),
         (("animate", "part.stl"), "did you mean polhode spin part.stl --end TIME --save FILE.html?"),
         (("part.stl", "--density", "7850"), "did you mean polhode report part.stl --density 7850?"),
+        (("coin",), "did you mean polhode roll --surface disk"),
         (("repot", "part.stl"), "did you mean polhode report part.stl?"),
         (("spin", "--about", "0 0 1"), "did you mean polhode report?"),
         (("xyzzy",), "choose one of demo, samples, report, spin"),

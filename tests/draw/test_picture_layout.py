@@ -16,8 +16,10 @@ from polhode import (
     assembly,
     euler_angles,
     flybys,
+    loads,
     orbits,
     plot,
+    rolling,
     samples,
     solids,
     view,
@@ -75,6 +77,14 @@ def rover() -> assembly.Assembly:
     return assembly.read(samples.path("rover.toml"))
 
 
+@cache
+def rolled() -> Any:
+    contact = rolling.plane(rolling.disk(0.05))
+    coin, tilted = solids.cylinder(0.05, 0.0, mass=0.2), (0.5, 0.0, 0.0, 0.8660254)
+    weight = loads.uniform_gravity((0, 0, -9.81))
+    return coin.simulate(np.linspace(0, 1, 101), (0, 2, 14), tilted, load=weight, contact=contact)
+
+
 def craft() -> Ledger:
     return ledger(samples.path("craft.csv"))
 
@@ -85,6 +95,7 @@ FLAT: dict[str, Callable[[Any], Any]] = {
     "euler_angles": lambda ax: plot.euler_angles(MOTION, ax),
     "invariants": lambda ax: plot.invariants(MOTION, ax),
     "effective_potential": lambda ax: plot.effective_potential(TOP, ax),
+    "contact": lambda ax: plot.contact(rolled(), ax),
     "flyby": lambda ax: plot.flyby(passed(), "spin_ratio", ax),
     "flyby, pole": lambda ax: plot.flyby(passed(), "pole_shift", ax),
     "flyby, period": lambda ax: plot.flyby(passed(), "rotation_period", ax, time_label="h", time_scale=3600),
@@ -99,6 +110,7 @@ SOLID: dict[str, Callable[[Any], Any]] = {
     "poinsot": lambda ax: plot.poinsot(FREE, TIMES, ax),
     "cones": lambda ax: plot.cones(FREE, TIMES, ax),
     "nutation": lambda ax: plot.nutation(TOP, TIMES[:11], ax),
+    "rolling": lambda ax: plot.rolling(rolled(), ax),
     "portrait": lambda ax: plot.portrait(GYROSTAT, 2.0, ax),
     "body": lambda ax: plot.body(CORNERS, faces_of(CORNERS), ax, length_label="m"),
     "principal_axes": lambda ax: plot.principal_axes(

@@ -20,13 +20,19 @@ EXAMPLES = ROOT / "examples"
 PRINTED = {
     "apophis": [r"before: 0\.[67]\d to 1\.[34]\d", r"short-axis: 9\d % after"],
     "asteroid": [r"rotation 5\.4100 d, precession 7\.3500 d", r"relative change [0-9]e-1[5-7]|0e\+00"],
+    "ball_on_turntable": [
+        r"takes 10\.9956 s; .* off by \d\.\de-1\d",
+        r"simulation differ by \de-1\d",
+    ],  # 7π/Ω
     "chandler_wobble": [r"rigid Earth wobbles in 303\.6 days of 24 hours", r"A/\(C - A\) = 304\.5 turns"],
+    "coin": [r"stably from 16\.51 rad/s on", r"circle of 35\.\d mm"],  # √(g/3a)
     "detumbling": [r"25\.1°/s at first, 0\.12\d°/s after"],  # twice the rate of the orbit: 720°/5851 s
     "dual_spin": [
         r"h = 0 N m s: off the axis by up to 17\d\.\d°",
         r"h = 1 N m s: off the axis by up to 2\.\d°",
     ],
     "edge_mill": [r"11688\.000 N, by hand 11688\.000 N"],
+    "euler_disk": [r"circle of (\d+\.\d+) mm; a cos 20° is \1 mm", r"contact at 173 rad/s at 2°"],
     "flat_spin": [r"from L: 6\.9° to 8[89]\.\d°, \|L\| changed by \de-1\d"],
     "flip_time": [r"per factor e: 0\.18763\d s; theory 2/growth = 0\.187639 s"],
     "four_particles": [r"4 particles of 2 kg; tensors differ by (0e\+00|\de-1[5-7])"],
@@ -41,6 +47,7 @@ PRINTED = {
     "parallel_axis": [r"0\.166667 kg m², by hand 0\.166667", r"at 0\.28[89] m; radius of gyration 0\.289 m"],
     "pointing_down": [r"yaw 0\.3: up to [4-9]° off", r"yaw 0\.9: up to 1[78]\d° off"],
     "polhodes": [r"brick: \[2\.5 5\.  6\.5\], kappa -0\.625"],
+    "rattleback": [r"changes 1 times in 6 s", r"energy kept to \de-1[2-5]"],
     "sleeping_top": [r"0\.9 of it: up to 5\d\.\d°", r"1\.2 of it: up to 0\.\d°"],
     "slew": [r"turned by (-\d+\.\d+)°, by hand \1°"],
     "spacecraft": [r"empty: 497\.0 kg"],
@@ -48,6 +55,7 @@ PRINTED = {
     "t_handle": [r"a flip every 5\.1361 s"],
     "tennis_racket": [r"every 1\.737951 s", r"simulated: 1\.737951 s"],
     "thrown_book": [r"axis 1: .* stable", r"axis 2: .* flips", r"axis 3: .* stable"],
+    "tippe_top": [r"40 rad/s: tumbles, at (\d+)°; least energy at \1°", r"200 rad/s: inverts, at 180°"],
     "triangle_of_shapes": [r"sphere: 1\.000, 1\.000", r"disk: 0\.500, 0\.500", r"rod: 0\.000, 1\.000"],
     "uncertain_axes": [r"middle moment 1\.4: axes known to 1\.7\d°", r"moment 1\.15: axes known to 4\.\d\d°"],
     "uncertain_flip": [r"± 0\.3 rad/s: a flip every 0\.9\d s", r"± 0\.003 rad/s: .* every 1\.8\d s"],

@@ -24,6 +24,7 @@ from polhode.cli.options import (
     MoleculeOptions,
     OutputOptions,
     ReportOptions,
+    RollOptions,
     SpinOptions,
 )
 from polhode.cli.terminal import note
@@ -195,6 +196,43 @@ def spin(
     check_outputs([*(("--save", path) for path in spin.save), ("--output", output.output)], [file])
     show(spin_report(file, spin, body), output)
     return GOOD
+
+
+@app.command
+def roll(
+    file: MaybeFile = None,
+    /,
+    *,
+    roll: Annotated[RollOptions, ALL] = RollOptions(),  # noqa: B008
+    body: Body = AS_STORED,
+    output: Output = SHOWN,
+) -> int:
+    r"""Compute the motion of a body that rolls on a plane.
+
+    Parameters
+    ----------
+    file
+        A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP, IGES), a saved body (JSON, NPZ), an
+        assembly (TOML), or - for standard input, for mass and inertia. Without a file: --moments, --inertia,
+        or a homogeneous body.
+
+    Examples
+    --------
+    polhode roll --surface disk --radius 0.05 --mass 0.2 --omega 0 12 7 \
+        --tilt 52deg --end 3 --save coin.html
+    polhode roll --surface sphere --radius "2 cm" --mass "30 g" --omega 0 9 0 \
+        --turntable "33.3 rpm" --end 10
+    polhode roll --surface ellipsoid --semi-axes "20 3 2 cm" --mass 1 \
+        --inertia "2 16 17 0.2 0 0 g m^2" --products negative --omega 0.1 0 3 --end 5
+    """
+    from polhode.cli.files import check_outputs
+    from polhode.cli.layout import show
+    from polhode.cli.roll import roll_report
+
+    check_outputs([*(("--save", path) for path in roll.save), ("--output", output.output)], [file])
+    told, is_kept = roll_report(file, roll, body)
+    show(told, output)
+    return GOOD if is_kept else BAD_VERDICT
 
 
 @app.command
@@ -464,6 +502,6 @@ def _examples(document: str) -> str:
 
 
 for _command in (
-    report, check, molecule, spin, flyby, ensemble, assemble, ledger, audit, samples, demo, validate,
+    report, check, molecule, spin, roll, flyby, ensemble, assemble, ledger, audit, samples, demo, validate,
 ):  # fmt: skip
     app[_command.__name__].help_epilogue = _examples(_command.__doc__ or "")

@@ -27,6 +27,7 @@ __all__ = [
     "MoleculeOptions",
     "OutputOptions",
     "ReportOptions",
+    "RollOptions",
     "SpinOptions",
 ]
 
@@ -45,6 +46,7 @@ def _group(name: str) -> Parameter:
 
 
 BODY: Final = _group("Body")
+SURFACE: Final = _group("Surface that rolls")
 ROTATION: Final = _group("Rotation before the flyby")
 ORBIT: Final = _group("Orbit past the planet")
 MOTION: Final = _group("Motion")
@@ -513,6 +515,90 @@ class SpinOptions(StartOptions):
     mode: Annotated[Literal["long-axis", "short-axis"] | None, MOTION] = None
     degrees: Annotated[bool, FLAG, REPORT] = False
     axes: Annotated[Literal["file", "principal"], REPORT] = "file"
+    times: Annotated[Count, RESULTS] = 1001
+    save: Annotated[Paths, REPEATED, RESULTS] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class RollOptions:
+    """A body that rolls on a plane.
+
+    Attributes
+    ----------
+    moments
+        Three moments along the axes of the body, with --mass, instead of a file or of a homogeneous body,
+        such as "8 8 8 g cm^2". A number without a unit is in kg m^2.
+    surface
+        Required: what touches the plane. A disk has a sharp edge; of a torus the outer side touches. Without
+        a file, --moments and --inertia, a homogeneous ball, ellipsoid, thin disk or ring of this surface
+        rolls, whose mass is --mass.
+    radius
+        Radius of a sphere or a disk, such as "5 cm". A number without a unit is in m, as for all lengths.
+    semi_axes
+        Semi-axes of an ellipsoid along the axes of the body, such as "20 3 2 cm".
+    major_radius
+        Radius of the circle that is the middle of the tube of a torus.
+    minor_radius
+        Radius of this tube.
+    radii
+        Two radii of curvature at the apex of a paraboloid, along x and y of the body, such as "10 2 cm". Its
+        apex is its lowest point.
+    apex
+        Depth of this apex below the origin of the body, up to which the paraboloid reaches.
+    axis
+        Axis of a disk or a torus, three numbers along the axes of the body. Default: z.
+    middle
+        Middle of the surface in the body, such as "0 0 1 cm". Default: the origin of the body.
+    omega
+        Required: angular velocity at the start, in components along the axes of the body, such as 0 12 7 or
+        "0 90 30 deg/s". A number without a unit is in rad/s.
+    tilt
+        Angle at the start from the normal of the plane to the axis z of the body, which is turned about x,
+        such as 52deg. A number without a unit is in rad.
+    attitude
+        Euler angles phi theta psi (ZXZ) at the start instead of --tilt, such as "0 52 0 deg"; z of space is
+        the normal of the plane. A number without a unit is in rad.
+    gravity
+        Acceleration of free fall. A number without a unit is in m/s^2.
+    slope
+        Angle by which the plane leans, down along x of space, such as 10deg. A number without a unit is in
+        rad.
+    turntable
+        Rate at which the plane turns about its normal, such as "33.3 rpm". A number without a unit is in
+        rad/s.
+    lift
+        What happens where the plane would have to pull: the body leaves it and the run stops, or the plane
+        holds the body.
+    end
+        Required: last time, such as 3 or "2 min". A number without a unit is in s. The first time is 0.
+    rtol
+        Relative tolerance of the integration.
+    times
+        Number of times in the numbers of --save, the first and the last included.
+    save
+        File for the motion: a picture (.png, .pdf, .svg), an animation (.html, .gif, .mp4) or its numbers
+        (.csv, .npz, .json). May be repeated.
+    """
+
+    moments: Annotated[Words, WORDS, BODY] = ()
+    surface: Annotated[Literal["sphere", "ellipsoid", "disk", "torus", "paraboloid"] | None, SURFACE] = None
+    radius: Annotated[str | None, SURFACE] = None
+    semi_axes: Annotated[Words, WORDS, SURFACE] = ()
+    major_radius: Annotated[str | None, SURFACE] = None
+    minor_radius: Annotated[str | None, SURFACE] = None
+    radii: Annotated[Words, WORDS, SURFACE] = ()
+    apex: Annotated[str | None, SURFACE] = None
+    axis: Annotated[Words, WORDS, SURFACE] = ()
+    middle: Annotated[Words, WORDS, SURFACE] = ()
+    omega: Annotated[Words, WORDS, MOTION] = ()
+    tilt: Annotated[str | None, MOTION] = None
+    attitude: Annotated[Words, WORDS, MOTION] = ()
+    gravity: Annotated[str, MOTION] = "9.81"
+    slope: Annotated[str | None, MOTION] = None
+    turntable: Annotated[str | None, MOTION] = None
+    lift: Annotated[Literal["stop", "hold"], MOTION] = "stop"
+    end: Annotated[str | None, MOTION] = None
+    rtol: Annotated[float, COMPUTATION] = 1e-12
     times: Annotated[Count, RESULTS] = 1001
     save: Annotated[Paths, REPEATED, RESULTS] = ()
 

@@ -25,7 +25,7 @@ __all__ = ["run"]
 
 CHAPTERS: Final = {
     "To begin": ("demo", "samples"),
-    "One body": ("report", "spin", "molecule"),
+    "One body": ("report", "spin", "roll", "molecule"),
     "Bodies of parts": ("assemble", "ledger", "check"),
     "Many motions": ("ensemble", "flyby"),
     "Motions of other programs": ("audit",),
@@ -72,6 +72,9 @@ OTHER_OPTIONS: Final = (
     ("--repair", "--heal --mend --fix"),
     ("--as urdf", "--urdf --sdf --mjcf --export --program --to"),
     ("--about", "--point --origin --reference"),
+    ("--tilt 52deg", "--inclination --lean --angle"),
+    ("--surface disk", "--shape --contact --disk --sphere --ball --coin"),
+    ("--slope 10deg", "--incline"),
     ("--expect FILE", "--compare --diff --reference"),
     ("--packages FOLDER", "--package --package-path --package-dir --include -I"),
     ("--isotopes", "--isotope --deuterate --isotopologue"),
@@ -90,6 +93,7 @@ OTHER_COMMANDS: Final = (
     ("spin FILE --end TIME --save FILE.csv", "simulate integrate run trajectory"),
     ("spin FILE --end TIME --save FILE.png", "plot draw picture"),
     ("spin FILE --end TIME --save FILE.html", "animate animation view movie"),
+    ("roll --surface disk", "rolling coin disk ball wheel rattleback tippe-top contact plane"),
     ("check FILE", "robot urdf sdf mjcf verify fix .urdf .mjcf .xml"),
     ("assemble FILE", "assembly combine add box sphere cylinder solid solids"),
     ("molecule FILE", "rotor constants spectrum isotopes"),

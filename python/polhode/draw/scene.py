@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode import _core
+from polhode.draw.ground import Ground, ground_of, surface_shape
 from polhode.draw.load_parts import parts_of
 from polhode.draw.pivot import Pivot, pivot_of, top_of
 from polhode.draw.sampling import of_motion, of_samples
@@ -64,6 +65,8 @@ class Scene:
         Of a body with a fixed point: what is drawn of that.
     axis_path : numpy.ndarray, shape (T, 3), or None
         Where its axis points at every sample, in space.
+    ground : Ground or None
+        Of a body that rolls: the plane and the contact, at every sample.
     shape : Shape
         The surface drawn.
     discs : tuple of Disc
@@ -91,6 +94,7 @@ class Scene:
     surface: Surface
     pivot: Pivot | None
     axis_path: Floats | None
+    ground: Ground | None
     shape: Shape
     discs: tuple[Disc, ...]
     energy: Energy
@@ -213,7 +217,12 @@ class Scene:
         check_size(trajectory.omega[chosen], "animate: the angular velocity", "time")
         momentum = trajectory.angular_momentum().spin[chosen]
         gyrostat = motion if isinstance(motion, _core.GyrostatMotion) else None
-        if shape is None:
+        ground = ground_of(trajectory)
+        notes: tuple[str, ...] = ()
+        if ground is not None and shape is None:  # what touches the plane, which another shape may not
+            assert trajectory._contact is not None
+            drawn = surface_shape(trajectory._contact.surface, about)
+        elif shape is None:
             drawn, notes = body_shape(trajectory.body, about, is_cut=is_cut)
         else:
             drawn = shape_of(shape, about, is_cut=is_cut, at_most=at_most)
@@ -232,6 +241,7 @@ class Scene:
             surface=surface_of(trajectory, motion),
             pivot=pivot,
             axis_path=None if pivot is None else _core.rotate(trajectory.quaternion, pivot.axis),
+            ground=ground,
             shape=drawn,
             discs=discs_of(footage, drawn, gyrostat),
             energy=energy_of(footage, is_exact=motion is not None, travel=travel),
@@ -287,6 +297,8 @@ def energy_of(footage: Footage, *, is_exact: bool, travel: float = 0.0) -> Energ
     trajectory, chosen = footage.trajectory, footage.chosen
     kinetic = trajectory.kinetic_energy().total + travel
     potential = trajectory._potential()
+    if trajectory._contact is not None and trajectory._contact.turntable:
+        return Energy(kinetic[chosen], None, "T + V is not kept: the plane does work", 0.0)
     if potential is None:
         return Energy(kinetic[chosen], None, _why(trajectory), 0.0)
     if not potential.any():

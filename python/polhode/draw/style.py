@@ -7,6 +7,7 @@ from typing import Final
 __all__ = [
     "AXIS_COLORS",
     "AXIS_DASHES",
+    "CONTACT_COLOR",
     "DISC_COLOR",
     "INSIDE_COLOR",
     "MOMENTUM_COLOR",
@@ -23,6 +24,8 @@ OMEGA_COLOR: Final = "#B0479A"
 """Reddish purple: the angular velocity."""
 MOMENTUM_COLOR: Final = "#111111"
 """Nearly black: the angular momentum."""
+CONTACT_COLOR: Final = "#C27400"
+"""Dark orange: where a body that rolls touches its plane."""
 INSIDE_COLOR: Final = "#7A4A00"
 """Colour of the momentum inside the body."""
 DISC_COLOR: Final = "#F6EAD2"

@@ -15,6 +15,7 @@ from polhode import _core
 from polhode._format import at_least
 from polhode._optional import require
 from polhode.draw.plot.axes import show_around, toward_viewer
+from polhode.draw.plot.rolling import draw_ground
 from polhode.draw.sampling import GIF_RATE
 from polhode.draw.shape import longest
 from polhode.draw.style import AXIS_COLORS, DISC_COLOR, INSIDE_COLOR, MOMENTUM_COLOR, OMEGA_COLOR, RIM_COLOR
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from polhode.draw.ground import Ground
     from polhode.draw.scene import Scene
     from polhode.draw.wheels import Disc
 
@@ -172,6 +174,8 @@ _DPI: Final = (64, 80, 96, 128, 160, 192, 256, 320, 384, 512, 640, 768)
 _AT: Final = 480
 """The size, in pixels, at which there are 96: lines and letters grow with the picture."""
 _BODY: Final = 0.8
+_ROLLER: Final = 0.45
+"""The same of a body that rolls, of which the plane around it is seen too."""
 _ZOOM: Final = 1.15
 _AXIS_DASHES: Final = ("--", "-", ":")
 _PATH_COLOR: Final = "#555555"
@@ -239,8 +243,11 @@ class Picture:
         self._ax.set_box_aspect((1.0, 1.0, 1.0), zoom=_ZOOM)
         self._ax.set_axis_off()
         to_space = _core.rotate(self._scene.quaternion[frame], np.eye(3)).T
-        self._draw_body(frame, to_space, view)
-        self._draw_paths(frame)
+        if self._scene.ground is not None:
+            self._draw_ground(frame, self._scene.ground)
+        else:
+            self._draw_body(frame, to_space, view)
+            self._draw_paths(frame)
         tips = self._draw_arrows(frame, to_space)
         if not self._has_labels:
             return
@@ -269,6 +276,22 @@ class Picture:
         for axis, color, dash in zip(scene.axes.T, AXIS_COLORS, _AXIS_DASHES, strict=True):
             ends = np.stack([-1.05 * axis, 1.05 * axis], axis=-1)
             ax.plot(*(to_space @ ends), color=color, linestyle=dash, linewidth=1.2, zorder=3)
+
+    def _draw_ground(self, frame: int, ground: Ground) -> None:
+        """Draw a body that rolls, its middle where the arrows begin; the view follows it."""
+        scene, k = self._scene, int(self._scene.sample[frame])
+        scale = _ROLLER / longest(scene.shape.vertices)
+        center, n = ground.center[k], ground.normal
+        below = center - n * (n @ (center - ground.contact[k]))
+        shift = (below - center) * scale
+        draw_ground(
+            self._ax, ground, scene.shape, scene.quaternion[frame], k, float(scene.t[frame]),
+            (below, scale, 1.0), shift,
+        )  # fmt: skip
+        to_space = _core.rotate(scene.quaternion[frame], np.eye(3)).T
+        for axis, color, dash in zip(scene.axes.T, AXIS_COLORS, _AXIS_DASHES, strict=True):
+            ends = np.stack([-1.05 * axis, 1.05 * axis], axis=-1)
+            self._ax.plot(*(to_space @ ends), color=color, linestyle=dash, linewidth=1.2, zorder=3)
 
     def _draw_paths(self, frame: int) -> None:
         scene, until = self._scene, self._scene.sample[frame] + 1

@@ -29,7 +29,7 @@ __all__ = ["page"]
 
 _MODULES: Final = (
     "vectors", "double", "elliptic", "free", "frames", "trail", "labels", "camera", "theme", "surface",
-    "solid", "clock", "wheels", "views", "energy", "live", "main",
+    "solid", "clock", "wheels", "views", "ground", "energy", "live", "main",
 )  # fmt: skip
 """Modules of the folder ``web``, each after those that it imports; a browser reads them as one."""
 _SHARED: Final = {
@@ -81,6 +81,7 @@ def page(scene: Scene) -> str:
             "limits": pivot.limits,
             "path": pivot.path,
         },
+        "ground": _ground(scene, shape_unit),
         "wheels": [_wheel(disc, shape_unit) for disc in scene.discs],
         "energy": _energy(scene),
         "vertices": _encode(vertices, "<f4"),
@@ -101,6 +102,21 @@ def _start(scene: Scene) -> dict[str, list[float]] | None:
         "moments": scene.moments.tolist(),
         "omega": (scene.omega[0] @ scene.axes).tolist(),
         "quaternion": scene.quaternion[0].tolist(),
+    }
+
+
+def _ground(scene: Scene, unit: float) -> dict[str, Any] | None:
+    """Return the plane on which a body rolls, and centre of mass and contact at the frames, in this unit."""
+    ground = scene.ground
+    if ground is None:
+        return None
+    return {
+        "normal": ground.normal.tolist(),
+        "middle": (ground.middle / unit).tolist(),
+        "turntable": ground.turntable,
+        "center": _encode(ground.center[scene.sample] / unit, "<f8"),
+        "contact": _encode(ground.contact[scene.sample] / unit, "<f8"),
+        "friction": _encode(ground.friction[scene.sample], "<f4"),
     }
 
 

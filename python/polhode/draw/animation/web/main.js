@@ -6,6 +6,7 @@ import { energyRows } from "./energy.js";
 import { Frames, numbers } from "./frames.js";
 import { FreeBody, quaternionOf } from "./free.js";
 import { buildSliders } from "./live.js";
+import { Ground, captionsOf, drawOnBody, drawOnGround } from "./ground.js";
 import { Solid, boxOf } from "./solid.js";
 import { Ellipsoid, captionOf, drawnWith } from "./surface.js";
 import { colors, key, readColors } from "./theme.js";
@@ -31,7 +32,8 @@ const wanted = asked(location.hash, start, end);
 const surface = { ...given.surface, marks: given.surface.marks.map((mark) => ({ ...mark, curve: mark.curve && rowsOf(unpack(mark.curve, Float32Array)) })) };
 const toward = surface.momentum && scaled(surface.momentum, 1 / length(surface.momentum));
 const conserved = surface.kind === "torque-free" ? surface.momentum ?? [0, 0, 0] : surface.momentum; // L in space, in all digits
-const motion = { axes: given.axes, top: given.top, surface, onSphere: (q) => rotate(conjugate(q), toward), wheels: given.wheels.map((one) => new Wheel({ ...one, rate: unpack(one.rate, Float32Array), angle: unpack(one.angle, Float64Array) }, frames)) };
+const floor = given.ground && new Ground({ ...given.ground, center: unpack(given.ground.center, Float64Array), contact: unpack(given.ground.contact, Float64Array), friction: unpack(given.ground.friction, Float32Array) }, frames);
+const motion = { axes: given.axes, top: given.top, ground: floor, surface, onSphere: (q) => rotate(conjugate(q), toward), wheels: given.wheels.map((one) => new Wheel({ ...one, rate: unpack(one.rate, Float32Array), angle: unpack(one.angle, Float64Array) }, frames)) };
 const energy = { ...given.energy, kinetic: unpack(given.energy.kinetic, Float64Array), potential: unpack(given.energy.potential, Float64Array) };
 function follow(another) {
   const begin = another ?? given.free, body = begin && new FreeBody(begin.moments, begin.omega, given.free.attitude);
@@ -59,10 +61,10 @@ function follow(another) {
   const widest = { ellipsoid: () => motion.ellipsoid.longest, sphere: () => 1.4 * motion.fastest, path: () => motion.fastest };
   motion.scale = 1.05 / (widest[drawnWith(surface, motion.ellipsoid)]() || 1);
   const apart = body || frames.count < 2 ? Infinity : Math.abs(span) / (frames.count - 1); // else the way would be coarser than what is known
-  motion.trail = new Trail(stateAt, motion.fastest, span, { axis: given.top && given.top.axis, onSphere: toward && motion.onSphere, apart });
+  motion.trail = new Trail(stateAt, motion.fastest, span, { axis: given.top && given.top.axis, onSphere: toward && motion.onSphere, apart, placeAt: floor && ((since, q) => floor.at(start + since, q)) });
   motion.at = (t) => {
     const state = stateAt(t - start);
-    return { ...state, t, since: t - start, along: along(state.omega), momentum: conserved ?? rotate(state.q, momentum(state)) };
+    return { ...state, t, since: t - start, place: floor && floor.at(t, state.q), along: along(state.omega), momentum: conserved ?? rotate(state.q, momentum(state)) };
   };
 }
 
@@ -73,6 +75,12 @@ const rolls = () => surface.kind === "free" && motion.moments[0] > 0 && motion.e
 let second = wanted.view === "poinsot" && rolls() ? "poinsot" : "body", view = wanted.view ?? "space";
 const views = { space: new Camera(element("space"), 0.9, 0.35, later), second: new Camera(element("second"), 0.9, 0.4, later) };
 if (given.top) { views.space.center = given.top.down.map((x) => -0.3 * x); views.space.reach = 1.35; }
+if (floor) { // from above the plane; in the body from where it touches
+  const outward = Array.from({ length: frames.count }, (_, k) => -rotate(conjugate(frames.row(frames.quaternion, k, 4)), floor.normal)[2]);
+  views.space.home[1] = 0.5;
+  views.second.home[1] = outward.reduce((a, b) => a + b, 0) < -0.2 * frames.count ? -0.4 : 0.4;
+  for (const one of Object.values(views)) one.reset();
+}
 const rate = (Math.abs(span) || 1) / given.duration;
 let speed = rate;
 
@@ -86,6 +94,7 @@ function readouts(now) {
     const flip = motion.body.turnsOver ? motion.body.nextFlip(state.since) : Infinity;
     rows.push(["next flip", Number.isFinite(flip) ? `in ${flip.toPrecision(4)} ${given.time_unit}` : "never"]);
   }
+  if (floor) rows.push(["friction needed", floor.friction[frames.nearest(now.t)].toPrecision(3)]);
   for (const wheel of motion.wheels) rows.push([wheel.name, wheel.words(now.t, given.time_unit, speed)]);
   return rows;
 }
@@ -94,8 +103,8 @@ const cells = new Map();
 
 function draw() {
   const state = motion.at(now), shown = { traces: element("traces").checked, axes: element("axes").checked };
-  drawSpace(views.space, state, motion, shown, speed);
-  (second === "poinsot" ? drawPoinsot : drawBody)(views.second, state, motion, shown);
+  (floor ? drawOnGround : drawSpace)(views.space, state, motion, shown, speed);
+  (floor ? drawOnBody : second === "poinsot" ? drawPoinsot : drawBody)(views.second, state, motion, shown);
   element("slider").value = span ? (now - start) / span : 0;
   element("slider").setAttribute("aria-valuetext", clockText(now));
   element("clock").textContent = `t = ${clockText(now)}`;
@@ -149,6 +158,7 @@ function describe() {
   const discs = motion.wheels.length ? `; ${key("inside", "discs")}: its wheels, not to scale, turning relative to it` : "";
   element("space-caption").innerHTML = `In space: ${["the body", ...arrows].join(", ")}${still}${carried}${path}${discs}`;
   element("second-caption").innerHTML = captionOf(motion, second === "poinsot");
+  if (floor) ["space", "second"].forEach((name, i) => { element(`${name}-caption`).innerHTML = captionsOf(floor, motion.shows)[i]; });
   for (const name of ["space", "second"]) element(name).setAttribute("aria-label", `${element(`${name}-caption`).textContent}. Arrow keys turn the view, plus and minus bring it nearer.`);
 }
 

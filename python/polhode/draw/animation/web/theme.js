@@ -6,7 +6,7 @@ export const colors = {};
 
 export function readColors() {
   const style = getComputedStyle(document.documentElement);
-  for (const name of ["ground", "ink", "quiet", "rule", "shade", "grey", "e1", "e2", "e3", "omega", "momentum", "inside", "disc", "rim", "gravity"]) {
+  for (const name of ["ground", "ink", "quiet", "rule", "shade", "grey", "e1", "e2", "e3", "omega", "momentum", "inside", "disc", "rim", "gravity", "contact"]) {
     colors[name] = style.getPropertyValue(`--${name}`).trim();
   }
   colors.axes = [colors.e1, colors.e2, colors.e3];
