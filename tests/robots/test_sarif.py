@@ -225,6 +225,11 @@ class TestSeveral:
         assert code == 2
         assert "its root is <package>" in err
         assert run("check", package, robot, "--only-robots")[0] == 1
+        assert run("check", package, "--only-robots", "--format", "lines")[:2] == (
+            0,
+            "good: 0 of 0 robots failed; files that are no robots: 1\n",
+        )
+        package.write_text('<!DOCTYPE html [<!ENTITY a "b">]><html/>')
         assert run("check", package, "--only-robots")[0] == 0
         robot.write_text("<robot><link")
         assert run("check", package, robot, "--only-robots")[0] == 2

@@ -110,6 +110,7 @@ def check_files(files: Sequence[Path], options: CheckOptions, form: str) -> tupl
             if not (options.only_robots and error.kind == NO_ROBOT):
                 raise
     reports, checked = [report for report, _ in found], [each for _, each in found]
+    others = len(files) - len(found)
     is_good = all(each.is_good for each in checked)
     if options.accept and baseline is not None:
         places = [each.file for each in checked]
@@ -127,20 +128,21 @@ def check_files(files: Sequence[Path], options: CheckOptions, form: str) -> tupl
         is_good = True
     if form == "sarif":
         return sarif_text(checked, int(not is_good)), is_good
-    whole = _sum_up(checked, is_good=is_good)
+    whole = _sum_up(checked, others, is_good=is_good)
     if form == "lines":
         lines = [line for each in checked for line in finding_lines(each)]
-        return "\n".join(lines if len(checked) == 1 else [*lines, whole]), is_good
+        return "\n".join(lines if len(checked) == len(files) == 1 else [*lines, whole]), is_good
     return (
         reports[0] if len(reports) == len(files) == 1 else Fleet(reports, whole, is_good=is_good)
     ), is_good
 
 
-def _sum_up(checked: Sequence[Checked], *, is_good: bool) -> str:
+def _sum_up(checked: Sequence[Checked], others: int, *, is_good: bool) -> str:
     bad = [each for each in checked if not each.is_good]
     robots_of = "1 robot" if len(checked) == 1 else f"{len(checked)} robots"
     names = f": {_some([str(each.file) for each in bad])}" if bad else ""
-    return f"{'good' if is_good else 'bad'}: {len(bad)} of {robots_of} failed{names}"
+    told = f"{'good' if is_good else 'bad'}: {len(bad)} of {robots_of} failed{names}"
+    return f"{told}; files that are no robots: {others}" if others else told
 
 
 def _baseline(options: CheckOptions) -> Baseline | None:

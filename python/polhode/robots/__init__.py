@@ -48,7 +48,7 @@ __all__ = [
 ]
 
 NO_ROBOT: Final = "no robot"
-"""Kind of the error of a file that is no robot, rather than a damaged one."""
+"""Kind of the error of a file that is no robot: of another root, without a link, or XML of something else."""
 _FORMATS = {
     "robot": ("URDF", urdf),
     "sdf": ("SDF", sdf),
@@ -173,7 +173,12 @@ def parse_robot(
     home = Path(folder)
     addresses = Addresses(home, [Path(package) for package in packages], allow_outside=allow_outside)
     sources = Sources(home, addresses)
-    root = parse_xml(source, name, budget=sources.budget, remarks=sources.notes)
+    try:
+        root = parse_xml(source, name, budget=sources.budget, remarks=sources.notes)
+    except FileFormatError as error:
+        if not any(f"<{tag}".encode() in source for tag in _FORMATS):
+            error.kind = NO_ROBOT
+        raise
     if root.tag not in _FORMATS:
         raise _no_robot(
             f"{name}: its root is <{shorten(root.tag)}>, not <robot> (URDF), <sdf> or <mujoco> (MJCF); "
