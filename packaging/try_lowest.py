@@ -1,4 +1,4 @@
-"""Try a wheel with the oldest versions that it admits of what it needs: ``python packaging/try_lowest.py dist``.
+"""Try a wheel with the oldest versions that it admits: ``python packaging/try_lowest.py dist``.
 
 Each extra gets the oldest versions of what it names, in one environment with all others that may stand
 together; the tests of the rooms that use them follow. A bound that fails is raised. Needs uv, which alone
@@ -20,8 +20,9 @@ LARGE = {"view", "cad"}
 TOOLS = ["hypothesis", "jsonschema", "mpmath", "pytest>=9", "pytest-timeout", "pyyaml"]
 #: Tests of the rooms that use what the extras bring.
 TESTS = [
-    "tests/symbolic", "tests/molecules", "tests/uncertainty", "tests/io", "tests/draw", "tests/robots/test_sarif.py",
-    "tests/cli/test_cli.py", "tests/cli/test_amounts.py", "tests/cli/test_command_help.py", "tests/cli/test_demo.py",
+    "tests/symbolic", "tests/molecules", "tests/uncertainty", "tests/io", "tests/draw",
+    "tests/robots/test_sarif.py", "tests/cli/test_cli.py", "tests/cli/test_amounts.py",
+    "tests/cli/test_command_help.py", "tests/cli/test_demo.py",
 ]  # fmt: skip
 #: Tests beside other engines and chemists' programs, which no extra brings.
 OTHERS = ["--ignore=tests/molecules/test_molecule_peers.py", "--ignore=tests/io/test_files.py"]

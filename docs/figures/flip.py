@@ -12,7 +12,7 @@ from PIL import Image, ImageSequence
 from polhode import FreeMotion, RigidBody, solids
 from scipy.optimize import brentq
 
-PICTURES, DURATION, SIZE, COLORS = 100, 5.0, (420, 340), 64  # a film lasts 10 s, twice as long
+PICTURES, DURATION, SIZE, COLORS = 100, 5.0, (420, 340), 64
 TURNS = 5
 """About L, until the picture comes again; more of them are for a start nearer to the axis."""
 
@@ -47,11 +47,14 @@ def draw(path: Path) -> None:
     times = period / PICTURES * np.arange(2 * PICTURES)
     with TemporaryDirectory() as scratch:
         film = body.simulate(times, motion.at(0.0).omega).animate(
-            Path(scratch, "twice.gif"), fps=PICTURES / DURATION, size=SIZE, labels=False
+            Path(scratch, "twice.gif"), frames=len(times), duration=2.0 * DURATION, size=SIZE, labels=False
         )
         with Image.open(film) as twice:
             pictures = [picture.convert("RGB") for picture in ImageSequence.Iterator(twice)][PICTURES:]
-    palette = pictures[0].quantize(COLORS)
+    some = Image.new("RGB", (SIZE[0], SIZE[1] * 10))  # whose colours all of them share
+    for number, picture in enumerate(pictures[:: PICTURES // 10]):
+        some.paste(picture, (0, SIZE[1] * number))
+    palette = some.quantize(COLORS)
     few = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
     each = round(1000.0 * DURATION / PICTURES)
     few[0].save(path, save_all=True, append_images=few[1:], duration=each, loop=0, optimize=True)

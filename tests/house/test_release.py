@@ -174,7 +174,7 @@ class TestVersions:
 
 
 class TestPins:
-    """The compiler and the tools of a release are those of its commit, so that the same bytes can be made later."""
+    """Compiler and tools of a release are those of its commit: the same bytes can be made later."""
 
     def test_every_tool_that_builds_has_its_version(self) -> None:
         pins = [
