@@ -12,7 +12,7 @@ from PIL import Image, ImageSequence
 from polhode import FreeMotion, RigidBody, solids
 from scipy.optimize import brentq
 
-PICTURES, DURATION, SIZE, COLORS = 100, 5.0, (420, 340), 64
+PICTURES, DURATION, SIZE, COLORS = 100, 5.0, (420, 340), 128
 TURNS = 5
 """About L, until the picture comes again; more of them are for a start nearer to the axis."""
 
@@ -54,7 +54,7 @@ def draw(path: Path) -> None:
     some = Image.new("RGB", (SIZE[0], SIZE[1] * 10))  # whose colours all of them share
     for number, picture in enumerate(pictures[:: PICTURES // 10]):
         some.paste(picture, (0, SIZE[1] * number))
-    palette = some.quantize(COLORS)
+    palette = some.quantize(COLORS, Image.Quantize.MAXCOVERAGE)
     few = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
     each = round(1000.0 * DURATION / PICTURES)
     few[0].save(path, save_all=True, append_images=few[1:], duration=each, loop=0, optimize=True)
