@@ -311,7 +311,9 @@ class TestBaseline:
         other.write_text(urdf(link("c", 5.0, 1.0, BALL)))
         assert run("check", other, "--baseline", known, "--accept")[0] == 0
         robot.write_text(urdf(link("a", 5.0, 0.02, BALL)))
-        assert run("check", robot, "--baseline", known, "--accept")[0] == 0
+        code, out, _ = run("check", robot, "--baseline", known, "--accept")
+        assert code == 0
+        assert f"wrote {known}, which accepts 1 finding" in " ".join(out.split())
         assert [each["link"] for each in json.loads(known.read_text())["accepted"]] == ["c"]
 
     @pytest.mark.parametrize(

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from polhode.cli.options import CheckOptions
 
-__all__ = ["check_files", "check_report"]
+__all__ = ["check_files"]
 
 _UNIT = "kg m^2"
 _PACKAGE = re.compile(r"(?:package|model):/+([^/]+)")
@@ -46,19 +46,6 @@ _COLUMNS = (
     Column("verdict", "verdict"),
     Column("reason", "reason"),
 )
-
-
-def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
-    """Judge a robot and fix it as asked for.
-
-    Returns
-    -------
-    report : Report
-    is_good : bool
-        Whether no link fails that the baseline does not accept; of the fixed file where one is written.
-    """
-    report, checked = _check_one(file, options, _baseline(options))
-    return report, checked.is_good
 
 
 class Fleet(Report):
@@ -102,30 +89,16 @@ def check_files(files: Sequence[Path], options: CheckOptions, form: str) -> tupl
     if options.fix is not None and len(files) != 1:
         raise PolhodeError(f"--fix: it writes a copy of one robot, and {len(files)} were named; name one")
     baseline = _baseline(options)
-    found: list[tuple[Report, Checked]] = []
-    for file in files:
-        try:
-            found.append(_check_one(file, options, baseline))
-        except FileFormatError as error:
-            if not (options.only_robots and error.kind == NO_ROBOT):
-                raise
+    found = _check_each(files, options, baseline)
+    if options.accept and baseline is not None:
+        baseline = _accept(baseline, [each for _, each in found])
+        found = _check_each(files, options, baseline)
+        count = "1 finding" if len(baseline.accepted) == 1 else f"{len(baseline.accepted)} findings"
+        for report, _ in found[-1:]:
+            report.notes.append(f"wrote {baseline.path}, which accepts {count}")
     reports, checked = [report for report, _ in found], [each for _, each in found]
     others = len(files) - len(found)
     is_good = all(each.is_good for each in checked)
-    if options.accept and baseline is not None:
-        places = [each.file for each in checked]
-        places += [path for each in checked for path in each.robot.files.values()]
-        keys = [
-            key
-            for each in checked
-            for key, finding in zip(each.keys, each.findings, strict=True)
-            if finding.fails
-        ]
-        baseline.renew(places, keys).write()
-        many = "1 finding" if len(set(keys)) == 1 else f"{len(set(keys))} findings"
-        for report in reports[-1:]:
-            report.notes.append(f"wrote {baseline.path}: {many} of these files accepted")
-        is_good = True
     if form == "sarif":
         return sarif_text(checked, int(not is_good)), is_good
     whole = _sum_up(checked, others, is_good=is_good)
@@ -135,6 +108,29 @@ def check_files(files: Sequence[Path], options: CheckOptions, form: str) -> tupl
     return (
         reports[0] if len(reports) == len(files) == 1 else Fleet(reports, whole, is_good=is_good)
     ), is_good
+
+
+def _check_each(
+    files: Sequence[Path], options: CheckOptions, baseline: Baseline | None
+) -> list[tuple[Report, Checked]]:
+    """Judge and report each file; pass over those that are no robots, where that is asked for."""
+    found: list[tuple[Report, Checked]] = []
+    for file in files:
+        try:
+            found.append(_check_one(file, options, baseline))
+        except FileFormatError as error:
+            if not (options.only_robots and error.kind == NO_ROBOT):
+                raise
+    return found
+
+
+def _accept(baseline: Baseline, checked: Sequence[Checked]) -> Baseline:
+    """Write what fails into the baseline, in place of what it held of the same files."""
+    places = [path for each in checked for path in (each.file, *each.robot.files.values())]
+    pairs = [pair for each in checked for pair in zip(each.keys, each.findings, strict=True)]
+    renewed = baseline.renew(places, [key for key, finding in pairs if finding.fails])
+    renewed.write()
+    return renewed
 
 
 def _sum_up(checked: Sequence[Checked], others: int, *, is_good: bool) -> str:
@@ -156,6 +152,7 @@ def _baseline(options: CheckOptions) -> Baseline | None:
 
 
 def _check_one(file: Path, options: CheckOptions, baseline: Baseline | None) -> tuple[Report, Checked]:
+    """Judge a robot, and fix it as asked for."""
     _check_options(options)
     filling = _filling(options)
     with files_read() as read:
@@ -179,15 +176,10 @@ def _check_one(file: Path, options: CheckOptions, baseline: Baseline | None) -> 
         Field("format", "format", robot.format),
         Field("robot", "robot", robot.name or "(without a name)"),
     )
-    of_links = {
-        id(each.link): ok for each, ok in zip(found, accepted or [False] * len(found), strict=True) if ok
-    }
-    bad = [
-        verdict
-        for link, verdict in zip(robot.links, verdicts, strict=True)
-        if verdict.verdict in failing and id(link) not in of_links
-    ]
-    rows = [_row(link, verdict) for link, verdict in zip(robot.links, verdicts, strict=True)]
+    passed = {id(each.link) for each, ok in zip(found, accepted or (), strict=accepted is not None) if ok}
+    pairs = [*zip(robot.links, verdicts, strict=True)]
+    bad = [verdict for link, verdict in pairs if verdict.verdict in failing and id(link) not in passed]
+    rows = [_row(link, verdict) for link, verdict in pairs]
     report.section("links", Table("links", _COLUMNS, rows))
     words = ["good", "suspect", *(["coarse"] if any(v.verdict == "coarse" for v in verdicts) else [])]
     counts = {word: sum(v.verdict == word for v in verdicts) for word in words}
@@ -200,10 +192,11 @@ def _check_one(file: Path, options: CheckOptions, baseline: Baseline | None) -> 
         Field("count.links", "links", len(verdicts)),
         Field("count.failing", "failing", len(bad)),
         *(Field(f"count.{word}", word, count) for word, count in counts.items()),
+        Field("summary", "summary", summary),
     )
     notes = dict.fromkeys(note for verdict in verdicts for note in verdict.notes)
     report.notes += [in_options(note) for note in (*robot.notes, *_group_notes(notes))]
-    if filling and not any(is_without_mass(*each) for each in zip(robot.links, verdicts, strict=True)):
+    if filling and not any(is_without_mass(*pair) for pair in pairs):
         report.notes.append(f"--{next(iter(filling))} has no effect: no failing link is without mass")
     report.notes += _warnings(robot, verdicts, failing)
     is_good = not bad
@@ -215,7 +208,7 @@ def _check_one(file: Path, options: CheckOptions, baseline: Baseline | None) -> 
         if any(verdict.verdict == "missing" and verdict.better is None for verdict in bad):
             report.notes.append(_WAY_OUT)
     else:
-        is_good = _fix(report, robot, verdicts, failing, options, set(of_links))
+        is_good = _fix(report, robot, verdicts, failing, options, passed)
     checked = Checked(file, robot, found, accepted, keys, [*report.notes], summary, is_good)
     return report, checked
 
