@@ -17,7 +17,7 @@ import numpy as np
 import polhode
 import pytest
 from markdown_code import MADE, blocks, pages_of, run_page
-from PIL import Image
+from PIL import Image, ImageSequence
 from places import ROOT
 from polhode import FreeMotion, RigidBody, Trajectory
 
@@ -221,7 +221,7 @@ class TestFigures:
         picture = DOCS / "images" / "flip.gif"
         assert picture.stat().st_size <= 1_000_000
         with Image.open(picture) as film:
-            assert (film.n_frames, film.info["loop"]) == (made["PICTURES"], 0)
+            assert (sum(1 for _ in ImageSequence.Iterator(film)), film.info["loop"]) == (made["PICTURES"], 0)
             assert film.info["duration"] == round(1000.0 * made["DURATION"] / made["PICTURES"])
         assert f"]({picture.relative_to(ROOT).as_posix()})" in (ROOT / "README.md").read_text("utf-8")[:600]
         assert 'src="gallery/t_handle.live.html"' in (DOCS / "index.md").read_text("utf-8")[:600]
