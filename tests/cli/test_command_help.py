@@ -27,6 +27,7 @@ VOCABULARY = {
         "fix": "where a corrected copy goes",
         "checkpoint": "where partial results are, to go on from",
         "expect": "a report to compare with",
+        "baseline": "findings that are accepted",
         "tree": "a table of edges",
         "packages": "folders to look into",
         "body": "which body it is",

@@ -53,9 +53,13 @@ def test_demo(tmp_path: Path, capsys: Capture) -> None:
     times = [float(time) for time in re.findall(r"\d+\.\d+", line)]
     assert len(times) >= 3
     np.testing.assert_allclose(np.diff(times), np.diff(times)[0], atol=2e-3)
-    # Its own last words work.
-    command = ["report", str(folder / "t-handle.stl"), "--length-unit", "mm", "--density", "7850"]
-    assert main(command) == 0
+    # Its own last words work, with a file in place of the one they name.
+    *_, last = (line for line in out.splitlines() if line.strip())
+    name, *command = last.split()
+    assert (name, command[:2]) == ("polhode", ["spin", "part.stl"])
+    places = {"part.stl": str(folder / "t-handle.stl"), "part.html": str(tmp_path / "part.html")}
+    assert main([places.get(word, word) for word in command]) == 0
+    assert "<canvas" in (tmp_path / "part.html").read_text("utf-8")
 
 
 def test_demo_without_matplotlib_says_so(

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 from packaging.requirements import Requirement
 from places import ROOT
 
@@ -170,6 +171,52 @@ class TestVersions:
         assert len(places) == 2 * len(systems) == 8
         assert {system.split("-")[-1] for system in systems} == {"gnu", "musl", "darwin", "msvc"}
         assert 'python: ["3.11", "3.14t"]' in workflow
+
+
+class TestPins:
+    """Compiler and tools of a release are those of its commit: the same bytes can be made later."""
+
+    def test_every_tool_that_builds_has_its_version(self) -> None:
+        pins = [
+            Requirement(line) for line in (PACKAGING / "pins.txt").read_text().splitlines() if line[0] != "#"
+        ]
+        versions = {pin.name: str(pin.specifier).removeprefix("==") for pin in pins}
+        assert all(re.fullmatch(r"==[\d.]+", str(pin.specifier)) for pin in pins)
+        project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
+        for line in project["dependency-groups"]["package"] + project["build-system"]["requires"]:
+            tool = Requirement(line)
+            assert tool.specifier.contains(versions[tool.name])
+
+    def test_the_workflow_takes_them(self) -> None:
+        workflow = (ROOT / ".github" / "workflows" / "release.yml").read_text("utf-8")
+        builds = re.findall(r"python -m pip install --group package(.*)", workflow)
+        assert set(builds) == {" --constraint packaging/pins.txt"}
+        jobs = yaml.safe_load(workflow)["jobs"]
+        compilers = {
+            job["env"]["RUSTUP_TOOLCHAIN"]
+            for job in jobs.values()
+            if "RUSTUP_TOOLCHAIN" in job.get("env", {})
+        }
+        (compiler,) = compilers
+        least = tomllib.loads((ROOT / "Cargo.toml").read_text("utf-8"))["workspace"]["package"][
+            "rust-version"
+        ]
+        assert [*map(int, compiler.split("."))] >= [*map(int, least.split("."))]
+        calls = re.compile(r"build\.py|cargo (?:package|publish)")
+        building = {name for name, job in jobs.items() if calls.search(str(job["steps"]))}
+        assert building == {"sdist", "wheels", "same-bytes", "crate"}
+        assert all("RUSTUP_TOOLCHAIN" in jobs[name]["env"] for name in building)
+
+    def test_what_is_published_was_tried(self) -> None:
+        jobs = yaml.safe_load((ROOT / ".github" / "workflows" / "release.yml").read_text("utf-8"))["jobs"]
+        assert set(jobs["publish"]["needs"]) == set(jobs) - {"publish", "crate"}
+        assert jobs["crate"]["needs"] == "publish"
+        assert jobs["crate"]["if"] == jobs["publish"]["if"]
+
+    def test_the_lowest_versions_are_tried_of_each_extra_but_the_large_ones(self, script: Any) -> None:
+        lowest = script("try_lowest")
+        assert {"cli", "plot", "chem", "image", "cluster", "all"} <= set(lowest["extras"]())
+        assert all((ROOT / name).exists() for name in lowest["TESTS"])
 
 
 class TestLicences:

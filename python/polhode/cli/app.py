@@ -19,6 +19,7 @@ from polhode.cli.options import (
     BodyOptions,
     CheckOptions,
     EnsembleOptions,
+    FindingsOptions,
     FlybyOptions,
     LedgerOptions,
     MoleculeOptions,
@@ -105,16 +106,18 @@ def report(
 def check(
     file: File,
     /,
-    *,
+    *more: File,
     check: Annotated[CheckOptions, ALL] = CheckOptions(),  # noqa: B008
-    output: Output = SHOWN,
+    output: Annotated[FindingsOptions, ALL] = FindingsOptions(),  # noqa: B008
 ) -> int:
     """Check the inertia of a robot's links, and write a corrected copy.
 
     Parameters
     ----------
     file
-        A robot or model (URDF, SDF, MJCF), or - for standard input.
+        A robot or model (URDF, SDF, MJCF, xacro), or - for standard input.
+    more
+        More of them.
 
     Examples
     --------
@@ -122,16 +125,21 @@ def check(
     polhode check robot.urdf --fix better.urdf
     polhode check robot.sdf --strict --format json
     """
-    from polhode.cli.check import check_report
+    from polhode.cli.check import check_files
     from polhode.cli.files import check_outputs
-    from polhode.cli.layout import show
+    from polhode.cli.layout import form_of, show, show_lines
     from polhode.io.budget import files_read
 
-    check_outputs([("--fix", check.fix), ("--output", output.output)], [file])
+    places = [("--fix", check.fix), ("--baseline", check.baseline), ("--output", output.output)]
+    check_outputs(places, [file, *more])
+    form = form_of(output, ("json", "sarif"))
     with files_read() as read:
-        told, is_good = check_report(file, check)
+        told, is_good = check_files([file, *more], check, form)
     check_outputs([("--output", output.output)], read)
-    show(told, output)
+    if isinstance(told, str):
+        show_lines(told, output)
+    else:
+        show(told, output)
     return GOOD if is_good else BAD_VERDICT
 
 

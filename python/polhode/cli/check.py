@@ -4,28 +4,36 @@ from __future__ import annotations
 
 import re
 import sys
+from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from polhode import robots
 from polhode._format import Note
+from polhode.cli.baseline import Baseline
 from polhode.cli.files import STDIN, check_outputs, label
 from polhode.cli.layout import Column, Field, Report, Table
-from polhode.cli.terminal import in_options
+from polhode.cli.sarif import Checked, finding_lines, sarif_text
+from polhode.cli.terminal import in_options, write
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.io.budget import files_read
 from polhode.io.writing import write_bytes
+from polhode.robots import NO_ROBOT
+from polhode.robots.findings import findings
 from polhode.robots.geometry import HULL, LOST
+from polhode.robots.macros import EXPANDED
 from polhode.robots.sources import read_stream
 from polhode.robots.verdict import has_own_tensor, is_without_mass, replacement
 from polhode.units import quantity
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Collection, Iterable, Sequence
+
+    from rich.console import Console
 
     from polhode.cli.options import CheckOptions
 
-__all__ = ["check_report"]
+__all__ = ["check_files"]
 
 _UNIT = "kg m^2"
 _PACKAGE = re.compile(r"(?:package|model):/+([^/]+)")
@@ -40,22 +48,127 @@ _COLUMNS = (
 )
 
 
-def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
-    """Judge a robot and fix it as asked for.
+class Fleet(Report):
+    """The reports of several robots, one after the other, and what they say together."""
+
+    def __init__(self, reports: Sequence[Report], summary: str, *, is_good: bool) -> None:
+        super().__init__()
+        self._reports, self._summary, self._is_good = reports, summary, is_good
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the reports in a list, and the verdict on all of them."""
+        return {
+            "robots": [report.as_dict() for report in self._reports],
+            "verdict": "good" if self._is_good else "bad",
+            "summary": self._summary,
+        }
+
+    def print(self, console: Console) -> None:
+        """Print the tables, and the line that sums them up."""
+        for report in self._reports:
+            report.print(console)
+            write(console)
+        write(console, f"  {self._summary}")
+
+
+def check_files(files: Sequence[Path], options: CheckOptions, form: str) -> tuple[Report | str, bool]:
+    """Judge robots.
+
+    Parameters
+    ----------
+    files : sequence of pathlib.Path
+    options : CheckOptions
+    form : {"table", "json", "lines", "sarif"}
 
     Returns
     -------
-    report : Report
+    report : Report or str
+        Text where the form is lines or SARIF.
     is_good : bool
-        Whether no link fails; of the fixed file where one is written.
     """
+    if options.fix is not None and len(files) != 1:
+        raise PolhodeError(f"--fix: it writes a copy of one robot, and {len(files)} were named; name one")
+    baseline = _baseline(options)
+    found = _check_each(files, options, baseline)
+    if options.accept and baseline is not None:
+        baseline = _accept(baseline, [each for _, each in found])
+        found = _check_each(files, options, baseline)
+        count = "1 finding" if len(baseline.accepted) == 1 else f"{len(baseline.accepted)} findings"
+        for report, _ in found[-1:]:
+            report.notes.append(f"wrote {baseline.path}, which accepts {count}")
+    reports, checked = [report for report, _ in found], [each for _, each in found]
+    others = len(files) - len(found)
+    is_good = all(each.is_good for each in checked)
+    if form == "sarif":
+        return sarif_text(checked, int(not is_good)), is_good
+    whole = _sum_up(checked, others, is_good=is_good)
+    if form == "lines":
+        lines = [line for each in checked for line in finding_lines(each)]
+        return "\n".join(lines if len(checked) == len(files) == 1 else [*lines, whole]), is_good
+    return (
+        reports[0] if len(reports) == len(files) == 1 else Fleet(reports, whole, is_good=is_good)
+    ), is_good
+
+
+def _check_each(
+    files: Sequence[Path], options: CheckOptions, baseline: Baseline | None
+) -> list[tuple[Report, Checked]]:
+    """Judge and report each file; pass over those that are no robots, where that is asked for."""
+    found: list[tuple[Report, Checked]] = []
+    for file in files:
+        try:
+            found.append(_check_one(file, options, baseline))
+        except FileFormatError as error:
+            if not (options.only_robots and error.kind == NO_ROBOT):
+                raise
+    return found
+
+
+def _accept(baseline: Baseline, checked: Sequence[Checked]) -> Baseline:
+    """Write what fails into the baseline, in place of what it held of the same files."""
+    places = [path for each in checked for path in (each.file, *each.robot.files.values())]
+    pairs = [pair for each in checked for pair in zip(each.keys, each.findings, strict=True)]
+    renewed = baseline.renew(places, [key for key, finding in pairs if finding.fails])
+    renewed.write()
+    return renewed
+
+
+def _sum_up(checked: Sequence[Checked], others: int, *, is_good: bool) -> str:
+    bad = [each for each in checked if not each.is_good]
+    robots_of = "1 robot" if len(checked) == 1 else f"{len(checked)} robots"
+    names = f": {_some([str(each.file) for each in bad])}" if bad else ""
+    told = f"{'good' if is_good else 'bad'}: {len(bad)} of {robots_of} failed{names}"
+    return f"{told}; files that are no robots: {others}" if others else told
+
+
+def _baseline(options: CheckOptions) -> Baseline | None:
+    if options.baseline is None:
+        if options.accept:
+            raise PolhodeError("--accept: it writes a baseline; name its file with --baseline FILE")
+        return None
+    if options.accept and not options.baseline.exists():
+        return Baseline(options.baseline, frozenset())
+    return Baseline.read(options.baseline)
+
+
+def _check_one(file: Path, options: CheckOptions, baseline: Baseline | None) -> tuple[Report, Checked]:
+    """Judge a robot, and fix it as asked for."""
     _check_options(options)
     filling = _filling(options)
     with files_read() as read:
         robot = _read_robot(file, options)
         verdicts = robots.check(robot, options.packages, allow_outside=options.allow_outside, **filling)
-    check_outputs([("--fix", options.fix)], read)
+    check_outputs([("--fix", options.fix), ("--baseline", options.baseline)], read)
+    if options.fix is not None and any(isinstance(n, Note) and n.kind == EXPANDED for n in robot.notes):
+        raise PolhodeError(
+            f"--fix: {label(file)} holds macros, which a copy would not have; expand it with "
+            f"xacro {file} > out.urdf, and fix that one"
+        )
     failing = robots.FAILURES | ({"suspect"} if options.strict else frozenset())
+    found = [*findings(robot, verdicts, failing, Path.read_bytes)]
+    known = baseline or Baseline(Path("baseline"), frozenset())
+    keys = [known.key(each.path or file, each.link.own_name, each.law) for each in found]
+    accepted = None if baseline is None else [key in baseline.accepted for key in keys]
     report = Report()
     report.section(
         "",
@@ -63,22 +176,30 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
         Field("format", "format", robot.format),
         Field("robot", "robot", robot.name or "(without a name)"),
     )
-    report.section("links", Table("links", _COLUMNS, [_row(verdict) for verdict in verdicts]))
-    bad = [verdict for verdict in verdicts if verdict.verdict in failing]
+    passed = {id(each.link) for each, ok in zip(found, accepted or (), strict=accepted is not None) if ok}
+    pairs = [*zip(robot.links, verdicts, strict=True)]
+    bad = [verdict for link, verdict in pairs if verdict.verdict in failing and id(link) not in passed]
+    rows = [_row(link, verdict) for link, verdict in pairs]
+    report.section("links", Table("links", _COLUMNS, rows))
     words = ["good", "suspect", *(["coarse"] if any(v.verdict == "coarse" for v in verdicts) else [])]
     counts = {word: sum(v.verdict == word for v in verdicts) for word in words}
+    if baseline is not None:
+        counts["accepted"] = sum(verdict.verdict in failing for verdict in verdicts) - len(bad)
+    summary = _summary(label(file), len(verdicts), bad, counts.get("accepted", 0))
     report.section(
         "verdict",
         Field("verdict", "verdict", "bad" if bad else "good"),
         Field("count.links", "links", len(verdicts)),
         Field("count.failing", "failing", len(bad)),
         *(Field(f"count.{word}", word, count) for word, count in counts.items()),
+        Field("summary", "summary", summary),
     )
     notes = dict.fromkeys(note for verdict in verdicts for note in verdict.notes)
     report.notes += [in_options(note) for note in (*robot.notes, *_group_notes(notes))]
-    if filling and not any(is_without_mass(*each) for each in zip(robot.links, verdicts, strict=True)):
+    if filling and not any(is_without_mass(*pair) for pair in pairs):
         report.notes.append(f"--{next(iter(filling))} has no effect: no failing link is without mass")
     report.notes += _warnings(robot, verdicts, failing)
+    is_good = not bad
     if options.fix is None:
         if any(verdict.better is not None for verdict in bad):
             report.notes.append("--fix FILE writes better values into a copy")
@@ -86,8 +207,19 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
             report.notes.append("--fix FILE moves tensors on the edge inside, in a copy")
         if any(verdict.verdict == "missing" and verdict.better is None for verdict in bad):
             report.notes.append(_WAY_OUT)
-        return report, not bad
-    return report, _fix(report, robot, verdicts, failing, options)
+    else:
+        is_good = _fix(report, robot, verdicts, failing, options, passed)
+    checked = Checked(file, robot, found, accepted, keys, [*report.notes], summary, is_good)
+    return report, checked
+
+
+def _summary(name: str, links: int, bad: Sequence[robots.Verdict], accepted: int) -> str:
+    """Sum up a robot in one line: how many links fail, and by which laws."""
+    laws = Counter(verdict.law for verdict in bad)
+    listed = ", ".join(f"{count} {law}" for law, count in sorted(laws.items()))
+    told = f"{name}: {'bad' if bad else 'good'}: {len(bad)} of {links} links fail"
+    told += f" ({listed})" if listed else ""
+    return f"{told}; the baseline accepts {accepted} more" if accepted else told
 
 
 def _group_notes(notes: Iterable[str]) -> list[str]:
@@ -155,7 +287,8 @@ def _check_options(options: CheckOptions) -> None:
 
 def _read_robot(file: Path, options: CheckOptions) -> robots.Robot:
     if file != STDIN:
-        return robots.read_robot(file, options.packages, allow_outside=options.allow_outside)
+        outside = options.allow_outside
+        return robots.read_robot(file, options.packages, allow_outside=outside, arguments=_arguments(options))
     source = read_stream(sys.stdin.buffer, label(file))
     if not source:
         raise FileFormatError("-: nothing came on standard input; send a file into it")
@@ -171,7 +304,18 @@ def _parse_robot(
     )
 
 
-def _row(verdict: robots.Verdict) -> dict[str, Any]:
+def _arguments(options: CheckOptions) -> dict[str, str]:
+    """Return the arguments of xacro by their names."""
+    found: dict[str, str] = {}
+    for word in options.arguments:
+        name, is_there, value = word.partition(":=")
+        if not (name and is_there):
+            raise PolhodeError(f"--arguments: {word!r} is no argument of xacro; write it as name:=value")
+        found[name] = value
+    return found
+
+
+def _row(link: robots.Link, verdict: robots.Verdict) -> dict[str, Any]:
     return {
         "link": verdict.name,
         "line": verdict.line,
@@ -183,6 +327,8 @@ def _row(verdict: robots.Verdict) -> dict[str, Any]:
         "shapes": verdict.shapes,
         "verdict": verdict.verdict,
         "reason": in_options(verdict.reason),
+        "law": verdict.law,
+        "macros": list(link.macros),
     }
 
 
@@ -192,8 +338,9 @@ def _fix(
     verdicts: list[robots.Verdict],
     failing: frozenset[str],
     options: CheckOptions,
+    accepted: Collection[int],
 ) -> bool:
-    """Write the fixed file, tell what changed, and whether all its links are good."""
+    """Write the fixed file, tell what changed, and whether all its links are good or `accepted` by id."""
     path = options.fix
     if path is None:
         return False
@@ -253,4 +400,5 @@ def _fix(
         )
     if elsewhere:
         report.notes.append(f"left as they are, to be fixed in their own files: {', '.join(elsewhere)}")
-    return not any(verdict.verdict in failing for verdict in again)
+    pairs = zip(robot.links, again, strict=True)
+    return not any(verdict.verdict in failing and id(link) not in accepted for link, verdict in pairs)

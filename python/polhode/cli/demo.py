@@ -40,6 +40,8 @@ DURATION = 20.0
 SAMPLES = 2001
 STEEL = "7850 kg/m^3"
 GOOD, BAD = 0, 1
+OWN = "polhode spin part.stl --length-unit mm --axes principal --omega 0.01 6 0 --end 20 --save part.html"
+"""The line to try on a file of one's own."""
 
 
 def run(directory: Path, console: Console) -> int:
@@ -79,17 +81,17 @@ def run(directory: Path, console: Console) -> int:
     comparisons = [brick.compare(rtol) for rtol in brick.BARS]
     _print_comparisons(console, comparisons)
 
-    _heading(console, "4. Now your own file, or one of those that ship with polhode")
+    _heading(console, "4. Files that ship with polhode, and what else there is")
     for command in (
         "polhode samples .",
         'polhode report bracket.ply --length-unit in --density "2.7 g/cm^3"',
         "polhode check robot.urdf --fix better.urdf",
         "polhode molecule water.xyz",
-        f"polhode spin {mesh_file} --length-unit mm --axes principal --omega 0.01 6 0 --end 20 "
-        "--save racket.html",
         "polhode --help",
     ):
         write(console, f"  {command}")
+    _heading(console, "5. Now your own file, in place of part.stl: watch it flip")
+    write(console, f"  {OWN}")
     return GOOD if all(comparison.is_good for comparison in comparisons) else BAD
 
 

@@ -17,13 +17,13 @@ from polhode.errors import FileFormatError, PolhodeError
 from polhode.io.budget import read_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from numpy.typing import ArrayLike, NDArray
     from rich.console import Console
 
-    from polhode.cli.options import OutputOptions, ReportOptions
+    from polhode.cli.options import FindingsOptions, OutputOptions, ReportOptions
 
 __all__ = [
     "NOT_LINEAR",
@@ -33,6 +33,7 @@ __all__ = [
     "Field",
     "Report",
     "Table",
+    "form_of",
     "held_against",
     "held_and_shown",
     "number",
@@ -317,7 +318,14 @@ def held_and_shown(
     return agrees
 
 
-def show_lines(text: str, options: OutputOptions) -> None:
+def form_of(options: OutputOptions | FindingsOptions, by_name: Collection[str] = ("json",)) -> str:
+    """Return the form that was asked for, or that the name of the file has."""
+    path = options.output
+    suffix = path.suffix.lower().removeprefix(".") if path is not None else ""
+    return options.form or (suffix if suffix in by_name else "table")
+
+
+def show_lines(text: str, options: OutputOptions | FindingsOptions) -> None:
     """Write lines as they are, such as numbers for another program."""
     from polhode.io.writing import DASH, write_bytes
 
@@ -327,15 +335,14 @@ def show_lines(text: str, options: OutputOptions) -> None:
         write_bytes(options.output, f"{text}\n".encode())
 
 
-def show(report: Report, options: OutputOptions) -> None:
+def show(report: Report, options: OutputOptions | FindingsOptions) -> None:
     """Write a report in the form that was asked for, or that the name of the file has."""
     from rich.console import Console
 
     from polhode.io.writing import DASH, write_bytes
 
     path = options.output if options.output != DASH else None
-    by_name = "json" if path is not None and path.suffix.lower() == ".json" else "table"
-    form = options.form or by_name
+    form = form_of(options)
     if path is None:
         _write(report, form, Console(highlight=False))
     else:

@@ -21,6 +21,7 @@ __all__ = [
     "CheckOptions",
     "Count",
     "EnsembleOptions",
+    "FindingsOptions",
     "FlybyOptions",
     "LedgerOptions",
     "LengthUnit",
@@ -91,6 +92,26 @@ class OutputOptions:
     """
 
     form: Annotated[Literal["table", "json"] | None, Parameter(name="--format"), RESULTS] = None
+    output: Annotated[Path | None, Parameter(allow_leading_hyphen=True), RESULTS] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class FindingsOptions:
+    """Where the verdict goes and in which form.
+
+    Attributes
+    ----------
+    form
+        A table for people; JSON with the same fields; lines, one for each finding and one that sums up; or
+        SARIF 2.1.0 with places and fixes, for editors and review pages. Default: table, or json or sarif if
+        --output ends so.
+    output
+        File for the text of the report; - is standard output. Default: the terminal.
+    """
+
+    form: Annotated[
+        Literal["table", "json", "lines", "sarif"] | None, Parameter(name="--format"), RESULTS
+    ] = None
     output: Annotated[Path | None, Parameter(allow_leading_hyphen=True), RESULTS] = None
 
 
@@ -244,11 +265,23 @@ class CheckOptions:
         computed from their shapes.
     mass
         Mass of all links without a mass, together. It is shared out by the volumes of their shapes.
+    only_robots
+        Pass over files that are no robots: another root element, or no link. Without it, they are an error.
+    arguments
+        Arguments of a xacro file, such as "prefix:=left_". May be repeated.
+    baseline
+        File with findings that are accepted, by link and law. Links fail only by what is new.
+    accept
+        Write the findings of this run into the file of --baseline.
     """
 
     packages: Annotated[Paths, REPEATED, VERDICT] = ()
     allow_outside: Annotated[bool, FLAG, VERDICT] = False
     strict: Annotated[bool, FLAG, VERDICT] = False
+    only_robots: Annotated[bool, FLAG, VERDICT] = False
+    arguments: Annotated[Words, REPEATED, VERDICT] = ()
+    baseline: Annotated[Path | None, VERDICT] = None
+    accept: Annotated[bool, FLAG, VERDICT] = False
     fix: Annotated[Path | None, COPY] = None
     density: Annotated[str | None, COPY] = None
     mass: Annotated[str | None, COPY] = None

@@ -21,11 +21,14 @@ __all__ = [
     "Edit",
     "Element",
     "apply_edits",
+    "attribute_span",
     "blanks_of",
     "parse_xml",
     "remove_attribute",
     "set_attribute",
     "set_text",
+    "text_span",
+    "word_span",
 ]
 
 _START_TAG: Final = re.compile(rb"<[^\"'<>]*(?:\"[^\"]*\"[^\"'<>]*|'[^']*'[^\"'<>]*)*>")
@@ -37,6 +40,7 @@ _COMMENT: Final = re.compile(rb"<!\[CDATA\[.*?(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)|<!--
 _DECLARATION: Final = re.compile(rb"(?:\xef\xbb\xbf)?(<\?xml\s[^<>]*\?>)")
 _BAD_TOKEN: Final = expat.errors.codes[expat.errors.XML_ERROR_INVALID_TOKEN]
 _BAD_DECLARATION: Final = expat.errors.codes[expat.errors.XML_ERROR_XML_DECL]
+_WORD: Final = re.compile(rb"[^\s]+")
 _DEEPEST: Final = 200
 
 
@@ -289,6 +293,26 @@ def set_text(element: Element, value: str) -> Edit:
     if element.outside == element.inside == element.end:
         return Edit(element.start, element.end, f"<{element.tag}>{value}</{element.tag}>")
     return Edit(element.inside, element.outside, value)
+
+
+def attribute_span(source: bytes, element: Element, name: str) -> tuple[int, int] | None:
+    """Return where the value of an attribute stands, without its quotes; None where there is none."""
+    found = _attribute(source, element, name)
+    return (found.start(2) + 1, found.end() - 1) if found is not None else None
+
+
+def text_span(source: bytes, element: Element) -> tuple[int, int] | None:
+    """Return where the text of an element without children stands, without blanks; None for none."""
+    text = source[element.inside : element.outside]
+    if element.children or not text.strip():
+        return None
+    return element.inside + len(text) - len(text.lstrip()), element.inside + len(text.rstrip())
+
+
+def word_span(source: bytes, span: tuple[int, int], number: int) -> tuple[int, int]:
+    """Return where the word of that number within a span stands; the span itself where it has none."""
+    words = list(_WORD.finditer(source, *span))
+    return words[number].span() if number < len(words) else span
 
 
 def blanks_of(between: bytes) -> str:

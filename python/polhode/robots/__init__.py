@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import os
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -18,9 +19,10 @@ from polhode._format import Argument
 from polhode._hints import check_kind
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.io.content import EXPECTED_CONTENT, content_format, rename
-from polhode.io.xml_source import Edit, Element, apply_edits, parse_xml
+from polhode.io.xml_source import Edit, apply_edits, parse_xml
 from polhode.robots import mjcf, sdf, urdf
 from polhode.robots.geometry import GeometryReader
+from polhode.robots.macros import expand, has_macros
 from polhode.robots.model import Inertial, Joint, Link, Place, Robot, Shape, shorten
 from polhode.robots.room import MARKER
 from polhode.robots.sdf import check_version
@@ -28,7 +30,7 @@ from polhode.robots.sources import Addresses, Sources, own_root, read_source
 from polhode.robots.verdict import FAILURES, Verdict, judge, replacement
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
 __all__ = [
     "FAILURES",
@@ -45,6 +47,8 @@ __all__ = [
     "read_robot",
 ]
 
+NO_ROBOT: Final = "no robot"
+"""Kind of the error of a file that is no robot: of another root, without a link, or XML of something else."""
 _FORMATS = {
     "robot": ("URDF", urdf),
     "sdf": ("SDF", sdf),
@@ -58,6 +62,7 @@ def read_robot(
     packages: Sequence[str | os.PathLike[str]] = (),
     *,
     allow_outside: bool = False,
+    arguments: Mapping[str, str] | None = None,
 ) -> Robot:
     """Read a robot file.
 
@@ -66,12 +71,15 @@ def read_robot(
     path : str or os.PathLike
         A URDF, SDF or MJCF file; its root element tells the format. Declarations of entities and document
         types are an error. Included files and attached models are read too; nothing is fetched from a
-        network.
+        network. Macros of xacro are expanded if xacro is installed (extra ``xacro``): it computes the
+        expressions of the file and reads what the file includes, anywhere.
     packages : sequence of str or os.PathLike
         Folders that hold the packages of ``package://`` and ``model://`` addresses, see :func:`check`.
     allow_outside : bool
         Whether files that the robot file names may be in any folder. By default they are read only in the
         package of the model and in those of `packages`, see :func:`check`.
+    arguments : mapping of str to str, optional
+        Values of the arguments (``<xacro:arg>``) of a xacro file.
 
     Returns
     -------
@@ -88,10 +96,27 @@ def read_robot(
     source = read_source(file)
     real, folder = Path(os.path.realpath(file)), file.absolute().parent
     roots = (own_root(real.parent),) if real.parent != Path(os.path.realpath(folder)) else ()
-    robot = parse_robot(
-        source, name=str(file), folder=folder, packages=[*packages, *roots], allow_outside=allow_outside
-    )
+    homes = [*map(Path, packages), *roots]
+    expansion = None
+    if b"xacro:" in source and (tag := has_macros(parse_xml(source, str(file), remarks={}))):
+        addresses = Addresses(folder, homes, allow_outside=allow_outside)
+        name_of = partial(_relative, folder=Path(os.path.realpath(folder)))
+        try:
+            expansion = expand(file, addresses, dict(arguments or {}), name_of)
+        except ModuleNotFoundError as error:
+            raise FileFormatError(
+                f"{file}: holds <{shorten(tag)}>; {error}; or expand it first: xacro {file} > out.urdf"
+            ) from None
+        source = expansion.source
+    robot = parse_robot(source, name=str(file), folder=folder, packages=homes, allow_outside=allow_outside)
+    if expansion is not None:
+        robot = expansion.trace(robot, str(file))
     return replace(robot, roots=roots)
+
+
+def _relative(path: Path, folder: Path) -> str:
+    """Name a file as it is seen from a folder."""
+    return Path(os.path.relpath(path, folder)).as_posix()
 
 
 def parse_robot(
@@ -136,7 +161,7 @@ def parse_robot(
             f"source: expected the bytes of a file, got {type(source).__name__}; read_robot(path) reads one"
         )
     if not source.strip():
-        raise FileFormatError(f"{name}: the file is empty; check the file")
+        raise _no_robot(f"{name}: the file is empty; check the file")
     body_format, _ = content_format(source[:4096], len(source))
     if body_format is not None:
         way_out = "polhode report reads it"
@@ -144,20 +169,24 @@ def parse_robot(
             way_out = "unpack it with gunzip"
         elif body_format not in EXPECTED_CONTENT.get(Path(name).suffix.lower(), ()):
             way_out = f"{rename(Path(name), body_format, source[:4096])}, and {way_out}"
-        raise FileFormatError(f"{name}: is {body_format}, not a robot; {way_out}")
+        raise _no_robot(f"{name}: is {body_format}, not a robot; {way_out}")
     home = Path(folder)
     addresses = Addresses(home, [Path(package) for package in packages], allow_outside=allow_outside)
     sources = Sources(home, addresses)
-    root = parse_xml(source, name, budget=sources.budget, remarks=sources.notes)
+    try:
+        root = parse_xml(source, name, budget=sources.budget, remarks=sources.notes)
+    except FileFormatError as error:
+        if not any(f"<{tag}".encode() in source for tag in _FORMATS):
+            error.kind = NO_ROBOT
+        raise
     if root.tag not in _FORMATS:
-        raise FileFormatError(
+        raise _no_robot(
             f"{name}: its root is <{shorten(root.tag)}>, not <robot> (URDF), <sdf> or <mujoco> (MJCF); "
             "check the file"
         )
     check_version(root, name)
     format_name, reader = _FORMATS[root.tag]
-    unexpanded = next((e for e in _walk(root) if e.startswith("xacro:")), None)
-    if unexpanded is not None:
+    if unexpanded := has_macros(root):
         raise FileFormatError(
             f"{name}: holds <{shorten(unexpanded)}>; expand it first: xacro {name} > out.urdf"
         )
@@ -167,17 +196,34 @@ def parse_robot(
         raise FileFormatError(f"{name}: ", *error.args) from None
     if not links:
         if format_name == "MJCF" and any(root.all("body")):
-            raise FileFormatError(
+            raise _no_robot(
                 f"{name}: its bodies stand outside <worldbody>, as in a part that models include; check the "
                 "model that includes it"
             )
-        raise FileFormatError(f"{name}: holds no link; check the file")
+        raise _no_robot(f"{name}: holds no link; check the file")
     read = f"read too: {', '.join(sources.names)}"
     notes = (*([read] if sources.names else []), *sources.notes)
     model = root if format_name != "SDF" else next(root.descendants("model"), root)
     title = sources.prefix(model.attributes.get("name", model.attributes.get("model", "")))
     joints = tuple(sources.joints)
-    return Robot(format_name, title, links, home, source, notes, joints=joints, total_mass=sources.total_mass)
+    files = {name: next(iter(paths)) for name, paths in sources.names.items() if len(paths) == 1}
+    return Robot(
+        format_name,
+        title,
+        links,
+        home,
+        source,
+        notes,
+        joints=joints,
+        total_mass=sources.total_mass,
+        files=files,
+    )
+
+
+def _no_robot(message: str) -> FileFormatError:
+    error = FileFormatError(message)
+    error.kind = NO_ROBOT
+    return error
 
 
 def check(
@@ -279,16 +325,6 @@ def fix(robot: Robot, verdicts: Sequence[Verdict], words: Collection[str] = FAIL
         if better is not None and link.rewrite is not None:
             edits += link.rewrite(robot.source, better)
     return apply_edits(robot.source, edits)
-
-
-def _walk(element: Element) -> list[str]:
-    """Return every tag of a document."""
-    waiting, tags = [element], []
-    while waiting:
-        item = waiting.pop()
-        tags.append(item.tag)
-        waiting += item.children
-    return tags
 
 
 if not TYPE_CHECKING:

@@ -121,15 +121,20 @@ class _Reader:
             for model in asset.all("model"):
                 self._add_model(model)
 
-    def below(self, parent: Element, inherited: str | None, above: str) -> Iterator[Link]:
-        """Read the bodies and the attached models that hang on a body or the world, by its key."""
+    def below(
+        self, parent: Element, inherited: str | None, above: str, above_name: str = ""
+    ) -> Iterator[Link]:
+        """Read the bodies and the attached models that hang on a body or the world, by its key and name."""
+        unnamed = 0
         for body in self.members(parent, "body", Place.identity(), inherited):
-            yield from self.bodies(body, above)
+            unnamed += "name" not in body.element.attributes
+            own_name = body.element.attributes.get("name", f"{above_name}/{unnamed}")
+            yield from self.bodies(body, above, own_name)
         for attach in self.members(parent, "attach", Place.identity(), inherited):
             for link in self._read_attach(attach.element, above):
                 yield replace(link, problem=attach.problem or link.problem)
 
-    def bodies(self, member: Member, above: str) -> Iterator[Link]:
+    def bodies(self, member: Member, above: str, own_name: str) -> Iterator[Link]:
         """Read a body, with the problem of the frame that it stands in, and those that hang on it."""
         body, _, inherited, problem = member
         inherited = body.attributes.get("childclass", inherited)
@@ -149,11 +154,12 @@ class _Reader:
             raise
         except FileFormatError as error:
             problem = problem or Note(*error.args)
+        is_elsewhere = bool(body.file) or any(child.file for child in body.children)
         reach = 0.0
         with suppress(FileFormatError):
             reach = float(np.linalg.norm(numbers(body, body.attributes.get("pos", "0 0 0"), 3, "pos")))
-        own_name = body.attributes.get("name", f"(body of {body.where})")
-        name = self.sources.name(self.prefix, own_name, body)
+        shown = body.attributes.get("name", f"(body of {body.where})")
+        name = self.sources.name(self.prefix, shown, body)
         key = f"body {len(self.sources.joints)}"
         self.sources.joints.append(self._joint(body, name, above, key))
         yield Link(
@@ -163,14 +169,16 @@ class _Reader:
             problem=problem,
             shapes=shapes,
             inferred=is_inferred,
-            rewrite=None if body.file or self.infers_always else partial(_rewrite, body, declared),
+            rewrite=None if is_elsewhere or self.infers_always else partial(_rewrite, body, declared),
             file=body.file,
             folder=self.folder,
             key=key,
             reach=reach,
             compiler=self.compiler,
+            own_name=own_name,
+            element=body,
         )
-        yield from self.below(body, inherited, key)
+        yield from self.below(body, inherited, key, own_name)
 
     def _joint(self, body: Element, name: str, above: str, key: str) -> Joint:
         """Return the joint that moves a body; None without a joint."""
@@ -256,8 +264,8 @@ class _Reader:
                 everything = model.everything(world, tag, None)
                 found = [each for each in everything if each.element.attributes.get("name") == wanted]
                 for member in found:
-                    read = model.bodies(member, above) if tag == "body" else model.read_frame(member, above)
-                    yield from read
+                    read = partial(model.bodies, own_name=wanted) if tag == "body" else model.read_frame
+                    yield from read(member, above)
                 if found:
                     return
             if tag:
@@ -483,7 +491,7 @@ def _apply_bounds(compiler: Compiler, verdict: Verdict) -> Verdict:
     if not is_empty and mass == verdict.mass and np.array_equal(moments, before):
         return verdict
     if is_empty:
-        verdict = verdict._replace(verdict="inferred", reason="", better=None)
+        verdict = verdict._replace(verdict="inferred", reason="", better=None, law="")
     return _add_reason(verdict, "by boundmass and boundinertia of the compiler", mass, moments)
 
 

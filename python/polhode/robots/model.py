@@ -10,7 +10,7 @@ import numpy as np
 from polhode.errors import FileFormatError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -28,6 +28,7 @@ __all__ = [
     "Place",
     "Robot",
     "Shape",
+    "Spot",
     "numbers",
     "quote",
     "scale",
@@ -37,6 +38,19 @@ __all__ = [
 
 WORLD: Final = "world"
 """Name of the fixed world in a joint."""
+
+
+class Spot(NamedTuple):
+    """Place of a fault, a piece of a message: an element, and the name of what is wrong in it.
+
+    It is written as the line of the element. The name is that of an attribute; "" for the element itself.
+    """
+
+    element: Element
+    name: str
+
+    def __str__(self) -> str:
+        return self.element.where
 
 
 class Place(NamedTuple):
@@ -184,6 +198,13 @@ class Link:
         Distance of the link from the frame in which the file places it, in metres.
     compiler : Compiler, optional
         Settings of the MJCF compiler, if they change anything.
+    own_name : str
+        The name of the link in its own file, the same in every robot that includes the file: without what
+        the including files put before it, and without numbers of lines.
+    element : Element, optional
+        Where it stands in the source.
+    macros : tuple of str
+        The macro calls of xacro that made it, from the outermost, each with file and line.
     """
 
     name: str
@@ -200,6 +221,9 @@ class Link:
     is_static: bool = False
     reach: float = 0.0
     compiler: Compiler | None = None
+    own_name: str = ""
+    element: Element | None = field(default=None, compare=False, repr=False)
+    macros: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -224,6 +248,8 @@ class Robot:
     joints : tuple of Joint
     total_mass : float
         The total mass to which the MJCF compiler scales all bodies together; 0 if it does not scale.
+    files : dict of str to pathlib.Path
+        The included files, by their names in :attr:`Link.file`; a name that stands for two files is left out.
     """
 
     format: str
@@ -235,6 +261,7 @@ class Robot:
     roots: tuple[Path, ...] = ()
     joints: tuple[Joint, ...] = ()
     total_mass: float = 0.0
+    files: Mapping[str, Path] = field(default_factory=dict)
 
 
 # Longer texts hold no few numbers; the file may say them of many elements.
@@ -266,11 +293,12 @@ def numbers(element: Element, text: str | None, count: int | None, what: str) ->
         way_out = "; expand the file with xacro first" if text and "${" in text else ""
         must = f"{wanted} has to stand" if count == 1 else f"{wanted} have to stand"
         given = "is missing," if text is None else f"is {quote(text)}"
-        raise FileFormatError(f"{element.where}: {what} {given} where {must}{way_out}")
+        raise FileFormatError(Spot(element, what), f": {what} {given} where {must}{way_out}")
     if values.size and np.abs(values).max() > _LARGEST:
         raise FileFormatError(
-            f"{element.where}: {what} is {quote(text)}, beyond {_LARGEST:g}, where squares have no "
-            "room in numbers; correct it"
+            Spot(element, what),
+            f": {what} is {quote(text)}, beyond {_LARGEST:g}, where squares have no "
+            "room in numbers; correct it",
         )
     return values
 

@@ -47,11 +47,12 @@ _STEPS: Final = 40
 
 
 class Finding(NamedTuple):
-    """Result of one law: the verdict's word, the quantity that exceeds the law, and the reason."""
+    """Result of one law: the verdict's word, the quantity that exceeds the law, the reason, and the law."""
 
     word: Literal["suspect", "coarse", "impossible"]
     reason: str
     why: str = ""
+    law: Literal["room", "center-of-mass", "density"] = "room"
 
 
 def beyond_room(body: RigidBody, geometry: Geometry, coarseness: Callable[[], float]) -> Finding | None:
@@ -68,6 +69,12 @@ def beyond_room(body: RigidBody, geometry: Geometry, coarseness: Callable[[], fl
     low, high = geometry.low, geometry.high
     if low is None or high is None or fit_in_box(body, low, high).possible:
         return None
+    found = _beyond_box(body, low, high, coarseness)
+    is_outside = bool(((body.center_of_mass < low) | (body.center_of_mass > high)).any())
+    return found._replace(law="center-of-mass") if is_outside else found
+
+
+def _beyond_box(body: RigidBody, low: Floats, high: Floats, coarseness: Callable[[], float]) -> Finding:
     reason = _excess(body, low, high)
     most = _COARSEST * float(np.linalg.norm(high - low))
     if not fit_in_box(body, low - 2.0 * most, high + 2.0 * most).possible:
@@ -196,6 +203,7 @@ def too_dense(body: RigidBody) -> Finding | None:
         "suspect",
         f"spread {np.sqrt(spread):.3g} m (root mean square), less than a ball of osmium of that mass, "
         f"{np.sqrt(least):.3g} m",
+        law="density",
     )
 
 

@@ -23,6 +23,7 @@ from polhode.robots.model import (
     Link,
     Place,
     Shape,
+    Spot,
     numbers,
     quote,
     scale,
@@ -156,7 +157,13 @@ def _link(element: Element, sources: Sources, scope: Scope) -> Link:
         reach = float(np.linalg.norm(_pose(element.find("pose")).position))
     key = scope.path + own
     return replace(
-        link, inertial=inertial, key=key, defaults=defaults, is_static=scope.is_static, reach=reach
+        link,
+        inertial=inertial,
+        key=key,
+        defaults=defaults,
+        is_static=scope.is_static,
+        reach=reach,
+        own_name="" if element.file else key,
     )
 
 
@@ -204,7 +211,7 @@ def _without_commas(text: str) -> str:
 def _value(parent: Element, name: str, count: int, default: str | None = None) -> tuple[float, ...]:
     element = parent.find(name)
     if element is None and default is None:
-        raise FileFormatError(f"{parent.where}: <{parent.tag}> without <{name}>; add it")
+        raise FileFormatError(Spot(parent, ""), f": <{parent.tag}> without <{name}>; add it")
     text = default if element is None else element.text
     values: tuple[float, ...] = tuple(numbers(element or parent, text, count, name).tolist())
     return values
@@ -336,7 +343,16 @@ def read_include(include: Element, sources: Sources, scope: Scope, read_links: R
             return
         name = sources.name(scope.prefix, f"(include of {include.where})", include)
         is_static = scope.is_static or is_true(include, "static")
-        yield Link(name, include.line, None, Note(*error.args), file=include.file, is_static=is_static)
+        yield Link(
+            name,
+            include.line,
+            None,
+            Note(*error.args),
+            file=include.file,
+            is_static=is_static,
+            own_name=f"include of {uri}",
+            element=include,
+        )
         return
     with sources.inside(path, uri, include):
         model = next(root.descendants("model"), root)
@@ -352,8 +368,12 @@ def read_include(include: Element, sources: Sources, scope: Scope, read_links: R
         if root.tag == "robot":
             for link in urdf.links(root, sources, path.parent, inner.prefix, inner.path):
                 yield replace(link, is_static=inner.is_static)
-        else:
-            yield from read_links(root, sources, inner)
+            return
+        own_model = model.attributes.get("name", "")
+        for link in read_links(root, sources, inner):
+            # As where its own file is judged: by the name that this gives to its model.
+            below = link.key.removeprefix(inner.path)
+            yield link if link.own_name else replace(link, own_name=f"{own_model}::{below}")
 
 
 def check_version(root: Element, name: str) -> None:

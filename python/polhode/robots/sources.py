@@ -52,8 +52,8 @@ class Sources:
     def __init__(self, folder: Path, addresses: Addresses) -> None:
         self.folder, self.addresses = folder, addresses
         self.budget = Budget("", 0)  # whose limits do not depend on the size of the robot's own file
-        self.names: dict[str, None] = {}
-        """Of the files that were read, as they were asked for."""
+        self.names: dict[str, set[Path]] = {}
+        """The files that were read, by the names under which they were asked for."""
         self.notes: dict[str, None] = {}
         """What of them is not judged."""
         self.total_mass = 0.0
@@ -105,7 +105,7 @@ class Sources:
                 f"{at.where}: {address} cannot be read: {error.strerror}; check {path}"
             ) from None
         self.budget.spend("included bytes", len(source), at.where)
-        self.names[address] = None
+        self.names.setdefault(address, set()).add(path)
         try:
             return parse_xml(
                 source, str(path), file=address, above=at.depth, budget=self.budget, remarks=self.notes

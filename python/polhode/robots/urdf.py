@@ -15,7 +15,7 @@ from polhode._format import Note
 from polhode.errors import FileFormatError
 from polhode.io.xml_source import Edit, Element, blanks_of
 from polhode.robots.edits import attribute, first_child, indent_element, number_text
-from polhode.robots.model import WORLD, Inertial, Joint, Link, Place, Shape, numbers, scale
+from polhode.robots.model import WORLD, Inertial, Joint, Link, Place, Shape, Spot, numbers, scale
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -69,6 +69,8 @@ class LinkReader(NamedTuple):
             rewrite=None if element.file else partial(self.rewrite, element, declared),
             file=element.file,
             folder=folder,
+            own_name=element.attributes.get("name", ""),
+            element=element,
         )
 
 
@@ -155,7 +157,7 @@ def _inertial(element: Element) -> Inertial:
     mass, inertia = element.find("mass"), element.find("inertia")
     if mass is None or inertia is None:
         missing = "mass" if mass is None else "inertia"
-        raise FileFormatError(f"{element.where}: <inertial> without <{missing}>; add it")
+        raise FileFormatError(Spot(element, ""), f": <inertial> without <{missing}>; add it")
     (value,) = numbers(mass, mass.attributes.get("value"), 1, "mass value")
     xx, yy, zz, xy, xz, yz = (numbers(inertia, inertia.attributes.get(name), 1, name)[0] for name in _MOMENTS)
     tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])

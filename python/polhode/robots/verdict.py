@@ -59,6 +59,19 @@ Word = Literal[
     "none",
     "inferred",
 ]
+Law = Literal[
+    "",
+    "unreadable",
+    "missing-mass",
+    "mass",
+    "moments",
+    "triangle-inequality",
+    "placeholder",
+    "center-of-mass",
+    "room",
+    "shape",
+    "density",
+]
 FAILURES: Final = frozenset({"placeholder", "impossible", "missing", "unreadable"})
 _STANDS_FOR: Final = {0.0: "is a point's, where mass has no spread", 1.0: "is the unit tensor"}
 # A table printed to few digits breaks a law by no more than this, and can be put right without guessing.
@@ -104,6 +117,11 @@ class Verdict(NamedTuple):
     inside : Inertial or None
         If the declared tensor is on the edge I1 + I2 = I3, as of a lamina, where rounding may make it
         impossible: the same tensor, moved inside by less than 6e-15 of the sum of its moments.
+    law : str
+        The law that `reason` states: ``"mass"`` (above 0), ``"moments"`` (none below 0),
+        ``"triangle-inequality"``, ``"placeholder"``, ``"center-of-mass"`` (within the shape), ``"room"`` (in
+        the shape), ``"shape"`` (1/10 to 3 times the shape filled), ``"density"`` (that of matter),
+        ``"missing-mass"``, ``"unreadable"``; ``""`` where none is broken.
     """
 
     name: str
@@ -119,6 +137,7 @@ class Verdict(NamedTuple):
     better: Inertial | None = None
     file: str = ""
     inside: Inertial | None = None
+    law: Law = ""
 
 
 def judge(
@@ -260,7 +279,7 @@ class _VerdictData(NamedTuple):
             told = (*notes, link.problem) if link.problem else notes
             return Verdict(link.name, link.line, "none", "nothing moves it: its model is static", notes=told)
         if link.problem:
-            return Verdict(link.name, link.line, "unreadable", link.problem)
+            return Verdict(link.name, link.line, "unreadable", link.problem, law="unreadable")
         if link.defaults and not role.moves:
             return Verdict(
                 link.name, link.line, "none", "nothing moves it: it is tied to the world", notes=notes
@@ -268,7 +287,9 @@ class _VerdictData(NamedTuple):
         if not _has_mass(link, geometry):
             empty = judge_without_mass(self.format, link, role)
             told = (*notes, empty.note) if empty.note else notes
-            return Verdict(link.name, link.line, empty.word, empty.reason, notes=told if link.shapes else ())
+            notes = told if link.shapes else ()
+            law: Law = "missing-mass" if empty.word == "missing" else ""
+            return Verdict(link.name, link.line, empty.word, empty.reason, notes=notes, law=law)
         if declared is None:
             body = geometry.body
             if body is None:
@@ -288,10 +309,11 @@ class _VerdictData(NamedTuple):
         is_point = _is_point(declared) and (own is None or not declared.inertia.any())
         if is_point and role.weld and self.format != "SDF":  # libsdformat refuses it all the same
             word: Word = "good"
+            law = ""
             reason = f"a point mass, tied to {role.weld}"
             notes = (*notes, f"line {link.line}: {link.name} is {reason}: simulators join the two")
         else:
-            word, reason = self._law(link, declared, geometry, own, factor)
+            word, law, reason = self._law(link, declared, geometry, own, factor)
             better = None if word in ("good", "coarse") else _better(declared, own, word)
         if word not in FAILURES:
             inside = _inside(declared)
@@ -329,6 +351,7 @@ class _VerdictData(NamedTuple):
             notes,
             None if better is None else _round_inertial(better),
             inside=inside,
+            law=law,
         )
 
     def _law(
@@ -338,14 +361,14 @@ class _VerdictData(NamedTuple):
         geometry: Geometry,
         own: RigidBody | None,
         factor: float | None,
-    ) -> tuple[Word, str]:
-        """Return the first law that fails, in the order from simple to complex."""
+    ) -> tuple[Word, Law, str]:
+        """Return the first law that fails, in the order from simple to complex, and the reason."""
         try:
             body = RigidBody(declared.mass, declared.inertia, declared.center_of_mass)
         except InvalidInertiaError as error:  # its remedies are those of Python's arguments
-            return "impossible", error.fault
+            return "impossible", _law_of_body(declared), error.fault
         except PolhodeError as error:
-            return "impossible", str(error)
+            return "impossible", _law_of_body(declared), str(error)
         if geometry.unread or geometry.low is None:
             size = beyond_size(body, geometry, own, self.reach, is_all=self.is_all)
         else:
@@ -359,22 +382,36 @@ class _VerdictData(NamedTuple):
             told = f"{told}; it stands in {count} links" if count > 1 else told
             is_true = own is not None and size is None and _are_near(own.inertia, declared.inertia)
             if not is_true:
-                return "placeholder", _join_reasons(told, compared, size.reason if size else "")
+                return (
+                    "placeholder",
+                    "placeholder",
+                    _join_reasons(told, compared, size.reason if size else ""),
+                )
         if size is not None and size.word == "impossible":
-            return size.word, _join_reasons(compared, size.reason, size.why, needed)
+            return size.word, size.law, _join_reasons(compared, size.reason, size.why, needed)
         if geometry.marker is not None:
             told = (
                 f"its mass would have {geometry.marker:.3g} kg/m^3 in its shapes, beyond {MARKER:g}: they "
                 "are markers, and nothing else that was read tells its size"
             )
-            return "suspect", _join_reasons(told, *((size.reason, size.why) if size else ()))
+            return "suspect", "density", _join_reasons(told, *((size.reason, size.why) if size else ()))
         if factor is not None and not LEAST <= factor <= MOST:
-            return "suspect", _join_reasons(compared, *((size.reason, size.why) if size else ()), needed)
+            reasons = (size.reason, size.why) if size else ()
+            return "suspect", "shape", _join_reasons(compared, *reasons, needed)
         if size is not None and size.word == "coarse":
-            return size.word, _join_reasons(compared, size.reason)
+            return size.word, size.law, _join_reasons(compared, size.reason)
         if size is None and own is None:
             size = too_dense(body)
-        return (size.word, _join_reasons(size.reason, size.why)) if size is not None else ("good", compared)
+        if size is not None:
+            return size.word, size.law, _join_reasons(size.reason, size.why)
+        return "good", "", compared
+
+
+def _law_of_body(declared: Inertial) -> Law:
+    """Return which law of every body mass properties break."""
+    if not declared.mass > 0.0:
+        return "mass"
+    return "moments" if _least_moment(declared) < 0.0 else "triangle-inequality"
 
 
 def _are_near(one: Floats, other: Floats) -> bool:

@@ -53,7 +53,7 @@
 //! ```
 //!
 //! Where something acts on the body, [`motion::simulate`](fn@motion::simulate::simulate) follows it through the times asked for: the load is a sum of
-//! [terms](motion::loads::Term) or a [closure](motion::loads::Callback). In the folder
+//! [terms](motion::loads::Term), a [closure](motion::loads::Callback), or a sum of both. In the folder
 //! of the crate, `cargo run --example NAME` runs `t_handle`, `tennis_racket`, `stl`, `heavy_top`, `satellite`, `closure`, `events` or
 //! `refusals`.
 //!
@@ -103,6 +103,21 @@
 //!   cannot be. A body that is typed by hand needs no more than `mass`, `center_of_mass` and `inertia` (three rows). A
 //!   free motion is stored as its body and its [`initial`](motion::free::FreeMotion::initial) state. To read the same bits from JSON, turn on
 //!   `float_roundtrip` of `serde_json`; states that were not computed (NaN) are written as `null` and not read again.
+//!
+//! ```
+//! # #[cfg(feature = "serde")] {
+//! use polhode::mass::{Amount, RigidBody, solids};
+//!
+//! let brick = solids::cuboid(&[3.0, 2.0, 1.0], Amount::Mass(12.0))?; // moments 5, 10 and 13
+//! let text = serde_json::to_string(&brick).expect("a body is written");
+//! assert_eq!(serde_json::from_str::<RigidBody>(&text).expect("and read"), brick);
+//!
+//! let typed = r#"{"mass": 12, "center_of_mass": [0, 0, 0], "inertia": [[5, 0, 0], [0, 10, 0], [0, 0, 16]]}"#;
+//! let error = serde_json::from_str::<RigidBody>(typed).expect_err("16 > 5 + 10");
+//! assert!(error.to_string().contains("triangle inequality"));
+//! # }
+//! # Ok::<(), polhode::Error>(())
+//! ```
 //!
 //! # Threads
 //!

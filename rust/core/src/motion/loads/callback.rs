@@ -28,6 +28,37 @@ use crate::motion::state::Phase;
 /// assert!((run.phase.omega.z - 9.0 / 4.0).abs() < 1e-12); // ω = t²/(2 I)
 /// # Ok::<(), polhode::Error>(())
 /// ```
+///
+/// # A sum with analytic terms
+///
+/// A closure may hold an [`Analytic`](super::Analytic) load and add to its wrench. The run then steps by
+/// [`Method::Dop853`](crate::motion::simulate::Method) or another method for closures, no longer by series. What terms
+/// do beside their wrench is no part of the sum: a [`Rotor`](super::Rotor), a [`Slug`](super::Slug) or a law that
+/// switches needs a type of its own that implements [`Load`] and passes these calls on. The breaks of terms that act in
+/// windows of time belong into [`with_breaks`](Self::with_breaks).
+///
+/// ```
+/// use polhode::mass::{Amount, solids};
+/// use polhode::motion::loads::{Analytic, Callback, Damping, Load, Wrench};
+/// use polhode::motion::simulate::{Method, NoEvents, Phase, State, Task, Tolerance, simulate};
+/// use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
+/// use std::ops::ControlFlow;
+///
+/// let ball = solids::sphere(1.0, Amount::Mass(5.0))?; // I = 2
+/// let state = State { attitude: UnitQuaternion::identity(), omega: Vector3::zeros() };
+/// let tolerance = Tolerance::new(1e-12, 0.0)?;
+/// let task = Task::free(&ball, Phase::in_place(&state), &[0.0, 3.0], Method::Auto, tolerance);
+/// let terms = [Damping::new(&(Matrix3::identity() * 0.5), &Matrix3::zeros())?.into()];
+/// let mut air = Analytic::new(&terms, task.body_at_point);
+/// let mut sum = Callback::wrench(|t, phase: &Phase| {
+///     let motor = Wrench::couple(Vector3::z()); // of time and state, in general
+///     Ok::<_, polhode::Error>(air.wrench(t, phase)? + motor)
+/// });
+/// let run = simulate(&task, &mut sum, &mut NoEvents::new(), &mut |_| ControlFlow::Continue(()));
+/// let run = run.into_result()?;
+/// assert!((run.phase.omega.z - 2.0 * (1.0 - (-0.75_f64).exp())).abs() < 1e-11); // ω = N/c (1 − exp(−c t/I))
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Callback<F, E> {
     wrench: F,
