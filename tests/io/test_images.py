@@ -173,6 +173,13 @@ def test_a_scan_without_a_unit(tmp_path: Path, labels: np.ndarray, name: str) ->
     assert "unit unknown" in out
 
 
+def test_a_function_of_values_gets_floats(tmp_path: Path) -> None:
+    """Of 16-bit numbers the product would wrap around."""
+    np.save(tmp_path / "a.npy", np.full((2, 2, 2), 700, dtype=np.int16))
+    body = RigidBody.from_file(tmp_path / "a.npy", density=lambda hu: 400 * hu / 700)
+    assert body.mass == 8 * 400.0
+
+
 def test_labels_are_no_factors(tmp_path: Path) -> None:
     values = np.zeros((3, 3, 3), dtype=np.int16)
     values[1, 1] = 1

@@ -77,9 +77,18 @@ def inertial(tensor: str, place: str = "0.1 0.2 0.3", mass: str = "2") -> str:
         (inertial(MIRRORED, "0.1 -0.2 0.3"), ""),
         (inertial(MIRRORED, "0.1 -0.2 0.3", "2.5"), "its mass is 2.5 kg, that of the other 2 kg"),
         (inertial(TENSOR), "it has the same numbers, which are not those of its mirror image"),
-        (inertial(MIRRORED, "0.1 0.2 0.3"), "its centre of mass c lies otherwise in its inertia I"),
-        (inertial(TENSOR, "0.1 -0.2 0.3"), "its centre of mass c lies otherwise in its inertia I"),
-        (inertial(MIRRORED, "0.3 -0.2 0.1"), "its centre of mass c lies otherwise in its inertia I"),
+        (
+            inertial(MIRRORED, "0.1 0.2 0.3"),
+            "its products of inertia and its centre of mass have signs of different sides",
+        ),
+        (
+            inertial(TENSOR, "0.1 -0.2 0.3"),
+            "its products of inertia and its centre of mass have signs of different sides",
+        ),
+        (
+            inertial(MIRRORED, "0.3 -0.2 0.1"),
+            "its products of inertia and its centre of mass have signs of different sides",
+        ),
         (inertial(MIRRORED, "0.1 -0.4 0.3"), "its centre of mass is 0.5099 m from its origin"),
         (inertial(MIRRORED.replace('"6"', '"7"'), "0.1 -0.2 0.3"), "its principal moments are"),
     ],

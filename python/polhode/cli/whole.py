@@ -24,6 +24,7 @@ from polhode.cli.tables import (
     tensor_fields,
     trust_fields,
 )
+from polhode.equimomental import ellipsoid
 from polhode.errors import PolhodeError
 from polhode.io.formats import check_arguments
 from polhode.io.images import bodies_of_labels, body_of_image, is_image, read_image, unit_of
@@ -136,12 +137,13 @@ def _bodies_by_value(
 
 def _regions(loaded: LoadedBody) -> Table:
     """List the voxels of each value."""
-    moments = f"{loaded.moment_unit}"
+    moments = loaded.moment_unit
     columns = (
         Column("value", "value"),
         Column("mass", "mass", loaded.mass_unit),
         Column("center_of_mass", "centre of mass", loaded.length),
         Column("principal_moments", "principal moments", moments),
+        Column("semi_axes", "semi-axes of the ellipsoid", loaded.length),
     )
     rows = [
         {
@@ -149,6 +151,7 @@ def _regions(loaded: LoadedBody) -> Table:
             "mass": body.mass,
             "center_of_mass": body.center_of_mass,
             "principal_moments": body.principal_moments,
+            "semi_axes": ellipsoid(body).semi_axes,
         }
         for value, body in loaded.regions
     ]

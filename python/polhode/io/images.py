@@ -306,7 +306,8 @@ def body_of_image(
         weight = 1.0 if density is None else density
         _check_factors(values, weight)
     elif callable(density):
-        found = np.asarray(density(values), dtype=np.float64)
+        # Arithmetic on the 16-bit numbers of a scan would wrap around.
+        found = np.asarray(density(values.astype(np.float64, copy=False)), dtype=np.float64)
         if found.shape != values.shape:
             raise ValueError(
                 f"density: expected it to return shape {values.shape}, a number for each voxel, got "

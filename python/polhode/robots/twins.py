@@ -107,9 +107,8 @@ def _relation(one: RigidBody, other: RigidBody, size: float) -> str:
         first, second = (_form(body, power) for body in (one, other))
         if abs(first - second) > power * change * i**power:
             return (
-                "its centre of mass c lies otherwise in its inertia I than in a mirror image: "
-                f"{name} is {first:.4g}, that of the other {second:.4g}; the products or the centre have "
-                "signs of the other side"
+                "its products of inertia and its centre of mass have signs of different sides: of the centre c "
+                f"and the tensor I, {name} is {first:.4g}, that of the other {second:.4g}"
             )
     return ""
 
