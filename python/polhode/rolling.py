@@ -94,16 +94,16 @@ class Resistance(NamedTuple):
 def resistance(viscous: float = 0.0, pivoting: float = 0.0, arm: float = 0.0) -> Resistance:
     """Make a resistance to rolling and pivoting, for ``resistance=`` of :func:`plane`.
 
-    The couple on the body is ``-viscous ω_t - pivoting (ω·n) n - arm N ω_t/|ω_t|`` with the normal n of the plane,
-    the part ω_t of the angular velocity across it, and the normal force N.
+    The couple on the body is ``-viscous ω_t - pivoting (ω·n) n - arm N ω_t/|ω_t|`` with the normal n of the
+    plane, the part ω_t of the angular velocity across it, and the normal force N.
 
     Parameters
     ----------
     viscous, pivoting : float, optional
         In units of torque times time; zero by default.
     arm : float, optional
-        A length: how far ahead of the contact the normal force acts; zero by default. With an arm the body must
-        turn, and the run ends with the status "rest" where it ceases to.
+        A length: how far ahead of the contact the normal force acts; zero by default. With an arm the body
+        must turn, and the run ends with the status "rest" where it ceases to.
 
     Returns
     -------

@@ -7,8 +7,9 @@ In axes of space, with r from C to the contact and the velocity u = Ω n×(P −
 are nine linear equations for a, α and F: the third is the time derivative of the constraint v + ω×r = u. The
 contact is where the outward normal of the surface is −n. Its rate ṙ = ω×r + R dp/dt is a difference quotient
 of the contact in twice the digits, so that no formula for it is shared with the package. `RollingBody.solve`
-solves them in 30 digits. For a body that slips, `SlidingBody` has the force N along n as unknown in place of F,
-and n·(a + α×r + ω×ṙ) = 0 in place of the third. `motion` integrates them in extended doubles (64 bits), the rate of the contact by a
+solves them in 30 digits. For a body that slips, `SlidingBody` has the force N along n as unknown
+in place of F, and n·(a + α×r + ω×ṙ) = 0 in place of the third. `motion` integrates them in extended doubles
+(64 bits), the rate of the contact by a
 complex step, with Gragg's midpoint rule and Richardson's extrapolation, which know nothing of Taylor series.
 """
 
@@ -177,7 +178,7 @@ class RollingBody:
 
 
 class SlidingBody(RollingBody):
-    """A case with the friction of a body that slips: ("coulomb" μ, "normal" k or "plain" c) and a velocity of C."""
+    """A case with friction, ("coulomb", μ), ("normal", k) or ("plain", c), and a velocity of C."""
 
     def velocity(self, state: Sequence[mpf]) -> Vector:
         """Return the velocity at the start, without what it has along the normal at the contact."""
@@ -190,9 +191,7 @@ class SlidingBody(RollingBody):
         plane = self.plane_velocity(add(state[7:10], arm))
         return add(velocity, cross(state[4:7], arm), times(mpf(-1), plane))
 
-    def solve_slipping(
-        self, state: Sequence[mpf], velocity: Sequence[mpf]
-    ) -> tuple[Vector, Vector, Vector]:
+    def solve_slipping(self, state: Sequence[mpf], velocity: Sequence[mpf]) -> tuple[Vector, Vector, Vector]:
         """Return the accelerations α and a, and the force of the plane."""
         q, omega = state[:4], state[4:7]
         spin = quaternion_rate(q, omega)
@@ -395,7 +394,9 @@ class ExtendedSliding(Extended):
         without = solved(product(arm, drag) - product(omega, applied(inertia, omega)))
         lever = product(arm, self.normal)
         bracket = inner(self.normal, push / mass) + inner(lever, by_push)
-        free = inner(self.normal, self.gravity + drag / mass + product(omega, arm_rate)) + inner(lever, without)
+        free = inner(self.normal, self.gravity + drag / mass + product(omega, arm_rate)) + inner(
+            lever, without
+        )
         pressure = (-free / bracket)[:, None]
         turn = without + pressure * by_push
         acceleration = self.gravity + (pressure * push + drag) / mass
@@ -532,7 +533,7 @@ def rotations_of(case: dict[str, Any]) -> float:
 
 
 def slipping(number: int, case: dict[str, Any], rng: random.Random) -> dict[str, Any]:
-    """Return the case, with half the spin so that the plane need not pull, with friction and a slip that lasts."""
+    """Return the case with half the spin, so that the plane need not pull, friction and a slip that lasts."""
     friction = [("coulomb", 0.02), ("normal", 0.1), ("plain", 0.6)][number // 5 % 3]
     case = case | {"omega": [0.5 * x for x in case["omega"]]}
     with mp.workdps(DIGITS):

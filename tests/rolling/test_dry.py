@@ -1,4 +1,4 @@
-"""Dry friction: rolling and slipping in turn, against closed forms, energy quadrature, and the law itself at many times."""
+"""Dry friction: rolling and slipping in turn, against closed forms, energy and the law itself."""
 
 from __future__ import annotations
 

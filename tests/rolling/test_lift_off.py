@@ -1,4 +1,4 @@
-"""Lift-off: of bodies drawn at random none missed and none invented, and free flight until they touch again."""
+"""Lift-off of bodies drawn at random: none missed, none invented; and free flight until they touch again."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def test_lift_off_is_not_missed_and_not_invented(count: int) -> None:
 
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 def test_a_disk_flies_and_lands(friction: float) -> None:
-    """From the lift-off on C falls freely, and the disk turns with constant rate: height − e cos φ − a = 0."""
+    """C falls freely from the lift-off on, and the disk turns with constant rate: z − e cos φ − a = 0."""
     e = 0.9
     body = RigidBody.from_principal(1.0, (0.045, 0.045, 0.09), center_of_mass=(0, -e, 0))
     upright = (0.0, np.sqrt(0.5), np.sqrt(0.5), 0.0)

@@ -148,7 +148,7 @@ class Events(_Events):
     event : numpy.ndarray of int, shape (n,)
         Index of the event function; negative for an event of a contact, see `kind`.
     kind : numpy.ndarray of str, shape (n,)
-        "function" for a function; "lift-off", "slip", "roll", "landing" or "rest" for what happens to a contact.
+        "function", or what happens to a contact: "lift-off", "slip", "roll", "landing" or "rest".
     t : numpy.ndarray, shape (n,)
     omega : numpy.ndarray, shape (n, 3)
     quaternion : numpy.ndarray, shape (n, 4)

@@ -103,9 +103,10 @@ class Trajectory(metaclass=ClassWithHints):
         What acted on the body.
     status : str or numpy.ndarray of str, shape (...)
         How the run of each body ended: ``"complete"``; ``"event"``, at a terminal event; ``"lift-off"``,
-        where a body leaves its plane, ``"landing"``, where it touches again, ``"roll"``, where its slip ceases and
-        the law of contact needs one, or ``"rest"``, where it ceases to turn and its resistance needs that;
-        ``"failed"``; ``"stopped"``, by Ctrl-C; or ``"not run"``, since another body failed first. States after the end are NaN.
+        where a body leaves its plane, ``"landing"``, where it touches again, ``"roll"``, where its slip
+        ceases and the law of contact needs one, or ``"rest"``, where it ceases to turn and its resistance
+        needs that; ``"failed"``; ``"stopped"``, by Ctrl-C; or ``"not run"``, since another body failed first.
+        States after the end are NaN.
     events : Events
         The passages of the event functions through zero, as a table.
     failures : tuple of PolhodeError

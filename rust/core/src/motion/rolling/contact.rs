@@ -79,7 +79,7 @@ pub enum ContactPhase {
     Flying,
 }
 
-/// The resistance to rolling and pivoting: the couple `−b ω_t − p (ω·n) n − e N ω_t/|ω_t|` on the body, with the part ω_t of ω across the
+/// The resistance to rolling and pivoting: the couple `−b ω_t − p (ω·n) n − e N ω_t/|ω_t|` on the body, with the part `ω_t` of ω across the
 /// normal n.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Resistance {
@@ -235,8 +235,7 @@ impl Contact {
     pub fn with_law(self, law: Law) -> Result<Self, Error> {
         let (what, coefficient) = match law {
             Law::Rolling => return Ok(Self { law, ..self }),
-            Law::Dry(mu) => ("friction", mu),
-            Law::Sliding(Friction::Coulomb(mu)) => ("friction", mu),
+            Law::Dry(mu) | Law::Sliding(Friction::Coulomb(mu)) => ("friction", mu),
             Law::Sliding(viscous) => ("viscous", viscous.coefficient()),
         };
         not_negative(what, coefficient)?;

@@ -349,7 +349,7 @@ impl Equations {
     }
 }
 
-/// Compute `−ω_t/|ω_t|` with the part ω_t of ω across the normal.
+/// Compute `−ω_t/|ω_t|` with the part `ω_t` of ω across the normal.
 pub(super) fn against_turn<N: Arithmetic>(omega: [N; 3], normal: [N; 3]) -> [N; 3] {
     let across = minus(omega, scaled(normal, dot(omega, normal)));
     let rate = dot(across, across).root();

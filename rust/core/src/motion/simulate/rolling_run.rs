@@ -95,7 +95,7 @@ impl Rolling<'_> {
                 let state = self.equations.state(self.contact, phase);
                 let slip = state.slip;
                 let speed = speed_of_contact(self.contact, &state, phase);
-                self.from_zero(x * slip[0] + y * slip[1], speed)
+                self.without_rounding(x * slip[0] + y * slip[1], speed)
             }
             Limit::Turn => {
                 let axes = self.contact.plane_axes();
@@ -106,13 +106,13 @@ impl Rolling<'_> {
             Limit::Height => {
                 let far = (phase.position - self.contact.point).norm();
                 let height = self.instant(phase).residual[0];
-                self.from_zero(height, 1.0 + far / self.contact.surface.size())
+                self.without_rounding(height, 1.0 + far / self.contact.surface.size())
             }
         }
     }
 
     /// Return a value that rises from zero in the first step of a regime without its rounding errors, which have any sign.
-    fn from_zero(&self, value: f64, size: f64) -> f64 {
+    fn without_rounding(&self, value: f64, size: f64) -> f64 {
         if self.is_fresh.get() && value.abs() <= CEASED * size {
             f64::MIN_POSITIVE
         } else {
@@ -324,41 +324,12 @@ impl Rolling<'_> {
             };
             let time = start + elapsed;
             phase = run.phase.clone();
-            let mut ended = None;
-            regime = match limit {
-                None if matches!(regime, Regime::Parting { .. }) => Regime::Sliding,
-                None => regime,
-                Some(Limit::Pressure) => {
-                    ended = Some(ContactEvent::LiftOff);
-                    Regime::Flying
-                }
-                Some(Limit::Height) => {
-                    ended = Some(ContactEvent::Landing);
-                    regime
-                }
-                Some(Limit::Turn) => {
-                    ended = Some(ContactEvent::Rest);
-                    regime
-                }
-                Some(Limit::Margin) => return Err(self.lost(time).into()),
-                Some(Limit::Bracket) => return Err(self.not_unique(time, &phase).into()),
-                Some(Limit::Hold) => {
-                    self.cross(run, ContactEvent::Slip, time, &phase);
-                    self.parting(&phase, true)
-                }
-                Some(Limit::Slip) if !matches!(self.contact.law, Law::Dry(_)) => {
-                    ended = Some(ContactEvent::Roll);
-                    regime
-                }
-                Some(Limit::Slip) => {
-                    self.cross(run, ContactEvent::Roll, time, &phase);
-                    let next = self.regime_at(time, &phase, true)?;
-                    if next != Regime::Rolling {
-                        self.cross(run, ContactEvent::Slip, time, &phase);
-                    }
-                    next
-                }
+            let (next, ended) = match limit {
+                None if matches!(regime, Regime::Parting { .. }) => (Regime::Sliding, None),
+                None => (regime, None),
+                Some(limit) => self.after(limit, run, time, &phase)?,
             };
+            regime = next;
             if let Some(event) = ended {
                 self.cross(run, event, time, &phase);
                 if event != ContactEvent::LiftOff || self.contact.lift == LiftOff::Stop {
@@ -381,6 +352,64 @@ impl Rolling<'_> {
         }
     }
 
+    /// Return the regime after a function that ends the last one, and what ends the run there.
+    fn after<E>(
+        &self,
+        limit: Limit,
+        run: &mut Run<E>,
+        time: f64,
+        phase: &Phase,
+    ) -> Result<(Regime, Option<ContactEvent>), Error> {
+        let is_dry = matches!(self.contact.law, Law::Dry(_));
+        Ok(match limit {
+            Limit::Pressure => (Regime::Flying, Some(ContactEvent::LiftOff)),
+            Limit::Height => (Regime::Flying, Some(ContactEvent::Landing)),
+            Limit::Turn => (Regime::Rolling, Some(ContactEvent::Rest)),
+            Limit::Slip if !is_dry => (Regime::Rolling, Some(ContactEvent::Roll)),
+            Limit::Margin => return Err(self.lost(time)),
+            Limit::Bracket => return Err(self.not_unique(time, phase)),
+            Limit::Hold => {
+                self.cross(run, ContactEvent::Slip, time, phase);
+                (self.parting(phase, true), None)
+            }
+            Limit::Slip => {
+                self.cross(run, ContactEvent::Roll, time, phase);
+                let next = self.regime_at(time, phase, true)?;
+                if next != Regime::Rolling {
+                    self.cross(run, ContactEvent::Slip, time, phase);
+                }
+                (next, None)
+            }
+        })
+    }
+
+    /// Make a step, and return the functions that change with its start: their numbers and values there.
+    fn step<E>(&self, dense: &mut RollingStep<'_, E>) -> Result<Vec<(usize, f64)>, Error> {
+        let time = self.task.times[0] + dense.elapsed();
+        if let Err(error) = dense.series.advance() {
+            let phase = dense.series.phase();
+            let is_singular = self.instant(&phase).bracket < SINGULAR;
+            return Err(if is_singular {
+                self.not_unique(time, &phase)
+            } else {
+                error
+            });
+        }
+        self.is_fresh
+            .set(self.is_fresh.get() && dense.series.is_fresh());
+        let mut changed = Vec::new();
+        for (number, limit) in dense.limits.iter().enumerate() {
+            let (direction, (along, size)) = match limit {
+                Limit::Slip => (&self.direction, dense.series.slip_before()),
+                Limit::Turn => (&self.turn, dense.series.turn_before()),
+                _ => continue,
+            };
+            direction.set(along);
+            changed.push((number, size));
+        }
+        Ok(changed)
+    }
+
     /// Follow one regime to its end.
     fn follow<E: From<Error>>(
         &self,
@@ -400,29 +429,12 @@ impl Rolling<'_> {
         let (start, span) = (times[0], times[times.len() - 1] - times[0]);
         dense.limits = self.limits(regime);
         let mut limits = Limits::<E>::new(self, &dense.limits);
-        let number_of = |one| dense.limits.iter().position(|limit| *limit == one);
-        let (slip_number, turn_number) = (number_of(Limit::Slip), number_of(Limit::Turn));
         let now = start + dense.elapsed();
         let mut own = EventDetector::<E>::new(&mut limits, now, phase, span, &|_| -1.0)?;
         while dense.elapsed() != span {
             let from = dense.elapsed();
-            if let Err(error) = dense.series.advance() {
-                let phase = dense.series.phase();
-                let is_singular = self.instant(&phase).bracket < SINGULAR;
-                let singular = || self.not_unique(start + from, &phase);
-                return Err(if is_singular { singular() } else { error }.into());
-            }
-            self.is_fresh
-                .set(self.is_fresh.get() && dense.series.is_fresh());
-            if let Some(number) = slip_number {
-                let (direction, speed) = dense.series.slip_before();
-                self.direction.set(direction);
-                own.set_value(number, speed);
-            }
-            if let Some(number) = turn_number {
-                let (turn, rate) = dense.series.turn_before();
-                self.turn.set(turn);
-                own.set_value(number, rate);
+            for (number, value) in self.step(dense)? {
+                own.set_value(number, value);
             }
             run.effort = dense.series.effort();
             let steps = run.effort.steps;
@@ -444,13 +456,13 @@ impl Rolling<'_> {
                     (reached, ends) = (half, Some(Reached::Cut(half)));
                 }
             } else {
-                let gone = [(slip_number, Limit::Slip), (turn_number, Limit::Turn)];
-                let gone = gone.into_iter().find(|(number, limit)| {
-                    number.is_some()
+                let ceases = [Limit::Slip, Limit::Turn];
+                let gone = ceases.into_iter().find(|limit| {
+                    dense.limits.contains(limit)
                         && !self.is_fresh.get()
                         && self.has_ceased(*limit, &dense.series, to)
                 });
-                (reached, ends) = (to, gone.map(|(_, limit)| Reached::Limit(limit, to)));
+                (reached, ends) = (to, gone.map(|limit| Reached::Limit(limit, to)));
             }
             let found = detector.search_step(dense, start, [from, reached], |step, part| {
                 let has_ended = part.event.is_some();
@@ -537,7 +549,7 @@ impl Rolling<'_> {
 /// The functions that end a regime.
 struct Limits<'a, E> {
     rolling: &'a Rolling<'a>,
-    limits: Vec<Limit>,
+    functions: Vec<Limit>,
     rules: Vec<Rule>,
     error: PhantomData<E>,
 }
@@ -561,7 +573,7 @@ impl<'a, E> Limits<'a, E> {
         });
         Self {
             rolling,
-            limits: limits.to_vec(),
+            functions: limits.to_vec(),
             rules: rules.collect(),
             error: PhantomData,
         }
@@ -576,7 +588,7 @@ impl<E> Events for Limits<'_, E> {
     }
 
     fn value(&mut self, event: usize, _: f64, phase: &Phase) -> Result<f64, E> {
-        Ok(self.rolling.value(self.limits[event], phase))
+        Ok(self.rolling.value(self.functions[event], phase))
     }
 }
 
