@@ -51,6 +51,15 @@ pub struct Run<E> {
 }
 
 /// What happens to a contact: its number stands in [`Crossing::event`] after those of the functions.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::motion::simulate::ContactEvent;
+///
+/// let words = ContactEvent::ALL.map(ContactEvent::word);
+/// assert_eq!(words, ["lift-off", "slip", "roll", "landing", "rest"]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactEvent {
     /// The normal force falls through zero.

@@ -37,8 +37,7 @@ impl Friction {
     }
 
     /// Return the coefficient of Coulomb's law, which has no force without slip; none where the force is smooth there.
-    #[must_use]
-    pub fn coulomb(&self) -> Option<f64> {
+    pub(crate) fn coulomb(&self) -> Option<f64> {
         match *self {
             Self::Coulomb(mu) if mu > 0.0 => Some(mu),
             _ => None,
