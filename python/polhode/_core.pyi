@@ -645,6 +645,14 @@ class Contact:
     def turntable(self) -> float: ...
     @property
     def lift(self) -> str: ...
+    @property
+    def law(self) -> str: ...
+    @property
+    def friction(self) -> float | None: ...
+    @property
+    def viscous(self) -> float | tuple[str, float] | None: ...
+    @property
+    def resistance(self) -> tuple[float, float, float] | None: ...
 
 @final
 class Slabs: ...
@@ -1000,10 +1008,14 @@ def region_cylinder(
 def rolling_plane(
     surface: Surface,
     *,
+    law: Literal["rolling", "sliding", "dry"] = "rolling",
+    friction: float | None = None,
+    viscous: float | tuple[Literal["normal"], float] | None = None,
+    resistance: tuple[float, float, float] | None = None,
     normal: ArrayLike = (0.0, 0.0, 1.0),
     point: ArrayLike = (0.0, 0.0, 0.0),
     turntable: float = 0.0,
-    lift: Literal["stop", "hold"] = "stop",
+    lift: Literal["stop", "fly", "hold"] = "stop",
 ) -> Contact: ...
 def surface_sphere(radius: float, center: ArrayLike = (0.0, 0.0, 0.0)) -> Surface: ...
 def surface_ellipsoid(
@@ -1063,6 +1075,7 @@ def contact_history(
     quaternion: ArrayLike,
     position: ArrayLike,
     velocity: ArrayLike,
+    phases: ArrayLike,
 ) -> dict[str, _Floats]: ...
 def contact_invariants(
     body: RigidBody,

@@ -321,7 +321,8 @@ class Invariants(NamedTuple):
     Attributes
     ----------
     energy : numpy.ndarray, shape (..., T), or None
-        Sum of kinetic and potential energy; None if the load has no potential.
+        Sum of kinetic and potential energy, less the work that a plane has done by friction or as a
+        turntable; None if the load has no potential.
     angular_momentum : numpy.ndarray, shape (..., T, 3) or (..., T), or None
         Angular momentum about the point `about`, components in space, if no torque acts. In a uniform field
         only its component along the field. None if neither is conserved.

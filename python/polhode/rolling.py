@@ -2,8 +2,8 @@
 
 A surface is fixed in the body, and its places are from the origin of the body frame. :func:`plane` makes the
 contact that :meth:`polhode.RigidBody.simulate` takes as ``contact=``. The body rolls without slipping,
-whatever force that takes; ``motion.contact`` is a :class:`ContactHistory` and says how much friction it
-needs.
+whatever force that takes, or slips, or does one after the other with dry friction. ``motion.contact`` is a
+:class:`ContactHistory` and has the force of the plane, the friction needed, the slip and more.
 
 :func:`cylinder` and :func:`cone` lie on a plane along a line. Of these, and of a homogeneous ball,
 :meth:`polhode.RigidBody.rolling_motion` computes the motion in closed form.
@@ -53,6 +53,7 @@ __all__ = [
     "ContactHistory",
     "Extreme",
     "Rattleback",
+    "Resistance",
     "RuledSurface",
     "Steady",
     "Surface",
@@ -65,6 +66,7 @@ __all__ = [
     "paraboloid",
     "plane",
     "preferred_sense",
+    "resistance",
     "sphere",
     "steady",
     "tippe_top",
@@ -72,6 +74,58 @@ __all__ = [
 ]
 
 _DOWN = (0.0, 0.0, -9.81)
+
+
+class Resistance(NamedTuple):
+    """The resistance of a plane to rolling and pivoting, made by :func:`resistance`.
+
+    Attributes
+    ----------
+    viscous : float
+    pivoting : float
+    arm : float
+    """
+
+    viscous: float = 0.0
+    pivoting: float = 0.0
+    arm: float = 0.0
+
+
+def resistance(viscous: float = 0.0, pivoting: float = 0.0, arm: float = 0.0) -> Resistance:
+    """Make a resistance to rolling and pivoting, for ``resistance=`` of :func:`plane`.
+
+    The couple on the body is ``-viscous ω_t - pivoting (ω·n) n - arm N ω_t/|ω_t|`` with the normal n of the
+    plane, the part ω_t of the angular velocity across it, and the normal force N.
+
+    Parameters
+    ----------
+    viscous, pivoting : float, optional
+        In units of torque times time; zero by default.
+    arm : float, optional
+        A length: how far ahead of the contact the normal force acts; zero by default. With an arm the body
+        must turn, and the run ends with the status "rest" where it ceases to.
+
+    Returns
+    -------
+    Resistance
+
+    Raises
+    ------
+    PolhodeError
+        From :func:`plane`, if a number is negative or not finite.
+
+    Examples
+    --------
+    A ball on grass comes to rest after ``7 a v/(5 arm g)``, since the couple slows it with ``5 arm g/(7 a)``:
+
+    >>> from polhode import loads, rolling, solids
+    >>> grass = rolling.plane(rolling.sphere(0.05), resistance=rolling.resistance(arm=0.005))
+    >>> gravity = loads.uniform_gravity((0, 0, -9.81))
+    >>> motion = solids.sphere(0.05, mass=0.9).simulate([0, 9], omega=(0, 40, 0), load=gravity, contact=grass)
+    >>> motion.status, motion.events.t.round(6)
+    ('rest', array([2.85...]))
+    """
+    return Resistance(float(viscous), float(pivoting), float(arm))
 
 
 class Steady(NamedTuple):

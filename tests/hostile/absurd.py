@@ -310,8 +310,9 @@ OTHERS: dict[str, Callable[[], object]] = {
             CONTACT,
             _core.uniform_gravity(WEIGHT),
             *(np.broadcast_to(x, (ABSURD, len(x))) for x in (V, Q, V, V)),
+            *phases,
         )
-        for name in ("contact_history", "contact_invariants")
+        for name, phases in (("contact_history", (0.0,)), ("contact_invariants", ()))
     },
     "MassAccumulator.add": lambda: _core.MassAccumulator().add(
         np.broadcast_to(1.0, ABSURD), np.broadcast_to(1.0, (ABSURD, 3))

@@ -7,7 +7,9 @@ In axes of space, with r from C to the contact and the velocity u = Ω n×(P −
 are nine linear equations for a, α and F: the third is the time derivative of the constraint v + ω×r = u. The
 contact is where the outward normal of the surface is −n. Its rate ṙ = ω×r + R dp/dt is a difference quotient
 of the contact in twice the digits, so that no formula for it is shared with the package. `RollingBody.solve`
-solves them in 30 digits. `motion` integrates them in extended doubles (64 bits), the rate of the contact by a
+solves them in 30 digits. For a body that slips, `SlidingBody` has the force N along n as unknown
+in place of F, and n·(a + α×r + ω×ṙ) = 0 in place of the third. `motion` integrates them in extended doubles
+(64 bits), the rate of the contact by a
 complex step, with Gragg's midpoint rule and Richardson's extrapolation, which know nothing of Taylor series.
 """
 
@@ -26,9 +28,9 @@ import mpmath
 import numpy as np
 from mpmath import mp, mpf
 
-__all__ = ["RollingBody", "cases", "motion"]
+__all__ = ["RollingBody", "SlidingBody", "cases", "motion"]
 
-TABLE = Path(__file__).parent / "tables" / "rolling.json"
+TABLES = Path(__file__).parent / "tables"
 DIGITS = 30
 """Of the numbers that the equations are solved in; differences are computed in twice as many."""
 LONG = np.longdouble
@@ -175,6 +177,59 @@ class RollingBody:
         return [*spin, *found[:3], *velocity], found[3:], velocity
 
 
+class SlidingBody(RollingBody):
+    """A case with friction, ("coulomb", μ), ("normal", k) or ("plain", c), and a velocity of C."""
+
+    def velocity(self, state: Sequence[mpf]) -> Vector:
+        """Return the velocity at the start, without what it has along the normal at the contact."""
+        given = [mpf(x) for x in self.case["velocity"]]
+        slip = self.slip(state, given)
+        return add(given, times(-dot(slip, self.normal), self.normal))
+
+    def slip(self, state: Sequence[mpf], velocity: Sequence[mpf]) -> Vector:
+        arm = self.arm(state[:4])
+        plane = self.plane_velocity(add(state[7:10], arm))
+        return add(velocity, cross(state[4:7], arm), times(mpf(-1), plane))
+
+    def solve_slipping(self, state: Sequence[mpf], velocity: Sequence[mpf]) -> tuple[Vector, Vector, Vector]:
+        """Return the accelerations α and a, and the force of the plane."""
+        q, omega = state[:4], state[4:7]
+        spin = quaternion_rate(q, omega)
+        arm = self.arm(q)
+        with mp.workdps(2 * DIGITS):
+            h = mpf(10) ** -DIGITS
+            ahead, behind = (self.arm([a + s * b for a, b in zip(q, spin, strict=True)]) for s in (h, -h))
+            arm_rate = [(a - b) / (2 * h) for a, b in zip(ahead, behind, strict=True)]
+        frame = rotation(q)
+        rows_of_inertia = [mul(self.inertia, frame[i]) for i in range(3)]
+        inertia = [[dot(row, frame[j]) for j in range(3)] for row in rows_of_inertia]
+        kind, coefficient = self.case["friction"][0], mpf(self.case["friction"][1])
+        slip = self.slip(state, velocity)
+        slip = add(slip, times(-dot(slip, self.normal), self.normal))
+        push, drag = list(self.normal), [mpf(0)] * 3
+        if kind == "coulomb":
+            push = add(push, times(-coefficient, unit(slip)))
+        elif kind == "normal":
+            push = add(push, times(-coefficient, slip))
+        else:
+            drag = times(-coefficient, slip)
+        # The unknowns are α, a and N: I α − N r×push = r×drag − ω×Iω;  m a − N push = m g + drag;
+        # n·(a + α×r) = −n·ω×ṙ.
+        rows = [[mpf(0)] * 8 for _ in range(7)]
+        torque = add(cross(arm, drag), times(mpf(-1), cross(omega, mul(inertia, omega))))
+        by_force, lever = cross(arm, push), cross(arm, self.normal)
+        for i in range(3):
+            for j in range(3):
+                rows[i][j] = inertia[i][j]
+            rows[i][6], rows[i][7] = -by_force[i], torque[i]
+            rows[3 + i][3 + i], rows[3 + i][6] = self.mass, -push[i]
+            rows[3 + i][7] = self.mass * self.gravity[i] + drag[i]
+            rows[6][i], rows[6][3 + i] = lever[i], self.normal[i]
+        rows[6][7] = -dot(self.normal, cross(omega, arm_rate))
+        found = eliminate(rows)
+        return found[:3], found[3:6], add(times(found[6], push), drag)
+
+
 def unit4(q: Sequence[mpf]) -> list[mpf]:
     size = mpmath.sqrt(sum((x * x for x in q), mpf(0)))
     return [x / size for x in q]
@@ -294,6 +349,63 @@ class Extended:
         return table[-1], np.max(np.abs(table[-2] - last_row[-1]), axis=1)
 
 
+class ExtendedSliding(Extended):
+    """Cases of bodies that slip: the state has the velocity of C too."""
+
+    def __init__(self, cases: Sequence[dict[str, Any]]) -> None:
+        super().__init__(cases)
+        kinds = [case["friction"][0] for case in cases]
+        coefficient = np.array([case["friction"][1] for case in cases], dtype=LONG)
+        self.laws = [
+            np.where([kind == one for kind in kinds], coefficient, LONG(0))[:, None]
+            for one in ("coulomb", "normal", "plain")
+        ]
+        with mp.workdps(DIGITS):
+            bodies = [SlidingBody(case) for case in cases]
+            starts = [[mpmath.nstr(x, 24) for x in body.velocity(body.start())] for body in bodies]
+        velocity = np.array([[LONG(x) for x in row] for row in starts])
+        self.start = np.concatenate([self.start, velocity], axis=1)
+
+    def rates(self, state: Wide) -> Wide:
+        """Return the rates of (q, ω in space, C, its velocity)."""
+        q, omega, place, velocity = state[:, :4], state[:, 4:7], state[:, 7:10], state[:, 10:]
+        frame = rotations(q)
+        normal = np.einsum("nij,ni->nj", frame, self.normal)
+        turned = np.einsum("nij,ni->nj", frame, omega)
+        found = contacts(self.surfaces, normal + 1j * (STEP * product(normal, turned)))
+        arm = np.einsum("nij,nj->ni", frame, found.real - self.center)
+        arm_rate = product(omega, arm) + np.einsum("nij,nj->ni", frame, found.imag / STEP)
+        inertia = np.einsum("nij,njk,nlk->nil", frame, self.inertia, frame)
+        plane = self.turntable[:, None] * product(self.normal, place + arm - self.point)
+        slip = velocity + product(omega, arm) - plane
+        slip = slip - inner(slip, self.normal)[:, None] * self.normal
+        coulomb, by_normal, plain = self.laws
+        push = self.normal - coulomb * directions(slip) - by_normal * slip
+        drag = -plain * slip
+        columns = [inertia[:, :, i] for i in range(3)]
+        volume = inner(columns[0], product(columns[1], columns[2]))
+
+        def solved(right: Wide) -> Wide:
+            parts = [inner(right, product(columns[i - 2], columns[i - 1])) / volume for i in range(3)]
+            return np.stack(parts, axis=1)
+
+        mass = self.mass[:, None]
+        by_push = solved(product(arm, push))
+        without = solved(product(arm, drag) - product(omega, applied(inertia, omega)))
+        lever = product(arm, self.normal)
+        bracket = inner(self.normal, push / mass) + inner(lever, by_push)
+        free = inner(self.normal, self.gravity + drag / mass + product(omega, arm_rate)) + inner(
+            lever, without
+        )
+        pressure = (-free / bracket)[:, None]
+        turn = without + pressure * by_push
+        acceleration = self.gravity + (pressure * push + drag) / mass
+        spin = (product(omega, q[:, :3]) + q[:, 3:] * omega) / 2
+        return np.concatenate(
+            [spin, -inner(omega, q[:, :3])[:, None] / 2, turn, velocity, acceleration], axis=1
+        )
+
+
 def inner(a: Wide, b: Wide) -> Wide:
     return np.sum(a * b, axis=-1)
 
@@ -352,8 +464,9 @@ def contacts(surfaces: Sequence[dict[str, Any]], normal: Wide) -> Wide:
 
 
 def motion(case: dict[str, Any], steps: int = 256) -> Wide:
-    """Return the state of a case at its time: (q, ω in space, C)."""
-    return Extended([case]).ends(steps)[0][0]
+    """Return the state of a case at its time: (q, ω in space, C), and the velocity of C if it slips."""
+    kind = ExtendedSliding if "friction" in case else Extended
+    return kind([case]).ends(steps)[0][0]
 
 
 def draw(number: int, rng: random.Random) -> dict[str, Any]:
@@ -419,45 +532,70 @@ def rotations_of(case: dict[str, Any]) -> float:
     return float(case["t"] * math.hypot(*case["omega"]) / (2 * math.pi))
 
 
+def slipping(number: int, case: dict[str, Any], rng: random.Random) -> dict[str, Any]:
+    """Return the case with half the spin, so that the plane need not pull, friction and a slip that lasts."""
+    friction = [("coulomb", 0.02), ("normal", 0.1), ("plain", 0.6)][number // 5 % 3]
+    case = case | {"omega": [0.5 * x for x in case["omega"]]}
+    with mp.workdps(DIGITS):
+        body = RollingBody(case)
+        _, _, rolling = body.solve(body.start())
+    angle = rng.uniform(0, 2 * math.pi)
+    slip = [5 * math.cos(angle), 5 * math.sin(angle), 0.0]
+    normal = [float(x) for x in body.normal]
+    slip = [s - dot(slip, normal) * n for s, n in zip(slip, normal, strict=True)]
+    velocity = [float(v) + s for v, s in zip(rolling, slip, strict=True)]
+    return case | {"friction": friction, "velocity": velocity}
+
+
+def known(drawn: list[dict[str, Any]], kind: type[Extended], most: int = MOST_STEPS) -> None:
+    """Add the ends of cases with one kind of surface, as far as they are known."""
+    left, steps = drawn, 64
+    before, _ = kind(left).ends(steps)
+    while left:
+        steps *= 2
+        extended = kind(left)
+        now, _ = extended.ends(steps)
+        off = np.max(np.abs(now - before), axis=1)
+        # What is not known of the start grows with the rotations at least.
+        is_known = off < SETTLED * np.array([1 + rotations_of(case) for case in left])
+        is_known &= extended.least_margin > LEAST_MARGIN
+        print(kind, steps, np.array(off, dtype=float), file=sys.stderr)
+        for case, end in zip(compress(left, is_known), now[is_known], strict=True):
+            case["end"] = [np.format_float_scientific(x, unique=False, precision=20) for x in end]
+        is_left = ~is_known & np.isfinite(np.array(now, dtype=float)).all(axis=1)
+        is_left &= extended.least_margin > 0
+        left, before = list(compress(left, is_left)), now[is_left]
+        left = left if steps < most else []
+
+
 def main() -> None:
-    """Write the table, which takes minutes; with numbers of kinds of surfaces, print their part."""
-    rng = random.Random(47)
-    drawn = [draw(number, rng) for number in range(SHORT)]
-    rng = random.Random(47)
-    drawn += [longer(number, draw(number, rng)) for number in range(LONGER)]
-    for kind in map(int, sys.argv[1:]) if sys.argv[1:] else range(5):
-        left = drawn[kind::5]
-        steps = 64
-        before, _ = Extended(left).ends(steps)
-        while left:
-            steps *= 2
-            extended = Extended(left)
-            now, _ = extended.ends(steps)
-            off = np.max(np.abs(now - before), axis=1)
-            # What is not known of the start grows with the rotations at least.
-            is_known = off < SETTLED * np.array([1 + rotations_of(case) for case in left])
-            is_known &= extended.least_margin > LEAST_MARGIN
-            print(kind, steps, np.array(off, dtype=float), file=sys.stderr)
-            for case, end in zip(compress(left, is_known), now[is_known], strict=True):
-                case["end"] = [np.format_float_scientific(x, unique=False, precision=20) for x in end]
-            is_left = ~is_known & np.isfinite(np.array(now, dtype=float)).all(axis=1)
-            is_left &= extended.least_margin > 0
-            left, before = list(compress(left, is_left)), now[is_left]
-            left = left if steps < MOST_STEPS else []
-    # Of what comes near to lying flat too little is known.
-    ended = (case for case in drawn if "end" in case)
-    found = [case for case in ended if np.isfinite(np.array(case["end"], dtype=float)).all()]
-    text = json.dumps(found, indent=1) + "\n"
-    if sys.argv[1:]:
-        print(text)
-    else:
-        TABLE.write_text(text, encoding="utf-8")
+    """Write the tables, or the one that is named, which takes minutes."""
+    for name in sys.argv[1:] or ("rolling", "sliding"):
+        rng = random.Random(47)
+        drawn = [draw(number, rng) for number in range(SHORT)]
+        if name == "rolling":
+            rng = random.Random(47)
+            drawn += [longer(number, draw(number, rng)) for number in range(LONGER)]
+        else:
+            drawn = [slipping(number, case, rng) for number, case in enumerate(drawn)]
+            drawn += [longer(number, case) for number, case in enumerate(drawn[:15])]
+        for kind in range(5):
+            if name == "rolling":
+                known(drawn[kind::5], Extended)
+            else:
+                known(drawn[kind::5], ExtendedSliding, MOST_STEPS // 4)
+            # Of what comes near to lying flat too little is known.
+            ended = (case for case in drawn if "end" in case)
+            found = [case for case in ended if np.isfinite(np.array(case["end"], dtype=float)).all()]
+            (TABLES / f"{name}.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
 
 
 def cases() -> list[dict[str, Any]]:
-    """Return the cases of the table."""
-    known: list[dict[str, Any]] = json.loads(TABLE.read_text(encoding="utf-8"))
-    return known
+    """Return the cases of the tables, first of bodies that roll, then of those that slip."""
+    found: list[dict[str, Any]] = []
+    for name in ("rolling", "sliding"):
+        found += json.loads((TABLES / f"{name}.json").read_text(encoding="utf-8"))
+    return found
 
 
 if __name__ == "__main__":

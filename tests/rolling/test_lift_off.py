@@ -1,4 +1,4 @@
-"""Lift-off of bodies drawn at random: none missed, none invented, against a contact that holds."""
+"""Lift-off of bodies drawn at random: none missed, none invented; and free flight until they touch again."""
 
 from __future__ import annotations
 
@@ -95,3 +95,70 @@ def test_lift_off_is_not_missed_and_not_invented(count: int) -> None:
         slope = (before - after) / (2 * step)
         assert abs(at) <= slope * time * 1e-12 + ALLOWED * WEIGHT, number
     assert min(lifted, rolled) > count / 10
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_a_disk_flies_and_lands(friction: float) -> None:
+    """C falls freely from the lift-off on, and the disk turns with constant rate: z − e cos φ − a = 0."""
+    e = 0.9
+    body = RigidBody.from_principal(1.0, (0.045, 0.045, 0.09), center_of_mass=(0, -e, 0))
+    upright = (0.0, np.sqrt(0.5), np.sqrt(0.5), 0.0)
+    law: Any = {"law": "dry", "friction": friction} if friction else {"law": "sliding", "friction": 0.0}
+    contact = rolling.plane(rolling.disk(1.0), lift="fly", **law)
+    t = np.linspace(0, 4, 401)
+    found: Any = body.simulate(t, (0, 0, 30.0), upright, load=LOAD, contact=contact, rtol=2.3e-15)
+    assert found.status == "landing"
+    assert found.events.kind[-2:].tolist() == ["lift-off", "landing"]
+    off, on = found.events.t[-2:]
+    height, climb = found.events.position[-2][2], found.events.velocity[-2][2]
+    rate = found.events.omega[-2][2]
+    angle = np.arctan2(-climb / (e * rate), (height - 1) / e)
+
+    def gap(time: float) -> float:
+        z = height + climb * time - WEIGHT * time**2 / 2
+        return float(z - e * np.cos(angle + rate * time) - 1)
+
+    low, high = 0.01, 0.01
+    while gap(high) > 0:
+        high += 0.001
+    while 0.5 * (low + high) not in (low, high):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if gap(middle) > 0 else (low, middle)
+    assert on - off == pytest.approx(low, abs=1e-12)
+    flies = (t > off) & (t < on)
+    assert flies.sum() > 3
+    assert set(found.contact.phase[flies]) == {"flying"}
+    assert "flying" not in found.contact.phase[t < off]
+    assert not found.contact.force[flies].any()
+    assert not found.contact.power[flies].any()
+    gaps = [gap(time) for time in t[flies] - off]
+    assert np.max(np.abs(found.contact.residual[flies, 0] - gaps)) < 1e-12
+    assert found.invariants().energy_drift < 1e-14
+    assert np.isnan(found.omega[t > on]).all()
+
+
+def test_bodies_of_every_kind_fly_under_every_law() -> None:
+    rng = np.random.default_rng(3)
+    landed = 0
+    for number in range(12):
+        body, surface, omega, attitude = draw(rng)
+        law: Any = [{}, {"law": "dry", "friction": 0.3}, {"law": "sliding", "viscous": 0.2}][number % 3]
+        contact = rolling.plane(surface, lift="fly", **law)
+        try:
+            found: Any = body.simulate(
+                np.linspace(0, 3, 301), omega, attitude, load=LOAD, contact=contact, rtol=1e-14
+            )
+        except ContactError as error:
+            assert "lies flat" in str(error)  # noqa: PT017
+            continue
+        there = ~np.isnan(found.omega[:, 0])
+        assert found.contact.residual[there, 0].min() > -1e-13
+        assert found.invariants().energy_drift < 1e-13
+        if found.status == "landing":
+            landed += 1
+            assert found.events.kind[-1] == "landing"
+            last = body.simulate(
+                [0, found.events.t[-1]], omega, attitude, load=LOAD, contact=contact, rtol=1e-14
+            )
+            assert abs(last.contact.residual[-1, 0]) < 1e-12 or np.isnan(last.omega[-1, 0])
+    assert landed > 2

@@ -127,7 +127,7 @@ def test_a_ball_on_a_turntable_goes_in_circles(tilt: float) -> None:
     acceleration = 1j * slow * (start - drift) * np.exp(1j * slow * t)
     weight = 3.0 * np.array([0, 0, -g]) @ np.array([one, two]).T
     assert np.allclose(force[:, 0] + 1j * force[:, 1], 3.0 * acceleration - complex(*weight), atol=1e-10)
-    assert found.invariants().energy is None
+    assert found.invariants().energy_drift < 1e-13  # less the work of the turntable
 
 
 def test_a_rolling_coin_precesses_steadily() -> None:
@@ -344,7 +344,7 @@ def test_other_arguments_that_are_refused() -> None:
     plane: Any = rolling.plane
     with pytest.raises(ValueError, match="surface: expected a surface"):
         plane(0.5)
-    with pytest.raises(ValueError, match='lift: expected "stop" or "hold"'):
+    with pytest.raises(ValueError, match='lift: expected "stop", "fly" or "hold"'):
         plane(rolling.sphere(1), lift="jump")
     with pytest.raises(PolhodeError, match="radius must be a positive length"):
         rolling.sphere(0.0)

@@ -158,6 +158,35 @@ def test_tippe_tops_end_at_a_minimum_of_the_energy(ratio: float, below: float, s
         assert spin > found.upright_unstable_beyond * (1 - 1e-9)
 
 
+def simulated_end(ratio: float, below: float, spin: float, end: float) -> tuple[float, float]:
+    """Return the cosine of the inclination at which a tippe top with friction ends, and of its verdict."""
+    top = RigidBody.from_principal(0.006, (8e-7, 8e-7, 8e-7 * ratio), center_of_mass=(0, 0, -below))
+    surface = rolling.sphere(0.02)
+    contact = rolling.plane(surface, law="sliding", viscous=("normal", 1.0), lift="hold")
+    load, tilted = loads.uniform_gravity(GRAVITY), (np.sin(0.01), 0, 0, np.cos(0.01))
+    found = top.simulate([0, end], (0, 0, spin), tilted, load=load, contact=contact, rtol=1e-10)
+    x, y = found.quaternion[-1][:2]
+    return float(1 - 2 * (x * x + y * y)), rolling.tippe_top(top, surface, spin, GRAVITY).cos_theta
+
+
+@pytest.mark.parametrize(
+    ("ratio", "below", "spin"),
+    [(1.05, 0.004, 60.0), (0.95, 0.004, 2.0), (1.2, 0.006, 60.0), (0.95, 0.002, 60.0)],
+)
+def test_tippe_tops_with_friction_end_as_their_verdict_says(ratio: float, below: float, spin: float) -> None:
+    found, verdict = simulated_end(ratio, below, spin, 40.0)
+    assert found == pytest.approx(verdict, abs=0.01)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("ratio", [0.8, 0.95, 1.05, 1.2])
+@pytest.mark.parametrize("below", [0.002, 0.004, 0.006])
+@pytest.mark.parametrize("spin", [2.0, 20.0, 60.0, 250.0])
+def test_48_tippe_tops_end_as_their_verdict_says(ratio: float, below: float, spin: float) -> None:
+    found, verdict = simulated_end(ratio, below, spin, 200.0)
+    assert found == pytest.approx(verdict, abs=0.01)
+
+
 def test_what_is_refused() -> None:
     brick = solids.box((1, 2, 3), mass=1.0)
     with pytest.raises(PolhodeError, match="surface of revolution"):

@@ -1,4 +1,4 @@
-"""The contact of a body that rolls: what the plane does to it at every time."""
+"""The contact of a body that rolls or slips: what the plane does to it at every time."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Extreme(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class ContactHistory:
-    """The contact of a body that rolls on a plane, at every time of its motion.
+    """The contact of a body that rolls or slips on a plane, at every time of its motion.
 
     Attributes
     ----------
@@ -47,17 +47,23 @@ class ContactHistory:
         Force of the plane on the body, components in space.
     normal_force : numpy.ndarray, shape (..., T)
         Its component along the normal.
+    couple : numpy.ndarray, shape (..., T, 3)
+        Couple of the plane on the body, components in space: the resistance to rolling and pivoting.
     friction_needed : numpy.ndarray, shape (..., T)
         The force across the normal over that along it. The body rolls if the coefficient of friction is
         larger.
     slip : numpy.ndarray, shape (..., T, 3)
-        Velocity of the body at the point of contact less that of the plane, in space: rounding errors of
-        zero.
+        Velocity of the body at the point of contact less that of the plane, in space; of a body that rolls
+        rounding errors of zero.
     power : numpy.ndarray, shape (..., T)
-        Power of the force; zero for a plane at rest.
+        Power of force and couple; zero for a body that rolls on a plane at rest without resistance.
+    work : numpy.ndarray, shape (..., T)
+        Work of force and couple since the start, integrated with the motion.
+    phase : numpy.ndarray of str, shape (..., T)
+        "rolling", "sliding" or "flying"; "" after the end of a run.
     residual : numpy.ndarray, shape (..., T, 2)
         Height of the contact over the plane, relative to the size of the surface, and slip, relative to the
-        size times the angular speed.
+        size times the angular speed; of a body that slips the part of the slip along the normal.
     largest_friction_needed, smallest_normal_force : Extreme
         Over the whole run, located between the times too: value and time. Where the plane would have to pull,
         the friction needed is inf.
@@ -83,9 +89,12 @@ class ContactHistory:
     point_in_body: Floats
     force: Floats
     normal_force: Floats
+    couple: Floats
     friction_needed: Floats
     slip: Floats
     power: Floats
+    work: Floats
+    phase: NDArray[np.str_]
     residual: Floats
     largest_friction_needed: Extreme
     smallest_normal_force: Extreme

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
@@ -124,6 +124,10 @@ def _never_called(*_: Any) -> float:
     raise TypeError("an event of a wheel is found by simulate, and has no function to call")
 
 
+_KINDS: Final = np.array(["function", "lift-off", "slip", "roll", "landing", "rest"])
+"""By the number of an event with the other sign, from zero on."""
+
+
 class _Events(NamedTuple):
     row: NDArray[np.int64]
     event: NDArray[np.int64]
@@ -142,7 +146,9 @@ class Events(_Events):
     row : numpy.ndarray of int, shape (n,)
         Index of the body in the flattened stack, see :func:`numpy.unravel_index`.
     event : numpy.ndarray of int, shape (n,)
-        Index of the event function.
+        Index of the event function; negative for an event of a contact, see `kind`.
+    kind : numpy.ndarray of str, shape (n,)
+        "function", or what happens to a contact: "lift-off", "slip", "roll", "landing" or "rest".
     t : numpy.ndarray, shape (n,)
     omega : numpy.ndarray, shape (n, 3)
     quaternion : numpy.ndarray, shape (n, 4)
@@ -153,6 +159,11 @@ class Events(_Events):
     """
 
     states: Mapping[str, Floats] = MappingProxyType({})
+
+    @property
+    def kind(self) -> NDArray[np.str_]:
+        """Return what each event is, in a word."""
+        return _KINDS[np.maximum(-self.event, 0)]
 
     def __repr__(self) -> str:
         count = len(self.t)

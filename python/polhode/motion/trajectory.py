@@ -5,7 +5,7 @@ from __future__ import annotations
 import operator
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, cast
+from typing import TYPE_CHECKING, Any, Final, Literal, cast
 
 import numpy as np
 
@@ -74,6 +74,10 @@ class Origin:
     plane: bool = False
 
 
+_CONTACT_PHASES: Final = np.array(["rolling", "sliding", "flying", ""])
+"""By their numbers; the last for states that are not known."""
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Trajectory(metaclass=ClassWithHints):
     """The motion of one body or of a stack at the times asked for.
@@ -99,8 +103,10 @@ class Trajectory(metaclass=ClassWithHints):
         What acted on the body.
     status : str or numpy.ndarray of str, shape (...)
         How the run of each body ended: ``"complete"``; ``"event"``, at a terminal event; ``"lift-off"``,
-        where a body that rolls leaves the plane; ``"failed"``; ``"stopped"``, by Ctrl-C; or ``"not run"``,
-        since another body failed first. States after the end are NaN.
+        where a body leaves its plane, ``"landing"``, where it touches again, ``"roll"``, where its slip
+        ceases and the law of contact needs one, or ``"rest"``, where it ceases to turn and its resistance
+        needs that; ``"failed"``; ``"stopped"``, by Ctrl-C; or ``"not run"``, since another body failed first.
+        States after the end are NaN.
     events : Events
         The passages of the event functions through zero, as a table.
     failures : tuple of PolhodeError
@@ -147,6 +153,7 @@ class Trajectory(metaclass=ClassWithHints):
     _origin: Origin = field(default=Origin(), init=False)
     _contact: _core.Contact | None = field(default=None, init=False)
     _contact_extremes: tuple[Floats, Floats] | None = field(default=None, init=False)
+    _contact_states: tuple[Floats, Floats] | None = field(default=None, init=False)
 
     @classmethod
     def _of_run(cls, known: dict[str, Any]) -> Trajectory:
@@ -188,15 +195,19 @@ class Trajectory(metaclass=ClassWithHints):
 
     @cached_property
     def contact(self) -> ContactHistory | None:
-        """Return the contact of a body that rolls: force, friction needed and more; None without one."""
+        """Return the contact of a body on a plane: force, friction needed and more; None without one."""
         if self._contact is None or self._contact_extremes is None:
             return None
         load = None if self.load is None else self._over_time(self.load)
-        known = _core.contact_history(
-            self._bodies(), self._contact, load, self.omega, self.quaternion, self.position, self.velocity
-        )
+        phases, work = self._contact_states or (np.zeros(self.omega.shape[:-1]),) * 2
+        states = (self.omega, self.quaternion, self.position, self.velocity)
+        known = _core.contact_history(self._bodies(), self._contact, load, *states, phases)
+        known_until_here = ~np.isnan(self.omega[..., 0])
+        words = _CONTACT_PHASES[np.where(known_until_here, phases, -1.0).astype(int)]
         most, least = (Extreme(*np.moveaxis(one, -1, 0)) for one in self._contact_extremes)
-        return ContactHistory(**known, largest_friction_needed=most, smallest_normal_force=least)
+        return ContactHistory(
+            **known, work=work, phase=words, largest_friction_needed=most, smallest_normal_force=least
+        )
 
     @cached_property
     def rotation(self) -> Rotation:
@@ -295,10 +306,11 @@ class Trajectory(metaclass=ClassWithHints):
         (True, True)
         """
         kinetic, potential = self.kinetic_energy().total, self._potential()
-        if self._contact is not None and self._contact.turntable:
-            potential = None  # the plane does work
+        work = 0.0 if self._contact_states is None else self._contact_states[1]
+        if self._contact is not None and self._contact.turntable and self._contact_states is None:
+            potential = None  # the plane does work, which a closed form does not have
         spin = self.angular_momentum().spin
-        energy = None if potential is None else kinetic + potential
+        energy = None if potential is None else kinetic + potential - work
         kept = self._kept_directions()
         along = None
         if kept is not None:
@@ -314,7 +326,7 @@ class Trajectory(metaclass=ClassWithHints):
         return Invariants(
             energy,
             along,
-            None if potential is None else relative_drift(kinetic + potential, kinetic + np.abs(potential)),
+            None if energy is None else relative_drift(energy, kinetic + np.abs(potential)),
             None if along is None else relative_drift(along, lengths(spin)),
             **self._kept_by_rolling(relative_drift),
         )
@@ -551,10 +563,11 @@ class Trajectory(metaclass=ClassWithHints):
         -------
         numpy.ndarray, shape (..., T, 3)
         """
-        torque = self.torque()
-        if self.contact is not None:
-            arm = self.contact.point_in_body - self._reference()
-            torque = torque + np.cross(arm, _core.rotate(self.quaternion, self.contact.force, inverse=True))
+        torque, contact = self.torque(), self.contact
+        if contact is not None:
+            arm = contact.point_in_body - self._reference()
+            torque = torque + np.cross(arm, _core.rotate(self.quaternion, contact.force, inverse=True))
+            torque += _core.rotate(self.quaternion, contact.couple, inverse=True)
         return self._bodies().angular_acceleration(self.omega, torque, about=self._reference())
 
     def potential_energy(self) -> Floats:
@@ -764,7 +777,7 @@ class Trajectory(metaclass=ClassWithHints):
                     f"body.simulate(t, **motion.state()._asdict() | {{{name!r}: ...}})"
                 )
         given = state._asdict() | {"about": about}
-        if self.pivoted or self._contact is not None:
+        if self.pivoted or (self._contact is not None and self._contact.law == "rolling"):
             del given["velocity"]
         given["contact"] = self._contact
         first = float(self.t.flat[0]) if self._origin.start is None else self._origin.start

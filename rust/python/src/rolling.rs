@@ -10,7 +10,8 @@ use polhode::motion::rolling::invariants::{self, ContactInvariants};
 use polhode::motion::rolling::rolling_motion::Outside;
 use polhode::motion::rolling::steady::{Rate, Upright, critical_rate, modes, steady, tippe_top};
 use polhode::motion::rolling::{
-    Contact, LiftOff, RollingMotion, RollingState, RuledSurface, Surface, force,
+    Contact, ContactPhase, Friction, Law, LiftOff, Resistance, RollingMotion, RollingState,
+    RuledSurface, Surface, force,
 };
 use polhode::motion::simulate::gravity_alone;
 use polhode::motion::state::Phase;
@@ -696,7 +697,15 @@ const STATES_AT_ONCE: usize = 1 << 16;
 /// turntable : float
 ///     Rate of the plane about `normal` through `point`.
 /// lift : str
-///     What follows when the normal force falls through zero: "stop" or "hold".
+///     What follows when the normal force falls through zero: "stop", "fly" or "hold".
+/// law : str
+///     "rolling", "sliding" or "dry".
+/// friction : float or None
+///     Coefficient of Coulomb's friction.
+/// viscous : float, tuple or None
+///     Coefficient of viscous friction.
+/// resistance : Resistance or None
+///     Resistance to rolling and pivoting.
 ///
 /// Examples
 /// --------
@@ -736,8 +745,56 @@ impl PyContact {
     fn lift(&self) -> &'static str {
         match self.contact.lift {
             LiftOff::Stop => "stop",
+            LiftOff::Fly => "fly",
             LiftOff::Hold => "hold",
         }
+    }
+
+    /// Return the law of the force of the plane.
+    #[getter]
+    fn law(&self) -> &'static str {
+        match self.contact.law {
+            Law::Rolling => "rolling",
+            Law::Sliding(_) => "sliding",
+            Law::Dry(_) => "dry",
+        }
+    }
+
+    /// Return the coefficient of Coulomb's friction; None without it.
+    #[getter]
+    fn friction(&self) -> Option<f64> {
+        match self.contact.law {
+            Law::Dry(mu) | Law::Sliding(Friction::Coulomb(mu)) => Some(mu),
+            _ => None,
+        }
+    }
+
+    /// Return the coefficient of viscous friction as it was given; None without it.
+    #[getter]
+    fn viscous<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        Ok(match self.contact.law {
+            Law::Sliding(Friction::Viscous(c)) => Some(c.into_pyobject(py)?.into_any()),
+            Law::Sliding(Friction::ViscousNormal(k)) => {
+                Some(("normal", k).into_pyobject(py)?.into_any())
+            }
+            _ => None,
+        })
+    }
+
+    /// Return the resistance to rolling and pivoting; None without one.
+    #[getter]
+    fn resistance<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let Resistance {
+            viscous,
+            pivoting,
+            arm,
+        } = self.contact.resistance;
+        if !self.contact.resistance.acts() {
+            return Ok(None);
+        }
+        (py.import("polhode.rolling")?.getattr("Resistance")?)
+            .call1((viscous, pivoting, arm))
+            .map(Some)
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
@@ -745,8 +802,21 @@ impl PyContact {
         let [normal, point] = [self.contact.normal.into_inner(), self.contact.point]
             .map(|vector| format!("{:?}", vector.as_slice()));
         let (turntable, lift) = (self.contact.turntable, self.lift());
+        let law = match self.contact.law {
+            Law::Rolling => String::new(),
+            _ => format!("law='{}', ", self.law()),
+        };
+        let friction = match (self.friction(), self.viscous(py)?) {
+            (Some(mu), _) => format!("friction={mu:?}, "),
+            (_, Some(viscous)) => format!("viscous={}, ", viscous.repr()?),
+            _ => String::new(),
+        };
+        let resistance = match self.resistance(py)? {
+            Some(resistance) => format!("resistance=rolling.{}, ", resistance.repr()?),
+            None => String::new(),
+        };
         Ok(format!(
-            "rolling.plane({surface}, normal={normal}, point={point}, turntable={turntable:?}, lift='{lift}')"
+            "rolling.plane({surface}, {law}{friction}{resistance}normal={normal}, point={point}, turntable={turntable:?}, lift='{lift}')"
         ))
     }
 
@@ -761,31 +831,103 @@ impl PyContact {
             self.point(py)?,
             self.contact.turntable,
             self.lift(),
+            self.law(),
+            self.friction(),
+            self.viscous(py)?,
+            self.resistance(py)?,
         );
         Ok((restore, parts.into_pyobject(py)?))
     }
 
     /// Make the contact that `__reduce__` took apart; for pickle.
     #[staticmethod]
+    #[expect(clippy::too_many_arguments, reason = "arguments in Python")]
     fn _from_parts(
         surface: &Bound<'_, PySurface>,
         normal: &Bound<'_, PyAny>,
         point: &Bound<'_, PyAny>,
         turntable: f64,
         lift: &str,
+        law: &str,
+        friction: Option<f64>,
+        viscous: Option<&Bound<'_, PyAny>>,
+        resistance: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let normal = single(read(normal, "normal")?, "normal")?;
         let point = single(read(point, "point")?, "point")?;
-        make_contact(surface, normal, point, turntable, lift)
+        let law = read_law(law, friction, viscous)?;
+        let resistance = read_resistance(resistance)?;
+        make_contact(surface, [normal, point], turntable, lift, (law, resistance))
     }
 }
 
-/// Make the contact of a surface that rolls on a plane without slipping.
+/// The resistance to rolling and pivoting.
+fn read_resistance(resistance: Option<&Bound<'_, PyAny>>) -> PyResult<Resistance> {
+    let Some(resistance) = resistance.filter(|given| !given.is_none()) else {
+        return Ok(Resistance::default());
+    };
+    let (viscous, pivoting, arm) = resistance.extract::<(f64, f64, f64)>().map_err(|_| {
+        PyValueError::new_err(format!(
+            "resistance: expected one of rolling.resistance(viscous=, pivoting=, arm=), got {}",
+            resistance.get_type()
+        ))
+    })?;
+    Resistance::new(viscous, pivoting, arm).map_err(|error| to_py(resistance.py(), &error))
+}
+
+/// The law of a contact and its friction.
+fn read_law(law: &str, friction: Option<f64>, viscous: Option<&Bound<'_, PyAny>>) -> PyResult<Law> {
+    match (law, friction, viscous) {
+        ("rolling", None, None) => Ok(Law::Rolling),
+        ("rolling", ..) => Err(PyValueError::new_err(
+            "friction, viscous: the law \"rolling\" takes whatever friction it needs; leave them out, or give law=\"dry\" or \"sliding\"",
+        )),
+        ("dry", Some(mu), None) => Ok(Law::Dry(mu)),
+        ("dry", ..) => Err(PyValueError::new_err(
+            "friction: the law \"dry\" needs the coefficient friction, and no viscous one",
+        )),
+        ("sliding", Some(mu), None) => Ok(Law::Sliding(Friction::Coulomb(mu))),
+        ("sliding", None, Some(viscous)) => {
+            if let Ok(c) = viscous.extract::<f64>() {
+                return Ok(Law::Sliding(Friction::Viscous(c)));
+            }
+            match viscous.extract::<(String, f64)>() {
+                Ok((word, k)) if word == "normal" => Ok(Law::Sliding(Friction::ViscousNormal(k))),
+                _ => Err(PyValueError::new_err(format!(
+                    "viscous: expected a number c of F = -c v, or (\"normal\", k) of F = -k N v, got {}",
+                    viscous.repr()?
+                ))),
+            }
+        }
+        ("sliding", ..) => Err(PyValueError::new_err(
+            "friction: the law \"sliding\" needs exactly one of friction and viscous; friction=0.0 for a smooth plane",
+        )),
+        _ => Err(PyValueError::new_err(format!(
+            "law: expected \"rolling\", \"sliding\" or \"dry\", got \"{law}\""
+        ))),
+    }
+}
+
+/// Make the contact of a surface that rolls or slips on a plane.
 ///
 /// Parameters
 /// ----------
 /// surface : Surface
 ///     The surface of the body.
+/// law : {"rolling", "sliding", "dry"}, optional
+///     * "rolling": without slipping, whatever force that takes.
+///     * "sliding": with the slip v the force is ``N (n + f)``, where f is ``-friction v/|v|`` or ``-k v``, or the force across
+///       the normal is ``-c v``. Coulomb's friction has no direction without slip: where the slip ceases the run
+///       ends, with the status "roll".
+///     * "dry": the body rolls while that takes no more than ``friction`` times the normal force, and slips with
+///       Coulomb's friction else. Each change is an event, "slip" or "roll".
+/// friction : float, optional
+///     Coefficient of Coulomb's friction, for "sliding" and "dry"; 0.0 for a smooth plane.
+/// viscous : float or tuple, optional
+///     For "sliding": c of the force ``-c v``, in units of force over speed; or ``("normal", k)`` of ``-k N v``, in
+///     units of time over length.
+/// resistance : Resistance, optional
+///     Resistance to rolling and pivoting, from :func:`resistance`; none by default.
 /// normal : array_like, shape (3,), optional
 ///     Normal of the plane, towards the body, in space; z by default.
 /// point : array_like, shape (3,), optional
@@ -793,10 +935,13 @@ impl PyContact {
 /// turntable : float, optional
 ///     Rate at which the plane turns about `normal` through `point`, in radians per unit of time; zero by
 ///     default.
-/// lift : {"stop", "hold"}, optional
+/// lift : {"stop", "fly", "hold"}, optional
 ///     What follows when the normal force falls through zero, so that the plane would have to pull. "stop" ends
-///     the run there, with the status "lift-off". "hold" goes on, as theory does, and
-///     ``motion.contact.normal_force`` is negative for a while.
+///     the run there, with the status "lift-off". "fly" goes on as free flight until the surface touches again,
+///     and ends there with the status "landing": impacts are not computed. The force across the normal ceases with the
+///     normal force; where it does not vanish with it, under the law "rolling" and with ``viscous=c``, the body may touch
+///     again at once. "hold" goes on, as theory does, and
+///     ``motion.contact.normal_force`` is negative for a while; not under the law "dry".
 ///
 /// Returns
 /// -------
@@ -806,10 +951,20 @@ impl PyContact {
 /// Raises
 /// ------
 /// PolhodeError
-///     If a number is not finite or the normal is zero.
+///     If a number is not finite, a coefficient is negative or the normal is zero.
 ///
 /// Examples
 /// --------
+/// A ball that is thrown without spin slips for ``2 v/(7 µ g)``, and then rolls with 5/7 of its speed:
+///
+/// >>> from polhode import loads, rolling, solids
+/// >>> ball = solids.sphere(0.11, mass=7.0)
+/// >>> alley = rolling.plane(rolling.sphere(0.11), law="dry", friction=0.04)
+/// >>> gravity = loads.uniform_gravity((0, 0, -9.81))
+/// >>> motion = ball.simulate([0, 8], omega=(0, 0, 0), velocity=(8, 0, 0), load=gravity, contact=alley)
+/// >>> motion.events.t.round(6), round(2 * 8 / (7 * 0.04 * 9.81), 6)
+/// (array([5.82496]), 5.82496)
+///
 /// A ball rolls down an incline with 5/7 of the acceleration of a body that glides:
 ///
 /// >>> import numpy as np
@@ -825,11 +980,19 @@ impl PyContact {
 #[pyfunction]
 #[pyo3(
     name = "rolling_plane",
-    signature = (surface, *, normal=Argument::default(), point=Argument::default(), turntable=0.0, lift="stop"),
-    text_signature = "(surface, *, normal=(0.0, 0.0, 1.0), point=(0.0, 0.0, 0.0), turntable=0.0, lift=\"stop\")"
+    signature = (
+        surface, *, law="rolling", friction=None, viscous=None, resistance=None, normal=Argument::default(), point=Argument::default(),
+        turntable=0.0, lift="stop"
+    ),
+    text_signature = "(surface, *, law=\"rolling\", friction=None, viscous=None, resistance=None, normal=(0.0, 0.0, 1.0), point=(0.0, 0.0, 0.0), turntable=0.0, lift=\"stop\")"
 )]
+#[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
 pub(crate) fn plane(
     surface: &Bound<'_, PyAny>,
+    #[pyo3(from_py_with = read_scalar)] law: &str,
+    #[pyo3(from_py_with = read_scalar)] friction: Option<f64>,
+    viscous: Option<&Bound<'_, PyAny>>,
+    resistance: Option<&Bound<'_, PyAny>>,
     normal: Argument<'_>,
     point: Argument<'_>,
     #[pyo3(from_py_with = read_scalar)] turntable: f64,
@@ -849,26 +1012,33 @@ pub(crate) fn plane(
     })?;
     let normal = vector(&normal, "normal", [0.0, 0.0, 1.0])?;
     let point = vector(&point, "point", [0.0; 3])?;
-    make_contact(surface, normal, point, turntable, lift)
+    let law = (
+        read_law(law, friction, viscous)?,
+        read_resistance(resistance)?,
+    );
+    make_contact(surface, [normal, point], turntable, lift, law)
 }
 
 fn make_contact(
     surface: &Bound<'_, PySurface>,
-    normal: Vector3<f64>,
-    point: Vector3<f64>,
+    [normal, point]: [Vector3<f64>; 2],
     turntable: f64,
     lift: &str,
+    (law, resistance): (Law, Resistance),
 ) -> PyResult<PyContact> {
     let lift = match lift {
         "stop" => LiftOff::Stop,
+        "fly" => LiftOff::Fly,
         "hold" => LiftOff::Hold,
         _ => {
             return Err(PyValueError::new_err(format!(
-                "lift: expected \"stop\" or \"hold\", got \"{lift}\""
+                "lift: expected \"stop\", \"fly\" or \"hold\", got \"{lift}\""
             )));
         }
     };
     let contact = Contact::rolling(surface.get().surface, normal, point, turntable, lift)
+        .and_then(|contact| contact.with_law(law))
+        .map(|contact| contact.with_resistance(resistance))
         .map_err(|error| to_py(surface.py(), &error))?;
     Ok(PyContact {
         contact,
@@ -1065,10 +1235,23 @@ impl Rows {
         })
     }
 
+    /// Compute what the plane does to rows that roll, slip or fly: 0, 1 or 2.
+    fn instants(&self, py: Python<'_>, phases: &Stack<f64>) -> PyResult<Stack<force::Instant>> {
+        self.map(py, phases, |body, contact, gravity, state, number| {
+            let phase = match number {
+                0.0 => ContactPhase::Rolling,
+                2.0 => ContactPhase::Flying,
+                _ => ContactPhase::Sliding,
+            };
+            force::instant(body, contact, gravity, state, phase)
+        })
+    }
+
     fn map<T: Clone + Send>(
         &self,
         py: Python<'_>,
-        of: impl Fn(&RigidBody, &Contact, &Vector3<f64>, &Phase) -> T + Sync,
+        numbers: &Stack<f64>,
+        of: impl Fn(&RigidBody, &Contact, &Vector3<f64>, &Phase, f64) -> T + Sync,
     ) -> PyResult<Stack<T>> {
         let [omega, position, velocity] = &self.phases;
         let grid = Broadcast::of(
@@ -1079,6 +1262,7 @@ impl Rows {
                 "quaternion",
                 "position",
                 "velocity",
+                "phases",
             ],
             [
                 &self.bodies.shape,
@@ -1087,9 +1271,10 @@ impl Rows {
                 &self.attitudes.shape,
                 &position.shape,
                 &velocity.shape,
+                &numbers.shape,
             ],
         )?;
-        grid.try_map(py, |[b, g, w, q, r, v]| {
+        grid.try_map(py, |[b, g, w, q, r, v, s]| {
             let phase = Phase {
                 attitude: self.attitudes[q],
                 omega: omega[w],
@@ -1097,7 +1282,8 @@ impl Rows {
                 velocity: velocity[v],
                 internal_state: Box::default(),
             };
-            Ok(of(&self.bodies[b], &self.contact, &self.gravity[g], &phase))
+            let (body, gravity) = (&self.bodies[b], &self.gravity[g]);
+            Ok(of(body, &self.contact, gravity, &phase, numbers[s]))
         })
     }
 }
@@ -1172,6 +1358,7 @@ impl PyRigidBody {
 
 /// The contact at every state of a motion: arrays by name.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "arguments in Python")]
 pub(crate) fn contact_history<'py>(
     body: &Bound<'py, PyRigidBody>,
     contact: &Bound<'py, PyContact>,
@@ -1180,10 +1367,11 @@ pub(crate) fn contact_history<'py>(
     quaternion: &Bound<'py, PyAny>,
     position: &Bound<'py, PyAny>,
     velocity: &Bound<'py, PyAny>,
+    phases: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let py = body.py();
     let rows = Rows::read(body, contact, load, [omega, quaternion, position, velocity])?;
-    let found = rows.map(py, force::instant)?;
+    let found = rows.instants(py, &read(phases, "phases")?)?;
     let arrays = PyDict::new(py);
     arrays.set_item("point", write_of(py, &found, |at| at.point)?)?;
     arrays.set_item(
@@ -1191,6 +1379,7 @@ pub(crate) fn contact_history<'py>(
         write_of(py, &found, |at| at.point_in_body)?,
     )?;
     arrays.set_item("force", write_of(py, &found, |at| at.force)?)?;
+    arrays.set_item("couple", write_of(py, &found, |at| at.couple)?)?;
     arrays.set_item("normal_force", write_of(py, &found, |at| at.normal_force)?)?;
     arrays.set_item(
         "friction_needed",
@@ -1215,7 +1404,10 @@ pub(crate) fn contact_invariants<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let py = body.py();
     let rows = Rows::read(body, contact, load, [omega, quaternion, position, velocity])?;
-    let found: Stack<ContactInvariants> = rows.map(py, invariants::contact_invariants)?;
+    let found: Stack<ContactInvariants> =
+        rows.map(py, &Stack::one(0.0), |body, contact, gravity, phase, _| {
+            invariants::contact_invariants(body, contact, gravity, phase)
+        })?;
     let arrays = PyDict::new(py);
     let put = |name: &str, of: fn(&ContactInvariants) -> Option<f64>| -> PyResult<()> {
         if found.rows.iter().all(|kept| of(kept).is_none()) {

@@ -127,7 +127,7 @@ VALUES: dict[str, Any] = {
     "law": "normal", "seed": 7, "stream": 9, "first": 3, "count": 5, "width": 4,
     "value": [1.0, 2.0], "sigma": [0.125, 0.25], "covariance": None, "source": None,
     "contact": None, "normal": [0.25, 0.0, 1.0], "apex": 0.5, "turntable": 0.25, "lift": "hold",
-    "surface": rolling.sphere(0.5), "turn": None,
+    "surface": rolling.sphere(0.5), "turn": None, "phases": 0.0,
 }  # fmt: skip
 """What a parameter of this name takes; numbers that float32 has too."""
 
@@ -216,6 +216,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
         "motion": "rolling",
     },
     "rolling_modes": {"body": TOP},
+    "rolling_plane": {"law": "sliding", "friction": None, "viscous": 0.25, "resistance": None},
     "RigidBody.rolling_motion": {
         "self": [solids.sphere(0.5, mass=2.0)],
         "omega": [0.5, 1.0, -0.25],

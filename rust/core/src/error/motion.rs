@@ -278,6 +278,43 @@ pub enum MotionFault {
         /// Why, and the way out.
         law: &'static str,
     },
+    /// A velocity that does not keep a body on its plane.
+    #[error(
+        "velocity: the contact moves {} the plane with {:?}, where 1e-9 of the speed {speed:?} is allowed: a body on a plane slips along it; \
+         leave velocity out for one that rolls, or take its part along the normal away",
+        if *away > 0.0 { "off" } else { "into" },
+        away.abs()
+    )]
+    LeavesContact {
+        /// The velocity of the contact along the normal.
+        away: f64,
+        /// The sum of the speeds of the centre of mass and of the contact about it.
+        speed: f64,
+    },
+    /// A body that slips where no normal force, or more than one, keeps it on the plane.
+    #[error(
+        "no unique force at t = {time:?}: 1 + m (r x n) I^-1 (r x (n + f)) is {bracket:.3e}, and no normal force keeps a body \
+         on the plane where it is not positive (Painleve's paradox): take less friction, or end the run before"
+    )]
+    NoUniqueForce {
+        /// When.
+        time: f64,
+        /// What multiplies the normal force.
+        bracket: f64,
+    },
+    /// Friction that is as large as rolling needs, to rounding, so that it is not known whether the body rolls.
+    #[error(
+        "the contact is on the edge of the friction cone at t = {time:?}: the coefficient of friction {friction:?} is what rolling needs, \
+         {needed:?}, to 1e-12; give a larger coefficient for a body that rolls, or a smaller one for one that slips"
+    )]
+    OnFrictionCone {
+        /// When.
+        time: f64,
+        /// The coefficient.
+        friction: f64,
+        /// What rolling needs.
+        needed: f64,
+    },
     /// Something that a contact cannot do.
     #[error("contact: {needs}")]
     ContactCannotServe {
@@ -380,6 +417,9 @@ impl MotionFault {
             | Self::MasslessGyrostat { .. }
             | Self::WheelsTooHeavy { .. } => Kind::Inertia,
             Self::NoContact { .. }
+            | Self::LeavesContact { .. }
+            | Self::NoUniqueForce { .. }
+            | Self::OnFrictionCone { .. }
             | Self::NoPointOfContact { .. }
             | Self::RollsInNoClosedForm { .. }
             | Self::ContactCannotServe { .. } => Kind::Contact,

@@ -281,6 +281,29 @@ impl PowerSeries {
         }
     }
 
+    /// Compute the same where a variable, whose rate is zero, stands for an unknown series: `coefficient` gets each order, how often it
+    /// was tried and the variables with one order more. It returns the coefficient of that order to try, until it returns none.
+    pub(crate) fn expand_with_unknown(
+        &mut self,
+        values: &[f64],
+        order: usize,
+        unknown: usize,
+        mut coefficient: impl FnMut(usize, usize, &mut [[f64; COUNT]]) -> Option<f64>,
+    ) {
+        for (variable, value) in self.variables.iter_mut().zip(values) {
+            variable[0] = *value;
+        }
+        for (k, sweep) in SWEEPS[..order].iter().enumerate() {
+            sweep(self);
+            let mut trial = 0;
+            while let Some(found) = coefficient(k, trial, &mut self.variables) {
+                self.variables[unknown][k] = found;
+                sweep(self);
+                trial += 1;
+            }
+        }
+    }
+
     /// Compute the coefficients of order K of all nodes, and the next ones of the variables: each order is code of its own, in which
     /// the sums have a known length.
     fn sweep<const K: usize>(&mut self) {

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 use numpy::{PyArray1, PyArrayMethods, PyFixedUnicode};
 use polhode::motion::attitude::components;
+use polhode::motion::rolling::ContactPhase;
 use polhode::motion::simulate::{ContactExtremes, Crossing, Effort, End, Run};
 use polhode::motion::state::Phase;
 use pyo3::exceptions::PyMemoryError;
@@ -64,12 +65,12 @@ impl Outcome {
         Ok(named)
     }
 
-    /// The number of an event among the functions; −1 where the body lifts off.
+    /// The number of an event among the functions; −1, −2, … for those of a contact, in the order of `ContactEvent::ALL`.
     fn number(&self, crossing: &Crossing) -> i64 {
-        if crossing.event < self.functions {
-            i64::try_from(crossing.event).unwrap_or(i64::MAX)
-        } else {
-            -1
+        let number = |n| i64::try_from(n).unwrap_or(i64::MAX);
+        match crossing.event.checked_sub(self.functions) {
+            None => number(crossing.event),
+            Some(of_contact) => -1 - number(of_contact),
         }
     }
 
@@ -207,6 +208,13 @@ impl Ensemble<'_> {
             let friction = extremes(|contact| contact.friction_needed)?;
             let normal = extremes(|contact| contact.normal_force)?;
             fields.set_item(intern!(py, "_contact_extremes"), (friction, normal))?;
+            let (phases, work) = along_contact(&runs, self.plan.times().len());
+            let shape = [&self.grid.shape[..], &[self.plan.times().len()]].concat();
+            let [phases, work] = [phases, work].map(|rows| {
+                let shape = shape.clone();
+                write(py, &Stack { shape, rows })
+            });
+            fields.set_item(intern!(py, "_contact_states"), (phases?, work?))?;
         }
         let mut efforts = memory::vector("result", &self.grid.shape, 0)?;
         let (mut crossings, mut samples) = (Vec::new(), Vec::new());
@@ -244,7 +252,7 @@ impl Ensemble<'_> {
             None => "not run",
             Some(End::Complete) => "complete",
             Some(End::Event) => "event",
-            Some(End::LiftOff) => "lift-off",
+            Some(End::Contact(event)) => event.word(),
             Some(End::Stopped) => "stopped",
             Some(End::Failed(_)) => "failed",
         };
@@ -288,6 +296,25 @@ impl Ensemble<'_> {
         )?;
         Ok(error)
     }
+}
+
+/// What bodies do, in numbers as `phase_of` reads them, and the work of the plane so far, at all times.
+fn along_contact(runs: &Runs, times: usize) -> (Vec<f64>, Vec<f64>) {
+    let (mut phases, mut work) = (Vec::new(), Vec::new());
+    for (row, run) in runs.iter().enumerate() {
+        if let Some(run) = run {
+            phases.extend((run.contact_phases.iter()).map(|phase| match phase {
+                ContactPhase::Rolling => 0.0,
+                ContactPhase::Sliding => 1.0,
+                ContactPhase::Flying => 2.0,
+            }));
+            let done = |sample: &Phase| sample.internal_state.first().copied().unwrap_or(0.0);
+            work.extend(run.samples.iter().map(done));
+        }
+        phases.resize((row + 1) * times, f64::NAN);
+        work.resize((row + 1) * times, f64::NAN);
+    }
+    (phases, work)
 }
 
 /// The states of all rows as the arrays of a trajectory.

@@ -1,6 +1,7 @@
 //! The motion under a load.
 
 use nalgebra::Vector3;
+use polhode::motion::rolling::Law;
 use polhode::motion::simulate::{Method, Plan, Refusal, Tolerance, most_demanding};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -48,12 +49,14 @@ impl PyRigidBody {
     ///     point `about`. Forces move the centre of mass of a free body.
     /// position, velocity : array_like, shape (..., 3), optional
     ///     Position and velocity of the point `about` at the start, in space; zero by default.
-    ///     With `contact`, position None puts the body on the plane, and the velocity is that of rolling.
+    ///     With `contact`, position None puts the body on the plane, and velocity None is that of rolling; another
+    ///     one is for the laws "sliding" and "dry".
     /// contact : Contact, optional
-    ///     A plane on which the body rolls without slipping, from :func:`polhode.rolling.plane`; none by
+    ///     A plane on which the body rolls or slips, from :func:`polhode.rolling.plane`; none by
     ///     default. The load is then uniform gravity, or nothing, and the method "taylor" serves the run.
     ///     ``contact`` of the trajectory has the force of the plane and what else the contact tells. Where the
-    ///     normal force falls through zero the run ends with the status "lift-off".
+    ///     normal force falls through zero the run ends with the status "lift-off". `events` of the trajectory has
+    ///     what happens to the contact too: "lift-off", "slip", "roll" and others in its column ``kind``.
     /// about : {"center_of_mass", "origin"}, optional
     ///     The centre of mass of a body that moves freely, or the origin of the body frame when that
     ///     point is fixed in space.
@@ -212,8 +215,9 @@ impl PyRigidBody {
             states: acts.read_states(states, false)?,
         };
         let rolling = (contact.map(|contact| {
-            let is_placed = position.is_some_and(|position| !position.is_none());
-            Rolling::new(py, contact.get().contact, &start, acts, is_placed)
+            let given =
+                [position, velocity].map(|given| given.is_some_and(|given| !given.is_none()));
+            Rolling::new(py, contact.get().contact, &start, acts, given)
         }))
         .transpose()?;
         let events = Functions::read(events, acts, &start.terms)?;
@@ -301,15 +305,16 @@ fn options_of<'py>(
     Ok(options)
 }
 
-/// The plane that a body rolls on, which says its velocity.
+/// The plane that a body is on; one that it rolls on says its velocity.
 fn read_rolling<'a, 'py>(
     contact: Given<'a, 'py>,
     velocity: Given<'_, 'py>,
 ) -> PyResult<Option<&'a Bound<'py, PyContact>>> {
     let contact = read_contact(contact)?;
-    if contact.is_some() && velocity.is_some_and(|velocity| !velocity.is_none()) {
+    let rolls = contact.is_some_and(|contact| contact.get().contact.law == Law::Rolling);
+    if rolls && velocity.is_some_and(|velocity| !velocity.is_none()) {
         return Err(PyValueError::new_err(
-            "velocity: a body that rolls has the velocity u - omega x r of rolling; leave it out",
+            "velocity: a body that rolls has the velocity u - omega x r of rolling; leave it out, or give the contact the law \"sliding\" or \"dry\"",
         ));
     }
     Ok(contact)

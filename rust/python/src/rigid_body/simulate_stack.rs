@@ -77,12 +77,12 @@ impl Rolling {
         contact: Contact,
         start: &Start<'_>,
         load: &PyLoad,
-        is_placed: bool,
+        [is_placed, is_moving]: [bool; 2],
     ) -> PyResult<Self> {
         let grid = start.grid()?;
         let mut rows = memory::vector("simulate: rows of the stack", &grid.shape, 0)?;
         for row in 0..grid.len() {
-            let [b, w, q, r, _, l, _] = grid.operands(row);
+            let [b, w, q, r, v, l, _] = grid.operands(row);
             let gravity = gravity_of(py, load, &start.terms[l])?;
             // The plane needs a unit quaternion to the last digit.
             let attitude = UnitQuaternion::new_normalize(start.attitude[q].into_inner());
@@ -92,6 +92,7 @@ impl Rolling {
                     start.omega[w],
                     attitude,
                     is_placed.then(|| start.position[r]),
+                    is_moving.then(|| start.velocity[v]),
                 )
                 .map_err(|error| at_row(&grid.shape, row, &to_py(py, &error), py))?;
             rows.push((phase, gravity));

@@ -12,6 +12,6 @@ mod task;
 
 pub use self::limits::{MOST_STEPS, check_scales, check_times};
 pub use self::outcome::{
-    ContactExtremes, Crossing, Direction, Effort, End, EventTrigger, Rule, Run,
+    ContactEvent, ContactExtremes, Crossing, Direction, Effort, End, EventTrigger, Rule, Run,
 };
 pub use self::task::{Method, ReferencePoint, TIGHTEST, TIGHTEST_TWOFOLD, Task, Tolerance};

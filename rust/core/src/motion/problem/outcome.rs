@@ -2,6 +2,7 @@
 
 use super::task::Task;
 use crate::error::Error;
+use crate::motion::rolling::ContactPhase;
 use crate::motion::state::Phase;
 
 /// What an integration took.
@@ -20,8 +21,8 @@ pub enum End<E> {
     Complete,
     /// At an event that ends it.
     Event,
-    /// Where a body that rolls lifts off.
-    LiftOff,
+    /// At what happens to the contact of a body on a plane.
+    Contact(ContactEvent),
     /// Where the watch asked for it.
     Stopped,
     /// Where the equations or the load failed.
@@ -43,8 +44,57 @@ pub struct Run<E> {
     pub phase: Phase,
     /// How it ended.
     pub end: End<E>,
-    /// What a contact came to, of a body that rolls.
+    /// What a contact came to, of a body on a plane.
     pub contact: Option<ContactExtremes>,
+    /// What such a body did at each of the samples.
+    pub contact_phases: Vec<ContactPhase>,
+}
+
+/// What happens to a contact: its number stands in [`Crossing::event`] after those of the functions.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::motion::simulate::ContactEvent;
+///
+/// let words = ContactEvent::ALL.map(ContactEvent::word);
+/// assert_eq!(words, ["lift-off", "slip", "roll", "landing", "rest"]);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactEvent {
+    /// The normal force falls through zero.
+    LiftOff,
+    /// A body that rolled begins to slip.
+    Slip,
+    /// The slip ceases.
+    Roll,
+    /// A body that has lifted off touches again.
+    Landing,
+    /// A body whose resistance to rolling has an arm ceases to turn, but for its pivoting.
+    Rest,
+}
+
+impl ContactEvent {
+    /// In the order of their numbers.
+    pub const ALL: [Self; 5] = [
+        Self::LiftOff,
+        Self::Slip,
+        Self::Roll,
+        Self::Landing,
+        Self::Rest,
+    ];
+
+    /// Return its word.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::LiftOff => "lift-off",
+            Self::Slip => "slip",
+            Self::Roll => "roll",
+            Self::Landing => "landing",
+            Self::Rest => "rest",
+        }
+    }
 }
 
 /// The extremes of a contact over a whole run, located between the outputs: each a value and its time.
@@ -70,10 +120,11 @@ impl<E> Run<E> {
             phase: task.initial.clone(),
             end,
             contact: None,
+            contact_phases: Vec::new(),
         }
     }
 
-    /// The run, where it came to its end: at the last time, at an event that ends it, or where the body lifts off.
+    /// The run, where it came to its end: at the last time, at an event that ends it, or where a contact ends.
     ///
     /// # Errors
     /// What failed, or [`Error::Stopped`] where the watch stopped it. Who wants the states until then looks at [`Self::end`] instead.
@@ -82,7 +133,7 @@ impl<E> Run<E> {
         E: From<Error>,
     {
         match self.end {
-            End::Complete | End::Event | End::LiftOff => Ok(self),
+            End::Complete | End::Event | End::Contact(_) => Ok(self),
             End::Stopped => Err(Error::Stopped.into()),
             End::Failed(error) => Err(error),
         }
@@ -100,11 +151,12 @@ impl<E> Run<E> {
             end: match self.end {
                 End::Complete => End::Complete,
                 End::Event => End::Event,
-                End::LiftOff => End::LiftOff,
+                End::Contact(event) => End::Contact(event),
                 End::Stopped => End::Stopped,
                 End::Failed(error) => End::Failed(f(error)),
             },
             contact: self.contact,
+            contact_phases: self.contact_phases,
         }
     }
 }
@@ -149,7 +201,7 @@ pub struct Rule {
 /// A passage through zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Crossing {
-    /// The number of the function.
+    /// The number of the function, or after these that of a [`ContactEvent`].
     pub event: usize,
     /// When.
     pub time: f64,

@@ -1,4 +1,5 @@
-//! The contact of a surface with a plane: where the plane is, how it turns, and what follows when the body lifts off.
+//! The contact of a surface with a plane: where the plane is, how it turns, the law of its force, and what follows when the body
+//! lifts off.
 
 use nalgebra::{Matrix3, Quaternion, Unit, UnitQuaternion, Vector3};
 
@@ -12,17 +13,142 @@ use crate::numerics::power_series::dot;
 /// relative to its size or moments.
 pub(super) const TOUCHES: f64 = 1e-9;
 
+/// How much slip a start may have, relative to the speeds there, and count as none; and how much a velocity may leave the plane.
+pub(super) const STILL: f64 = 1e-14;
+
+/// The force of the plane across its normal n, on a body that slips with the velocity s; N is the normal force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Friction {
+    /// `−μ N s/|s|`.
+    Coulomb(f64),
+    /// `−k N s`.
+    ViscousNormal(f64),
+    /// `−c s`, whatever the normal force is.
+    Viscous(f64),
+}
+
+impl Friction {
+    /// Return the coefficient.
+    #[must_use]
+    pub fn coefficient(&self) -> f64 {
+        match *self {
+            Self::Coulomb(x) | Self::ViscousNormal(x) | Self::Viscous(x) => x,
+        }
+    }
+
+    /// Return the coefficient of Coulomb's law, which has no force without slip; none where the force is smooth there.
+    pub(crate) fn coulomb(&self) -> Option<f64> {
+        match *self {
+            Self::Coulomb(mu) if mu > 0.0 => Some(mu),
+            _ => None,
+        }
+    }
+
+    /// Return the same in other units: lengths, masses and rates are multiplied by these numbers.
+    pub(crate) fn in_units(self, length: f64, mass: f64, rate: f64) -> Self {
+        match self {
+            Self::Coulomb(_) => self,
+            Self::ViscousNormal(k) => Self::ViscousNormal(k / (length * rate)),
+            Self::Viscous(c) => Self::Viscous(c * mass * rate),
+        }
+    }
+}
+
+/// The law of the force of the plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Law {
+    /// The body rolls without slipping, whatever force that takes.
+    #[default]
+    Rolling,
+    /// The body slips, and the normal force keeps it on the plane.
+    Sliding(Friction),
+    /// The body rolls while that takes no more than μ N across the normal, and slips with Coulomb's friction else.
+    Dry(f64),
+}
+
+/// What a body on a plane does at an instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ContactPhase {
+    /// Its point of contact has the velocity of the plane.
+    #[default]
+    Rolling,
+    /// It slips.
+    Sliding,
+    /// It has lifted off.
+    Flying,
+}
+
+/// The resistance to rolling and pivoting: the couple `−b ω_t − p (ω·n) n − e N ω_t/|ω_t|` on the body, with the part `ω_t` of ω across the
+/// normal n.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Resistance {
+    /// b.
+    pub viscous: f64,
+    /// p.
+    pub pivoting: f64,
+    /// e, a length: the normal force acts so far ahead of the contact.
+    pub arm: f64,
+}
+
+impl Resistance {
+    /// Make a resistance of these coefficients.
+    ///
+    /// # Errors
+    /// When one is negative or not finite.
+    pub fn new(viscous: f64, pivoting: f64, arm: f64) -> Result<Self, Error> {
+        for (what, value) in [("viscous", viscous), ("pivoting", pivoting), ("arm", arm)] {
+            not_negative(what, value)?;
+        }
+        Ok(Self {
+            viscous,
+            pivoting,
+            arm,
+        })
+    }
+
+    /// Return whether there is any.
+    #[must_use]
+    pub fn acts(&self) -> bool {
+        *self != Self::default()
+    }
+
+    /// Return the same in other units: lengths, masses and rates are multiplied by these numbers.
+    pub(crate) fn in_units(self, length: f64, mass: f64, rate: f64) -> Self {
+        let damping = mass * length * length * rate;
+        Self {
+            viscous: self.viscous * damping,
+            pivoting: self.pivoting * damping,
+            arm: self.arm * length,
+        }
+    }
+}
+
+/// Check that a coefficient takes energy.
+fn not_negative(what: &'static str, value: f64) -> Result<(), Error> {
+    finite(what, value)?;
+    if value < 0.0 {
+        return Err(Error::OutOfDomain {
+            what,
+            law: "a coefficient that is not negative: friction takes energy",
+            value,
+        });
+    }
+    Ok(())
+}
+
 /// What follows when the normal force falls through zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LiftOff {
     /// The run ends.
     #[default]
     Stop,
+    /// The body flies freely until it touches again, where the run ends.
+    Fly,
     /// The contact holds, and the plane pulls.
     Hold,
 }
 
-/// A surface that rolls on a plane without slipping: `v_C + ω×r = u(P)` with `r = P − C` and the velocity u of the plane.
+/// A surface on a plane: it rolls where `v_C + ω×r = u(P)` with `r = P − C` and the velocity u of the plane, and slips else.
 ///
 /// # Examples
 ///
@@ -48,6 +174,10 @@ pub struct Contact {
     pub turntable: f64,
     /// What follows when the body lifts off.
     pub lift: LiftOff,
+    /// The law of the force of the plane.
+    pub law: Law,
+    /// The couple of the plane.
+    pub resistance: Resistance,
 }
 
 impl Contact {
@@ -78,7 +208,71 @@ impl Contact {
             point,
             turntable,
             lift,
+            law: Law::Rolling,
+            resistance: Resistance::default(),
         })
+    }
+
+    /// Return the same contact under another law.
+    ///
+    /// # Errors
+    /// When the coefficient of friction is negative or not finite, or dry friction has to hold a body that the plane pulls.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::motion::rolling::{Contact, Friction, Law, LiftOff, Surface};
+    /// use polhode::nalgebra::{UnitQuaternion, Vector3};
+    ///
+    /// let ball = Surface::sphere(0.5, Vector3::zeros())?;
+    /// let contact = Contact::rolling(ball, Vector3::z(), Vector3::zeros(), 0.0, LiftOff::Stop)?;
+    /// let ice = Law::Sliding(Friction::Coulomb(0.02));
+    /// assert_eq!(contact.with_law(ice)?.law, ice);
+    /// assert!(contact.with_law(Law::Dry(-0.3)).is_err());
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    pub fn with_law(self, law: Law) -> Result<Self, Error> {
+        let (what, coefficient) = match law {
+            Law::Rolling => return Ok(Self { law, ..self }),
+            Law::Dry(mu) | Law::Sliding(Friction::Coulomb(mu)) => ("friction", mu),
+            Law::Sliding(viscous) => ("viscous", viscous.coefficient()),
+        };
+        not_negative(what, coefficient)?;
+        if matches!(law, Law::Dry(_)) && self.lift == LiftOff::Hold {
+            return Err(Error::Motion(MotionFault::ContactCannotServe {
+                needs: "lift \"stop\" under dry friction: a plane that pulls has no cone of friction",
+            }));
+        }
+        Ok(Self { law, ..self })
+    }
+
+    /// Return the same contact with a resistance to rolling and pivoting.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::motion::rolling::{Contact, LiftOff, Resistance, Surface};
+    /// use polhode::nalgebra::Vector3;
+    ///
+    /// let ball = Surface::sphere(0.5, Vector3::zeros())?;
+    /// let contact = Contact::rolling(ball, Vector3::z(), Vector3::zeros(), 0.0, LiftOff::Stop)?;
+    /// let grass = Resistance::new(0.0, 0.01, 0.02)?;
+    /// assert!(grass.acts() && contact.with_resistance(grass).resistance == grass);
+    /// assert!(Resistance::new(0.0, 0.0, -0.02).is_err());
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    #[must_use]
+    pub fn with_resistance(self, resistance: Resistance) -> Self {
+        Self { resistance, ..self }
+    }
+
+    /// Return the friction of a body that slips; none of one that only rolls.
+    pub(crate) fn friction(&self) -> Friction {
+        match self.law {
+            Law::Rolling => Friction::Coulomb(0.0),
+            Law::Sliding(friction) => friction,
+            Law::Dry(mu) => Friction::Coulomb(mu),
+        }
     }
 
     /// Compute the velocity u of the plane at a point.
@@ -99,16 +293,19 @@ impl Contact {
         self.surface.contact(&(attitude.inverse() * *self.normal))
     }
 
-    /// Return the start of a motion: the body touches the plane at `point`, or where `position`, of C, puts it, and rolls.
+    /// Return the start of a motion: the body touches the plane at `point`, or where `position`, of C, puts it. It has the velocity of
+    /// rolling, or slips where `velocity`, of C, is another.
     ///
     /// # Errors
-    /// When the body hovers over the plane or sinks into it, or the surface has no point of contact at this attitude.
+    /// When the body hovers over the plane or sinks into it, at once or with its velocity, or the surface has no point of contact at
+    /// this attitude.
     pub fn start(
         &self,
         body: &RigidBody,
         omega: Vector3<f64>,
         attitude: UnitQuaternion<f64>,
         position: Option<Vector3<f64>>,
+        velocity: Option<Vector3<f64>>,
     ) -> Result<Phase, Error> {
         let normal = attitude.inverse() * *self.normal;
         if self.surface.margin(&normal) <= 0.0 {
@@ -133,11 +330,30 @@ impl Contact {
             }
         };
         let contact = position + attitude * arm;
+        let rolling = self.plane_velocity(&contact) - attitude * omega.cross(&arm);
+        let velocity = match velocity {
+            None => rolling,
+            Some(given) => {
+                let slip = given - rolling;
+                let (away, speed) = (self.normal.dot(&slip), given.norm() + rolling.norm());
+                // A NaN does not touch.
+                if away.abs().partial_cmp(&(TOUCHES * speed)) == Some(std::cmp::Ordering::Greater)
+                    || away.is_nan()
+                {
+                    return Err(Error::Motion(MotionFault::LeavesContact { away, speed }));
+                }
+                if slip.norm() <= STILL * speed {
+                    rolling
+                } else {
+                    given - *self.normal * away
+                }
+            }
+        };
         Ok(Phase {
             attitude,
             omega,
             position,
-            velocity: self.plane_velocity(&contact) - attitude * omega.cross(&arm),
+            velocity,
             internal_state: Box::default(),
         })
     }
@@ -210,7 +426,13 @@ mod tests {
         let start = |height: f64| {
             let position = contact.point + *contact.normal * height;
             let omega = Vector3::new(0.0, 2.0, 0.0);
-            contact.start(&body, omega, UnitQuaternion::identity(), Some(position))
+            contact.start(
+                &body,
+                omega,
+                UnitQuaternion::identity(),
+                Some(position),
+                None,
+            )
         };
         let velocity = start(0.5 + 1e-11).expect("a start").velocity;
         assert!(

@@ -13,7 +13,7 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use super::contact::Contact;
+use super::contact::{Contact, Resistance};
 use super::surface::Surface;
 use crate::mass::RigidBody;
 use crate::motion::state::Phase;
@@ -23,45 +23,67 @@ use crate::numerics::power_series::{Arithmetic, cross, dot, minus, plus, scaled,
 #[derive(Clone, Debug)]
 pub(crate) struct Equations {
     /// m, and I about C.
-    mass: f64,
-    inertia: Matrix3<f64>,
+    pub(super) mass: f64,
+    pub(super) inertia: Matrix3<f64>,
     /// Relative to C.
-    surface: Surface,
+    pub(super) surface: Surface,
     /// g in W.
-    gravity: Vector3<f64>,
+    pub(super) gravity: Vector3<f64>,
     /// Ω.
-    turntable: f64,
+    pub(super) turntable: f64,
+    /// `I⁻¹`; zero where a body has no moment about an axis.
+    pub(super) inverse: Matrix3<f64>,
+    pub(super) resistance: Resistance,
 }
 
-/// How many variables a state of contact has.
-pub(crate) const VARIABLES: usize = 12;
+/// How many variables a state has: all of them, of a body on a plane, and of one that rolls on a plane that does no work.
+pub(crate) const VARIABLES: usize = 17;
+pub(crate) const OF_CONTACT: usize = 15;
+pub(crate) const OF_ROLLING: usize = 12;
 
-/// The state of contact: (x, y, z, w) of the attitude in W, ω in B, γ, and the point of contact in the plane.
+/// The state of contact: (x, y, z, w) of the attitude in W, ω in B, γ, the point of contact in the plane, the slip there, and the work of
+/// the plane so far. Of a body that flies, the place and the velocity of C along the plane stand for those of the contact, and its height
+/// over the plane with the rate of that is known too.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ContactState<N> {
     pub(crate) attitude: [N; 4],
     pub(crate) omega: [N; 3],
     pub(crate) normal: [N; 3],
     pub(crate) place: [N; 2],
+    pub(crate) slip: [N; 2],
+    pub(crate) work: N,
+    pub(crate) height: [N; 2],
 }
 
 impl<N: Copy> ContactState<N> {
     /// Return the state of these variables.
     pub(crate) fn of(variables: &[N; VARIABLES]) -> Self {
-        let [x, y, z, w, p, q, r, a, b, c, u, v] = *variables;
+        let [x, y, z, w, p, q, r, a, b, c, u, v, s, t, work, h, rise] = *variables;
         Self {
             attitude: [x, y, z, w],
             omega: [p, q, r],
             normal: [a, b, c],
             place: [u, v],
+            slip: [s, t],
+            work,
+            height: [h, rise],
         }
     }
 
     /// Return the variables of this state, or of its rates.
     pub(crate) fn variables(&self) -> [N; VARIABLES] {
         let ([x, y, z, w], [p, q, r]) = (self.attitude, self.omega);
-        let ([a, b, c], [u, v]) = (self.normal, self.place);
-        [x, y, z, w, p, q, r, a, b, c, u, v]
+        let ([a, b, c], [u, v], [s, t]) = (self.normal, self.place, self.slip);
+        let [h, rise] = self.height;
+        [x, y, z, w, p, q, r, a, b, c, u, v, s, t, self.work, h, rise]
+    }
+}
+
+impl ContactState<f64> {
+    /// Compute the size of the part of ω along the plane.
+    pub(crate) fn omega_along_plane(&self) -> f64 {
+        let (omega, normal) = (Vector3::from(self.omega), Vector3::from(self.normal));
+        omega.cross(&normal).norm()
     }
 }
 
@@ -72,6 +94,10 @@ pub(crate) struct Motion<N> {
     /// The first two axes of W, and ρ with its rate, in body axes.
     pub(crate) level: [[N; 3]; 2],
     pub(crate) arm: [N; 3],
+    /// What multiplies N/m in the equation for it: 1 of a body that rolls.
+    pub(crate) bracket: N,
+    /// The couple of the plane, in body axes.
+    pub(crate) couple: [N; 3],
 }
 
 impl Equations {
@@ -83,6 +109,8 @@ impl Equations {
             surface: contact.surface.relative_to(&body.center_of_mass(), 1.0),
             gravity: contact.plane_axes().transpose() * gravity,
             turntable: contact.turntable,
+            inverse: body.inertia().try_inverse().unwrap_or_default(),
+            resistance: contact.resistance,
         }
     }
 
@@ -94,6 +122,8 @@ impl Equations {
             surface: self.surface.relative_to(&Vector3::zeros(), length),
             gravity: self.gravity * length * rate * rate,
             turntable: self.turntable * rate,
+            inverse: self.inverse / (mass * length * length),
+            resistance: self.resistance.in_units(length, mass, rate),
         }
     }
 
@@ -113,13 +143,14 @@ impl Equations {
         self.mass
     }
 
-    /// Compute the motion at a state, for any numbers.
+    /// Compute the motion at a state of rolling, for any numbers.
     pub(crate) fn motion<N: Arithmetic>(&self, state: &ContactState<N>) -> Motion<N> {
         let ContactState {
             attitude,
             omega,
             normal,
             place: [x, y],
+            ..
         } = *state;
         let normal_rate = cross(normal, omega);
         let [arm, arm_rate] = self.surface.contact_and_rate(normal, normal_rate);
@@ -140,26 +171,86 @@ impl Equations {
         let without_turn = minus(plus(push, normal.map(|x| x * -self.gravity.z)), inward);
         let torque = cross(arm, without_turn.map(|x| x * self.mass));
         let gyroscopic = cross(omega, transformed(&self.inertia, omega));
-        let turn = solve(self.about_contact(arm), minus(torque, gyroscopic));
-        let [qx, qy, qz, qw] = attitude;
-        let q = [qx, qy, qz];
-        let vector = plus(cross(q, omega), scaled(omega, qw));
+        let zero = omega[0] * 0.0;
+        let (mut turning, mut couple) = (minus(torque, gyroscopic), [zero; 3]);
+        if self.resistance.acts() {
+            couple = self.smooth_couple(omega, normal);
+            turning = plus(turning, couple);
+        }
+        let about = self.about_contact(arm);
+        let (mut turn, mut bracket) = (solve(about, turning), zero + 1.0);
+        if self.resistance.arm > 0.0 {
+            // The couple is proportional to N, which depends on ω̇.
+            let by_pressure = scaled(
+                against_turn(omega, normal),
+                zero + self.resistance.arm * self.mass,
+            );
+            let by_arm = solve(about, by_pressure);
+            let lever = cross(arm, normal);
+            bracket = dot(by_arm, lever) + 1.0;
+            let pressure = (dot(normal, without_turn) - dot(turn, lever)) / bracket;
+            turn = plus(turn, scaled(by_arm, pressure));
+            couple = plus(couple, scaled(by_pressure, pressure));
+        }
+        let lift = minus(without_turn, cross(turn, arm));
+        let mut work = if self.turntable == 0.0 {
+            zero
+        } else {
+            (x * dot(lift, level[1]) - y * dot(lift, level[0])) * (self.turntable * self.mass)
+        };
+        if self.resistance.acts() {
+            work = work + dot(couple, omega);
+        }
         Motion {
             rates: ContactState {
-                attitude: [
-                    vector[0] * 0.5,
-                    vector[1] * 0.5,
-                    vector[2] * 0.5,
-                    dot(q, omega) * -0.5,
-                ],
+                attitude: attitude_rate(attitude, omega),
                 omega: turn,
                 normal: normal_rate,
                 place: [speed_x, speed_y],
+                slip: [zero; 2],
+                work,
+                height: [zero; 2],
             },
-            lift: minus(without_turn, cross(turn, arm)),
+            lift,
             level,
             arm,
+            bracket,
+            couple,
         }
+    }
+
+    /// Compute the motion of a body that flies, for any numbers.
+    pub(crate) fn flying<N: Arithmetic>(&self, state: &ContactState<N>) -> Motion<N> {
+        let (omega, normal) = (state.omega, state.normal);
+        let normal_rate = cross(normal, omega);
+        let arm = self.surface.contact_and_rate(normal, normal_rate)[0];
+        let zero = omega[0] * 0.0;
+        let gyroscopic = cross(omega, transformed(&self.inertia, omega));
+        Motion {
+            rates: ContactState {
+                attitude: attitude_rate(state.attitude, omega),
+                omega: transformed(&self.inverse, gyroscopic).map(|x| x * -1.0),
+                normal: normal_rate,
+                place: state.slip,
+                slip: [zero + self.gravity.x, zero + self.gravity.y],
+                work: zero,
+                height: [state.height[1], zero + self.gravity.z],
+            },
+            lift: [zero; 3],
+            level: level_axes(state.attitude),
+            arm,
+            bracket: zero + 1.0,
+            couple: [zero; 3],
+        }
+    }
+
+    /// Compute the part of the couple that does not depend on the normal force.
+    pub(super) fn smooth_couple<N: Arithmetic>(&self, omega: [N; 3], normal: [N; 3]) -> [N; 3] {
+        let Resistance {
+            viscous, pivoting, ..
+        } = self.resistance;
+        let along = dot(omega, normal) * (viscous - pivoting);
+        plus(scaled(normal, along), omega.map(|x| x * -viscous))
     }
 
     /// Compute `I + m (ρ² − ρ ρᵀ)`: the inertia about the point of contact.
@@ -184,11 +275,43 @@ impl Equations {
         let normal = normal_of(attitude.coords.into());
         let arm = Vector3::from(self.surface.contact_and_rate(normal, [0.0; 3])[0]);
         let place = axes.transpose() * (phase.position - contact.point + phase.attitude * arm);
+        let point = phase.velocity + phase.attitude * phase.omega.cross(&arm);
+        let point = axes.transpose() * point;
+        let height = contact.normal.dot(&(phase.position - contact.point));
         ContactState {
             attitude: attitude.coords.into(),
             omega: phase.omega.into(),
             normal,
             place: [place.x, place.y],
+            slip: [
+                point.x + self.turntable * place.y,
+                point.y - self.turntable * place.x,
+            ],
+            work: phase.internal_state.first().copied().unwrap_or(0.0),
+            height: [height, contact.normal.dot(&phase.velocity)],
+        }
+    }
+
+    /// Return the state of a body that flies, of a phase of motion.
+    pub(crate) fn flying_state(&self, contact: &Contact, phase: &Phase) -> ContactState<f64> {
+        let across = contact.plane_axes().transpose();
+        let place = across * (phase.position - contact.point);
+        let velocity = across * phase.velocity;
+        ContactState {
+            place: [place.x, place.y],
+            slip: [velocity.x, velocity.y],
+            ..self.state(contact, phase)
+        }
+    }
+
+    /// Return the phase of motion of a body that flies, in N.
+    pub(crate) fn flying_phase(&self, contact: &Contact, state: &ContactState<f64>) -> Phase {
+        let axes = contact.plane_axes();
+        let ([x, y], [u, v], [z, w]) = (state.place, state.slip, state.height);
+        Phase {
+            position: contact.point + axes * Vector3::new(x, y, z),
+            velocity: axes * Vector3::new(u, v, w),
+            ..self.phase(contact, state)
         }
     }
 
@@ -209,11 +332,11 @@ impl Equations {
                 dot(state.normal, vector),
             ]
         };
-        let (offset, sweep) = (across(arm), across(swept));
+        let (offset, sweep, slip) = (across(arm), across(swept), state.slip);
         let position = Vector3::new(x - offset[0], y - offset[1], -offset[2]);
         let velocity = Vector3::new(
-            -self.turntable * y - sweep[0],
-            self.turntable * x - sweep[1],
+            -self.turntable * y - sweep[0] + slip[0],
+            self.turntable * x - sweep[1] + slip[1],
             -sweep[2],
         );
         Phase {
@@ -226,6 +349,21 @@ impl Equations {
     }
 }
 
+/// Compute `−ω_t/|ω_t|` with the part `ω_t` of ω across the normal.
+pub(super) fn against_turn<N: Arithmetic>(omega: [N; 3], normal: [N; 3]) -> [N; 3] {
+    let across = minus(omega, scaled(normal, dot(omega, normal)));
+    let rate = dot(across, across).root();
+    across.map(|x| -x / rate)
+}
+
+/// Compute `½ q∘ω`.
+pub(super) fn attitude_rate<N: Arithmetic>([x, y, z, w]: [N; 4], omega: [N; 3]) -> [N; 4] {
+    let q = [x, y, z];
+    let vector = plus(cross(q, omega), scaled(omega, w));
+    let [x, y, z] = vector.map(|x| x * 0.5);
+    [x, y, z, dot(q, omega) * -0.5]
+}
+
 /// Return the attitude of W in N; of a level plane the identity to the bit.
 fn plane_attitude(axes: &Matrix3<f64>) -> UnitQuaternion<f64> {
     if *axes == Matrix3::identity() {
@@ -235,7 +373,7 @@ fn plane_attitude(axes: &Matrix3<f64>) -> UnitQuaternion<f64> {
 }
 
 /// Compute the first two axes of W in body axes.
-fn level_axes<N: Arithmetic>([x, y, z, w]: [N; 4]) -> [[N; 3]; 2] {
+pub(crate) fn level_axes<N: Arithmetic>([x, y, z, w]: [N; 4]) -> [[N; 3]; 2] {
     let (xx, yy, zz) = (x * x, y * y, z * z);
     [
         [
@@ -305,6 +443,7 @@ mod tests {
             &body,
             Vector3::zeros(),
             UnitQuaternion::from_euler_angles(0.3, 0.2, 0.1),
+            None,
             None,
         );
         let start = start.expect("a start");

@@ -33,7 +33,7 @@ pub struct ContactInvariants {
 /// let body = solids::sphere(0.5, Amount::Mass(2.0))?;
 /// let ball = Surface::sphere(0.5, Vector3::zeros())?;
 /// let contact = Contact::rolling(ball, Vector3::z(), Vector3::zeros(), 0.0, LiftOff::Stop)?;
-/// let start = contact.start(&body, Vector3::new(0.0, 3.0, 1.0), UnitQuaternion::identity(), None)?;
+/// let start = contact.start(&body, Vector3::new(0.0, 3.0, 1.0), UnitQuaternion::identity(), None, None)?;
 /// let found: ContactInvariants = contact_invariants(&body, &contact, &Vector3::new(0.0, 0.0, -9.81), &start);
 /// // A ball keeps (I + m a²) ω across the normal, I ω along it: I = 0.2 and I + m a² = 0.7.
 /// assert!((found.chaplygin.unwrap() - Vector3::new(0.0, 2.1, 0.2)).norm() < 1e-15);

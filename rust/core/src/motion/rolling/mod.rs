@@ -1,4 +1,4 @@
-//! Rolling: a body with a convex surface that touches a plane in one point.
+//! Rolling and slipping: a body with a convex surface that touches a plane in one point.
 //!
 //! Points: C the centre of mass, P the point of contact, `ρ = P − C` in body axes; n the unit normal of the plane, towards the body,
 //! and `γ = Rᵀ n` in body axes. A convex surface touches where its outward normal is −γ.
@@ -9,6 +9,7 @@
 //! | ball, ellipsoid, disk, torus, paraboloid | `sphere`, `ellipsoid`, `disk`, `torus`, `paraboloid` |
 //! | the plane, the law of contact, what follows when the body lifts off | [`contact`] |
 //! | Newton's and Euler's equations with the constraint of rolling solved | `equations` |
+//! | those of a body that slips, with the normal force solved; Painlevé's paradox | `sliding` |
 //! | force, friction needed, power | [`force`] |
 //! | what stays constant | [`invariants`] |
 //! | motions in closed form: a ball, a cylinder or a cone | [`mod@rolling_motion`]: `ball`, `lying` |
@@ -48,12 +49,13 @@ mod lying;
 mod paraboloid;
 pub mod rolling_motion;
 pub mod ruled;
+pub(crate) mod sliding;
 mod sphere;
 pub mod steady;
 pub mod surface;
 mod torus;
 
-pub use contact::{Contact, LiftOff, RollingState};
+pub use contact::{Contact, ContactPhase, Friction, Law, LiftOff, Resistance, RollingState};
 pub use rolling_motion::RollingMotion;
 pub use ruled::RuledSurface;
 pub use surface::Surface;

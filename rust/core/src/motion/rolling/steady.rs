@@ -105,6 +105,9 @@ impl Level {
             omega: (*omega).into(),
             normal: (*normal).into(),
             place: [0.0; 2],
+            slip: [0.0; 2],
+            work: 0.0,
+            height: [0.0; 2],
         })
     }
 
@@ -116,6 +119,9 @@ impl Level {
             omega: [0, 1, 2].map(|i| Jet::<6>::variable(omega[i], 3 + i)),
             normal: [0, 1, 2].map(|i| Jet::variable(normal[i], i)),
             place: [zero; 2],
+            slip: [zero; 2],
+            work: zero,
+            height: [zero; 2],
         });
         let rates = [motion.rates.normal, motion.rates.omega].concat();
         Matrix6::from_fn(|row, column| rates[row].slopes[column])

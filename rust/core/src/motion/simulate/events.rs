@@ -151,7 +151,7 @@ impl<'a, E: From<Error>> EventDetector<'a, E> {
 
     /// Looks through the last step, or a part of it; where the run is to end, if it is, as time since the span's start and the
     /// state there.
-    fn look(
+    pub(super) fn look(
         &mut self,
         stepper: &mut dyn Dense<Error = E>,
         start: f64,
@@ -246,6 +246,11 @@ impl<'a, E: From<Error>> EventDetector<'a, E> {
             }
         }
         Ok(None)
+    }
+
+    /// Set the value of a function at the start of the next step, where its definition changes there.
+    pub(super) fn set_value(&mut self, event: usize, value: f64) {
+        self.values[event] = value;
     }
 
     /// Counts an event; whether the run is to end there.

@@ -92,8 +92,8 @@ pub use self::events::{Events, NoEvents};
 pub use self::plan::{Ask, Plan, Refusal, gravity_alone, most_demanding};
 pub use self::runs::{Batch, CallbackPolicy, Member, roll, simulate, simulate_many};
 pub use super::problem::{
-    ContactExtremes, Crossing, Direction, Effort, End, EventTrigger, MOST_STEPS, Method,
-    ReferencePoint, Rule, Run, TIGHTEST, TIGHTEST_TWOFOLD, Task, Tolerance, check_scales,
+    ContactEvent, ContactExtremes, Crossing, Direction, Effort, End, EventTrigger, MOST_STEPS,
+    Method, ReferencePoint, Rule, Run, TIGHTEST, TIGHTEST_TWOFOLD, Task, Tolerance, check_scales,
     check_times,
 };
 pub use super::state::{Phase, State};

@@ -12,7 +12,7 @@ use crate::error::{Error, MotionFault};
 use crate::motion::integrate::taylor;
 use crate::motion::loads::{BodyAtPoint, Load, Term};
 use crate::motion::problem::{End, Method, Run, Task};
-use crate::motion::rolling::Contact;
+use crate::motion::rolling::{Contact, Law, LiftOff};
 use crate::motion::state::Phase;
 use crate::numerics::threads::fill_blocks;
 
@@ -53,9 +53,10 @@ pub fn simulate<L: Load>(
     }
 }
 
-/// Compute the motion of a body that rolls on a plane under uniform gravity g, by Taylor series.
+/// Compute the motion of a body that rolls or slips on a plane under uniform gravity g, by Taylor series.
 ///
-/// The start of `task` must touch the plane and roll, as [`Contact::start`] makes it. Events and `watch` as in [`simulate`].
+/// The start of `task` must touch the plane, as [`Contact::start`] makes it. Where the plane can do work, that work since the start is
+/// the internal state of the samples. Events and `watch` as in [`simulate`].
 ///
 /// # Examples
 ///
@@ -70,7 +71,7 @@ pub fn simulate<L: Load>(
 /// let surface = Surface::sphere(0.5, Vector3::zeros())?;
 /// let incline = Vector3::new(0.6, 0.0, 0.8);
 /// let contact = Contact::rolling(surface, incline, Vector3::zeros(), 0.0, LiftOff::Stop)?;
-/// let start = contact.start(&ball, Vector3::zeros(), UnitQuaternion::identity(), None)?;
+/// let start = contact.start(&ball, Vector3::zeros(), UnitQuaternion::identity(), None, None)?;
 /// let times = [0.0, 2.0];
 /// let task = Task::free(&ball, start, &times, Method::Auto, Tolerance::new(1e-12, 0.0)?);
 /// let go_on = &mut |_| ControlFlow::Continue(());
@@ -90,20 +91,30 @@ pub fn roll<E: From<Error>>(
     events: &mut dyn Events<Error = E>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Run<E> {
-    match task.check_start().and_then(|()| check_rolling(task)) {
+    match task
+        .check_start()
+        .and_then(|()| check_rolling(task, contact))
+    {
         Ok(()) => rolling_run::solve(task, contact, gravity, events, watch),
         Err(error) => Run::at_start(task, End::Failed(error.into())),
     }
 }
 
 /// Check that a task is one of rolling.
-fn check_rolling(task: &Task<'_>) -> Result<(), Error> {
+fn check_rolling(task: &Task<'_>, contact: &Contact) -> Result<(), Error> {
+    let is_backward = task.times.last() < task.times.first();
     let needs = if task.body_at_point.pivoted {
         "a body on a plane has no fixed point: its centre of mass is free"
     } else if !matches!(task.method, Method::Auto | Method::Taylor) {
         "the method \"taylor\" (or \"auto\") rolls; the others do not solve the constraint"
     } else if task.tolerance.is_beyond_doubles() {
         "an rtol of 2.3e-15 or more (ten units of rounding): series of rolling are in doubles"
+    } else if (contact.law != Law::Rolling || contact.lift == LiftOff::Fly)
+        && task.body.inertia().try_inverse().is_none()
+    {
+        "a body with three moments to slip or fly: one without a moment about an axis only rolls"
+    } else if matches!(contact.law, Law::Dry(_)) && is_backward {
+        "times that rise under the law \"dry\": from a body that rolls it is not known when it has slipped before"
     } else {
         return Ok(());
     };
@@ -236,7 +247,7 @@ pub fn simulate_many<R: Batch>(
         let is_over = match &run.end {
             End::Stopped => true,
             End::Failed(error) => batch.ends_all(error),
-            End::Complete | End::Event | End::LiftOff => false,
+            End::Complete | End::Event | End::Contact(_) => false,
         };
         if is_over { Err(()) } else { Ok(()) }
     };
