@@ -160,5 +160,6 @@ def test_bodies_of_every_kind_fly_under_every_law() -> None:
             last = body.simulate(
                 [0, found.events.t[-1]], omega, attitude, load=LOAD, contact=contact, rtol=1e-14
             )
+            assert last.contact is not None
             assert abs(last.contact.residual[-1, 0]) < 1e-12 or np.isnan(last.omega[-1, 0])
     assert landed > 2

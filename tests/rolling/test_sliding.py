@@ -83,7 +83,7 @@ def test_a_smooth_plane_pushes_along_its_normal_alone() -> None:
 @pytest.mark.parametrize("friction", [{"friction": 0.05}, {"viscous": ("normal", 0.4)}, {"viscous": 0.3}])
 def test_friction_of_any_kind_keeps_jelletts_constant(friction: Any) -> None:
     top = RigidBody.from_principal(1.0, (0.08, 0.08, 0.13), center_of_mass=(0, 0, -0.05))
-    given = {"attitude": (np.sin(0.2), 0, 0, np.cos(0.2)), "surface": rolling.sphere(0.5)}
+    given: dict[str, Any] = {"attitude": (np.sin(0.2), 0, 0, np.cos(0.2)), "surface": rolling.sphere(0.5)}
     t = np.linspace(0, 2, 41)
     omega, velocity = np.array([0.3, 0.2, 30.0]), np.array([2.0, 0.0, 0.0])
     start = top.simulate([0, 1e-9], omega, given["attitude"], load=G, contact=rolling.plane(given["surface"]))
@@ -164,7 +164,7 @@ def test_a_rod_falls_into_the_paradox_or_lifts_off_before() -> None:
 
 def test_laws_that_are_refused() -> None:
     plane: Any = rolling.plane
-    for given, words in [
+    cases: list[tuple[dict[str, Any], str]] = [
         ({"friction": 0.1}, "takes whatever friction it needs"),
         ({"law": "sliding"}, "exactly one of friction and viscous"),
         ({"law": "sliding", "friction": 0.1, "viscous": 1.0}, "exactly one of friction and viscous"),
@@ -173,7 +173,8 @@ def test_laws_that_are_refused() -> None:
         ({"law": "slippery"}, 'law: expected "rolling", "sliding" or "dry"'),
         ({"law": "sliding", "viscous": ("along", 1.0)}, "viscous: expected a number"),
         ({"law": "sliding", "viscous": "thick"}, "viscous: expected a number"),
-    ]:
+    ]
+    for given, words in cases:
         with pytest.raises(ValueError, match=words):
             plane(SPHERE, **given)
     for given in (

@@ -326,7 +326,9 @@ class Trajectory(metaclass=ClassWithHints):
         return Invariants(
             energy,
             along,
-            None if energy is None else relative_drift(energy, kinetic + np.abs(potential)),
+            None
+            if energy is None or potential is None
+            else relative_drift(energy, kinetic + np.abs(potential)),
             None if along is None else relative_drift(along, lengths(spin)),
             **self._kept_by_rolling(relative_drift),
         )

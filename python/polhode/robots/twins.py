@@ -107,8 +107,8 @@ def _relation(one: RigidBody, other: RigidBody, size: float) -> str:
         first, second = (_form(body, power) for body in (one, other))
         if abs(first - second) > power * change * i**power:
             return (
-                "its products of inertia and its centre of mass have signs of different sides: of the centre c "
-                f"and the tensor I, {name} is {first:.4g}, that of the other {second:.4g}"
+                "its products of inertia and its centre of mass have signs of different sides: of the centre "
+                f"c and the tensor I, {name} is {first:.4g}, that of the other {second:.4g}"
             )
     return ""
 
