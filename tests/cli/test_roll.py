@@ -80,8 +80,30 @@ def test_a_ball_on_a_slope_and_on_a_turntable() -> None:
     np.testing.assert_allclose(found["point_end"], (way, 0, 0), rtol=0, atol=1e-12)
     code, found = told(*ball, "--omega", 0, 3, 0, "--turntable", "30 rpm")
     assert code == 0
-    assert "not conserved" in found["conserved"]
+    assert found["energy_drift"] < 1e-12
     np.testing.assert_allclose(found["point_end"][2], 0.0, atol=1e-15)
+
+
+def test_a_ball_that_is_thrown_slips_and_then_rolls() -> None:
+    ball = ("--surface", "sphere", "--radius", "0.11", "--mass", 7, "--omega", 0, 0, 0, "--end", 8)
+    code, found = told(*ball, "--velocity", "8 0 0", "--friction", 0.04)
+    assert code == 1  # it slips
+    ((event),) = found["events"]
+    assert event["kind"] == "roll"
+    assert event["t"] == pytest.approx(2 * 8 / (7 * 0.04 * 9.81), abs=1e-12)
+    assert found["energy_drift"] < 1e-13
+    assert told(*ball, "--friction", 0.04)[0] == 0  # it stands
+    done = run("roll", *ball, "--velocity", "8 0 0")
+    assert done[0] == 2
+    assert "--friction" in done[2]
+
+
+def test_a_body_that_flies_lands() -> None:
+    loaded = ("--surface", "sphere", "--radius", 1, "--mass", 1, "--moments", "0.09 0.09 0.09")
+    top = (*loaded, "--center-of-mass", "0 0 0.9", "--omega", 0.5, 0, 0, "--end", 3, "--lift", "fly")
+    code, found = told(*top)
+    assert (code, found["status"]) == (1, "landing")
+    assert [event["kind"] for event in found["events"]] == ["lift-off", "landing"]
 
 
 def test_surfaces_and_their_axes() -> None:

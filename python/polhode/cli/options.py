@@ -599,9 +599,15 @@ class RollOptions:
     turntable
         Rate at which the plane turns about its normal, such as "33.3 rpm". A number without a unit is in
         rad/s.
+    friction
+        Coefficient of dry friction: the body rolls while that takes no more, and slips else. Default: it
+        rolls, whatever friction that takes.
+    velocity
+        Velocity of the centre of mass at the start along the axes of space, with --friction, such as "8 0 0".
+        A number without a unit is in m/s. Default: the body does not slip at the start.
     lift
-        What happens where the plane would have to pull: the body leaves it and the run stops, or the plane
-        holds the body.
+        What happens where the plane would have to pull: the body leaves it and the run stops, the body flies
+        until it lands, or the plane holds it.
     end
         Required: last time, such as 3 or "2 min". A number without a unit is in s. The first time is 0.
     rtol
@@ -629,7 +635,9 @@ class RollOptions:
     gravity: Annotated[str, MOTION] = "9.81"
     slope: Annotated[str | None, MOTION] = None
     turntable: Annotated[str | None, MOTION] = None
-    lift: Annotated[Literal["stop", "hold"], MOTION] = "stop"
+    friction: Annotated[float | None, MOTION] = None
+    velocity: Annotated[Words, WORDS, MOTION] = ()
+    lift: Annotated[Literal["stop", "fly", "hold"], MOTION] = "stop"
     end: Annotated[str | None, MOTION] = None
     rtol: Annotated[float, COMPUTATION] = 1e-12
     times: Annotated[Count, RESULTS] = 1001

@@ -61,7 +61,7 @@ _HOMOGENEOUS: Final[dict[str, Callable[..., RigidBody]]] = {
 def roll_report(file: Path | None, roll: RollOptions, options: BodyOptions) -> tuple[Report, bool]:
     """Compute the motion of a body that rolls, save it as asked for and report on it.
 
-    Returned is, with the report, whether the contact lasts to the end.
+    Returned is, with the report, whether the body rolls to the end.
     """
     end = _check_options(roll)
     sizes = _sizes(roll)
@@ -100,13 +100,14 @@ def roll_report(file: Path | None, roll: RollOptions, options: BodyOptions) -> t
     report.notes += loaded.notes
     report.notes += [str(error) for error in motion.failures]
     friction = float(motion.contact.largest_friction_needed.value)
-    if friction > _RUBBER:
+    slips = bool((motion.contact.phase[known] == "sliding").any() or (motion.events.kind == "slip").any())
+    if friction > _RUBBER and roll.friction is None:
         report.notes.append(
             f"rolling needs a coefficient of friction of {friction:.3g}: a body on a table slips before, and "
             "does not move like this"
         )
     _save(report, motion, simulate, last, roll, printable(Path(source).name) if source else "")
-    return report, is_kept
+    return report, is_kept and not slips
 
 
 def _check_options(roll: RollOptions) -> float:
@@ -249,12 +250,30 @@ def _start(
     if not 0.0 < roll.rtol < 1.0:
         raise PolhodeError(f"--rtol: {roll.rtol:g} is not a tolerance between 0 and 1")
     turntable = 0.0 if roll.turntable is None else quantity(roll.turntable, "rad/s", "--turntable")
-    contact = rolling.plane(surface, turntable=turntable, lift=roll.lift)
+    if roll.velocity and roll.friction is None:
+        raise PolhodeError(
+            "--velocity: a body that rolls has the velocity that rolling gives; give --friction"
+        )
+    velocity = vector(roll.velocity, "m/s", "--velocity") if roll.velocity else None
+    contact = rolling.plane(
+        surface,
+        law="rolling" if roll.friction is None else "dry",
+        friction=roll.friction,
+        turntable=turntable,
+        lift=roll.lift,
+    )
     load = loads.uniform_gravity((gravity * np.sin(slope), 0.0, -gravity * np.cos(slope)))
 
     def simulate(t: Floats) -> Trajectory:
         return body.simulate(
-            t, omega, attitude, load=load, contact=contact, rtol=roll.rtol, on_failure="keep"
+            t,
+            omega,
+            attitude,
+            load=load,
+            contact=contact,
+            velocity=velocity,
+            rtol=roll.rtol,
+            on_failure="keep",
         )
 
     return simulate, _tilts(np.asarray(attitude))
@@ -268,17 +287,18 @@ def _tilts(quaternion: Floats) -> Any:
 
 def _time_of_loss(motion: Trajectory, known: NDArray[np.bool_]) -> float:
     """Return when the contact is lost; where the run fails, the last time that is known."""
-    if motion.status == "lift-off":
+    if motion.status in ("lift-off", "landing"):
         return float(motion.events.t[-1])
     return float(motion.t[known][-1])
 
 
 def _events(motion: Trajectory, end: float) -> list[Field | Table]:
-    """List lift-offs; with --lift hold they are times from which the plane would have to pull."""
+    """List the events; with --lift hold a lift-off is a time from which the plane would have to pull."""
     if not len(motion.events.t):
         ended = motion.status == "failed"
         return [] if ended else [Field("events", "events", [], cells=[f"none up to {end:g} s"])]
-    rows: list[dict[str, Any]] = [{"kind": "lift-off", "t": float(t)} for t in motion.events.t]
+    events = zip(motion.events.kind, motion.events.t, strict=True)
+    rows: list[dict[str, Any]] = [{"kind": str(kind), "t": float(t)} for kind, t in events]
     return [Table("events", [Column("kind", "event"), Column("t", "time", "s")], rows)]
 
 
@@ -303,8 +323,15 @@ def _contact(motion: Trajectory, known: NDArray[np.bool_]) -> list[Field]:
 
 def _conserved(motion: Trajectory, known: NDArray[np.bool_], loaded: LoadedBody) -> list[Field]:
     kept, unit = motion.invariants(), f"{loaded.moment_unit}/s"
+    contact = motion._contact
+    assert contact is not None
+    is_plain = contact.law == "rolling" and not contact.turntable
     rows = (
-        ("energy", "energy", f"{loaded.moment_unit}/s^2"),
+        (
+            "energy",
+            "energy" if is_plain else "energy less the work of the plane",
+            f"{loaded.moment_unit}/s^2",
+        ),
         ("jellett", "Jellett's constant", f"{loaded.moment_unit} m/s"),
         ("routh", "Routh's constant", f"{loaded.moment_unit}/s"),
         ("chaplygin", "Chaplygin's vector", unit),
@@ -319,7 +346,7 @@ def _conserved(motion: Trajectory, known: NDArray[np.bool_], loaded: LoadedBody)
             Field(name, words, values[0], of, scale=size),
             Field(f"{name}_drift", "", float(getattr(kept, f"{name}_drift")), hint="largest drift, relative"),
         ]
-    return fields or [Field("conserved", "energy", "not conserved: the turntable does work")]
+    return fields
 
 
 def _last(motion: Trajectory, known: NDArray[np.bool_], last: float) -> list[Field]:
@@ -328,7 +355,7 @@ def _last(motion: Trajectory, known: NDArray[np.bool_], last: float) -> list[Fie
     assert contact is not None
     k = int(np.flatnonzero(known)[-1])
     omega, quaternion, place = motion.omega[k], motion.quaternion[k], contact.point[k]
-    if motion.status == "lift-off":  # between two of the times
+    if motion.status in ("lift-off", "landing"):  # between two of the times
         omega, quaternion = motion.events.omega[-1], motion.events.quaternion[-1]
         place = None
     return [

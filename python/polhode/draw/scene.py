@@ -297,7 +297,8 @@ def energy_of(footage: Footage, *, is_exact: bool, travel: float = 0.0) -> Energ
     trajectory, chosen = footage.trajectory, footage.chosen
     kinetic = trajectory.kinetic_energy().total + travel
     potential = trajectory._potential()
-    if trajectory._contact is not None and trajectory._contact.turntable:
+    contact = trajectory._contact
+    if contact is not None and (contact.turntable or contact.law != "rolling" or contact.resistance):
         return Energy(kinetic[chosen], None, "T + V is not kept: the plane does work", 0.0)
     if potential is None:
         return Energy(kinetic[chosen], None, _why(trajectory), 0.0)
