@@ -120,8 +120,10 @@ class TestHook:
         """The page names the hook, and holds all of it for a configuration that needs no other repository."""
         page = blocks(ROOT / "docs" / "how_to" / "repository.md")
         configs = [yaml.safe_load(code) for language, code in page if language == "yaml"]
-        local, by_release, workflow = configs
-        assert local["repos"][0]["hooks"] == [{k: v for k, v in hook().items() if k != "description"}]
+        local, by_release, with_baseline, workflow = configs
+        own = {k: v for k, v in hook().items() if k != "description"}
+        assert local["repos"][0]["hooks"] == [own]
+        assert with_baseline["repos"][0]["hooks"] == [own | {"args": ["--baseline", "accepted.json"]}]
         assert by_release["repos"][0]["hooks"][0]["id"] == hook()["id"]
         (inputs,) = (step["with"] for step in workflow["jobs"]["check"]["steps"] if "with" in step)
         assert set(inputs) <= set(yaml.safe_load((ROOT / "action.yml").read_text())["inputs"])
