@@ -114,6 +114,28 @@ def bullet(*, maximal: bool = False, in_body: bool = True) -> Record:
     return t[:, 0], quaternion, rates
 
 
+def basilisk() -> Record:
+    """Run a spacecraft without gravity. ``sigma_BN`` are its modified Rodrigues parameters."""
+    from Basilisk.simulation import spacecraft
+    from Basilisk.utilities import SimulationBaseClass, macros
+    from scipy.spatial.transform import Rotation
+
+    simulation = SimulationBaseClass.SimBaseClass()
+    simulation.CreateNewProcess("process").addTask(simulation.CreateNewTask("task", macros.sec2nano(STEP)))
+    craft = spacecraft.Spacecraft()
+    craft.hub.mHub = 1.0
+    craft.hub.IHubPntBc_B = TENSOR.tolist()
+    craft.hub.omega_BN_BInit = OMEGA[:, None].tolist()
+    states = craft.scStateOutMsg.recorder()
+    simulation.AddModelToTask("task", craft)
+    simulation.AddModelToTask("task", states)
+    simulation.InitializeSimulation()
+    simulation.ConfigureStopTime(macros.sec2nano(END))
+    simulation.ExecuteSimulation()
+    attitude = Rotation.from_mrp(states.sigma_BN).as_quat()
+    return 1e-9 * states.times(), attitude, np.array(states.omega_BN_B)
+
+
 ENGINES: list[tuple[str, str, str, Callable[[], Record]]] = [
     ("MuJoCo", "mujoco", "RK4", lambda: mujoco("RK4")),
     ("MuJoCo", "mujoco", "implicit", lambda: mujoco("implicit")),
@@ -128,6 +150,7 @@ ENGINES: list[tuple[str, str, str, Callable[[], Record]]] = [
     ),
     ("Drake", "drake", "error control, 1e-8", drake),
     ("Pinocchio", "pin", "`aba`, first-order steps", pinocchio),
+    ("Basilisk", "bsk", "RK4", basilisk),
     ("Bullet", "pybullet", "reduced coordinates", bullet),
     ("Bullet", "pybullet", "maximal coordinates", lambda: bullet(maximal=True)),
     (
