@@ -136,6 +136,31 @@ def basilisk() -> Record:
     return 1e-9 * states.times(), attitude, np.array(states.omega_BN_B)
 
 
+def newton(solver: str) -> Record:
+    """Run one free body. ``body_qd`` has the velocity first, then ω in space; numbers have 32 bits."""
+    import newton
+    import warp
+    from scipy.spatial.transform import Rotation
+
+    builder = newton.ModelBuilder(gravity=(0.0, 0.0, 0.0))
+    builder.add_body(mass=1.0, inertia=warp.mat33(TENSOR), com=warp.vec3(0.0))
+    model = builder.finalize(device="cpu")
+    steps, state, after = getattr(newton.solvers, solver)(model), model.state(), model.state()
+    start = np.array([0.0, 0.0, 0.0, *OMEGA], dtype=np.float32)
+    state.body_qd.assign(start[None])
+    state.joint_qd.assign(start)
+    rows = []
+    for k in range(round(END / STEP) + 1):
+        q = state.body_q.numpy()[0, 3:].astype(np.float64)
+        omega = Rotation.from_quat(q).inv().apply(state.body_qd.numpy()[0, 3:])
+        rows.append((k * STEP, *q, *omega))
+        state.clear_forces()
+        steps.step(state, after, model.control(), None, STEP)
+        state, after = after, state
+    t, quaternion, rates = np.split(np.array(rows), [1, 5], axis=1)
+    return t[:, 0], quaternion, rates
+
+
 ENGINES: list[tuple[str, str, str, Callable[[], Record]]] = [
     ("MuJoCo", "mujoco", "RK4", lambda: mujoco("RK4")),
     ("MuJoCo", "mujoco", "implicit", lambda: mujoco("implicit")),
@@ -151,6 +176,8 @@ ENGINES: list[tuple[str, str, str, Callable[[], Record]]] = [
     ("Drake", "drake", "error control, 1e-8", drake),
     ("Pinocchio", "pin", "`aba`, first-order steps", pinocchio),
     ("Basilisk", "bsk", "RK4", basilisk),
+    ("Newton", "newton", "`SolverXPBD`", lambda: newton("SolverXPBD")),
+    ("Newton", "newton", "`SolverSemiImplicit`, as it stands", lambda: newton("SolverSemiImplicit")),
     ("Bullet", "pybullet", "reduced coordinates", bullet),
     ("Bullet", "pybullet", "maximal coordinates", lambda: bullet(maximal=True)),
     (
