@@ -86,7 +86,10 @@ class TestOnce:
         path, counts = seen(f"part{suffix}", writer(*cube(2.0)))
         body = RigidBody.from_file(path, density=1.0)
         assert body.mass == pytest.approx(8.0)
-        assert (counts.opened, counts.read) == (1, int(is_for_the_core(kind)))
+        found = counts.opened, counts.read
+        # Streams keep no triangles: those of a small file are read once more, for the body to hold.
+        again = {".stl": (0, 1), ".ply": (1, 0)}[suffix] if load(path).is_stream else (0, 0)
+        assert found == (1 + again[0], int(is_for_the_core(kind)) + again[1])
         assert load(path).format == name
 
     @pytest.mark.parametrize("kind", WRITERS)
