@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from browser import Browser, needs_browser
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from moving_pictures import DESK, ON_ITS_SIDE, PHONE, TOLD, inside
 from page_data import data
@@ -193,6 +194,16 @@ def test_figures() -> None:
             plot.contact(wrong)
 
 
+def test_the_plane_does_not_cover_the_body() -> None:
+    """In axes of one's own too, made without any option."""
+    figure = Figure(figsize=(4, 4), dpi=100)
+    canvas: Any = FigureCanvasAgg(figure)
+    plot.rolling(jumper(np.linspace(0, 1.5, 301)), figure.add_subplot(projection="3d"), index=220)
+    canvas.draw()
+    pixels = np.asarray(canvas.buffer_rgba())[..., :3].astype(int)
+    assert (pixels[..., 2] > pixels[..., 0] + 25).sum() > 200
+
+
 def test_a_body_that_has_left_the_plane_is_drawn_up_to_there() -> None:
     body = RigidBody.from_principal(1.0, (0.09, 0.09, 0.09), center_of_mass=(0, 0, 0.9))
     motion: Any = body.simulate(
@@ -202,3 +213,63 @@ def test_a_body_that_has_left_the_plane_is_drawn_up_to_there() -> None:
     ax: Any = plot.contact(motion, Figure().add_subplot())
     assert np.isfinite(ax.lines[0].get_xydata()).all()
     plot.rolling(motion, Figure().add_subplot(projection="3d"))
+
+
+def jumper(t: Any) -> Trajectory:
+    """A smooth eccentric ball: it leaves the plane at 0.514 s, and lands at 1.535 s."""
+    body = RigidBody.from_principal(1.0, (0.09, 0.09, 0.09), center_of_mass=(0, 0, 0.9))
+    contact = rolling.plane(rolling.sphere(1.0), law="sliding", friction=0.0, lift="fly")
+    attitude = (np.sin(0.6), 0.0, 0.0, np.cos(0.6))
+    return body.simulate(t, (5, 0.3, 0), attitude, load=G, contact=contact, rtol=1e-12)
+
+
+def test_in_flight_nothing_is_traced() -> None:
+    """The plane stays where it is, and the body is above it."""
+    motion: Any = jumper(np.linspace(0, 1.5, 301))
+    flies = motion.contact.phase == "flying"
+    assert 150 < np.count_nonzero(flies) < 250
+    ax: Any = plot.contact(motion, Figure().add_subplot())
+    np.testing.assert_array_equal(np.isnan(ax.lines[0].get_xydata()[:, 0]), flies)
+    solid: Any = plot.rolling(motion, Figure().add_subplot(projection="3d"), index=200)
+    trace, *on_body = (np.array(line.get_data_3d())[0] for line in solid.lines)
+    assert np.isnan(trace[flies[:201]]).all()
+    assert all(np.isnan(one[flies[:201]]).all() for one in on_body)
+    assert len(on_body) == 2  # no dot where nothing touches
+
+
+@needs_browser
+def test_in_flight_the_page_has_no_contact(browser: Browser, folder: Path) -> None:
+    page = jumper(np.linspace(0, 1.5, 301)).animate(folder / "jumper.html")
+    browser.screen(*DESK)
+    exact: Any = jumper([0.0, 0.3, 1.0])
+    for time, touches, row in ((0.3, True, 1), (1.0, False, 2)):
+        browser.open(page, f"#t={time}")
+        place = browser.run(f"(({{ place }}) => [place.touches, place.contact])(polhode.stateAt({time}))")
+        assert place[0] is touches
+        np.testing.assert_allclose(place[1], exact.contact.point[row], atol=2e-3)
+        friction = browser.run(TOLD)["friction needed"]
+        assert (friction == "none, in flight") != touches
+
+
+@pytest.mark.parametrize(
+    ("given", "works"),
+    [
+        ({}, False),
+        ({"law": "dry", "friction": 3.0}, False),  # it rolls all the way
+        ({"law": "dry", "friction": 0.01}, True),
+        ({"law": "sliding", "friction": 0.0}, False),
+        ({"law": "sliding", "viscous": 0.1}, True),
+        ({"resistance": rolling.resistance(viscous=1e-3)}, True),
+        ({"turntable": 1.0}, True),
+    ],
+)
+def test_the_plane_is_said_to_work_where_it_does(given: dict[str, Any], works: bool, tmp_path: Path) -> None:
+    velocity = (1.0, 0.5, 0.0) if given.get("friction") == 0.01 or given.get("law") == "sliding" else None
+    contact = rolling.plane(rolling.sphere(0.5), **given)
+    motion = solids.sphere(0.5, mass=1.0).simulate(
+        np.linspace(0, 1, 101), (0.3, 1.0, 0.2), load=G, contact=contact, velocity=velocity
+    )
+    assert motion.contact is not None
+    assert bool(np.abs(motion.contact.work).max() > 1e-12) == works
+    energy = data(motion.animate(tmp_path / "a.html"))["energy"]
+    assert ("the plane does work" in energy["why"]) == works

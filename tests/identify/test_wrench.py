@@ -3,9 +3,9 @@ told."""
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from typing import Any
 
+import cvxpy
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -185,10 +185,7 @@ class TestEdge:
     def test_the_best_body_is_possible_and_certified_in_many_logs(self) -> None:
         assert self.check(60) >= 90
 
-    @pytest.mark.skipif(find_spec("cvxpy") is None, reason="cvxpy is not installed")
     def test_the_optimum_of_another_solver(self) -> None:
-        import cvxpy  # type: ignore[import-not-found]  # in environments that have it
-
         for found, (triangle, target, maps, _, rest), x in self.problems(3):
             if not found.at_edge:
                 continue

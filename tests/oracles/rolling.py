@@ -143,9 +143,8 @@ class RollingBody:
     def plane_velocity(self, place: Sequence[mpf]) -> Vector:
         return times(self.turntable, cross(self.normal, add(place, times(mpf(-1), self.point))))
 
-    def solve(self, state: Sequence[mpf]) -> tuple[list[mpf], Vector, Vector]:
-        """Return the rates of a state, the force of the plane and the velocity of C."""
-        q, omega, place = state[:4], state[4:7], state[7:]
+    def turning(self, q: Sequence[mpf], omega: Sequence[mpf]) -> tuple[list[mpf], Vector, Vector, Matrix]:
+        """Return the rate of q, r from C to the contact, its rate, and the tensor in space."""
         spin = quaternion_rate(q, omega)
         arm = self.arm(q)
         with mp.workdps(2 * DIGITS):
@@ -155,6 +154,12 @@ class RollingBody:
         frame = rotation(q)
         rows_of_inertia = [mul(self.inertia, frame[i]) for i in range(3)]
         inertia = [[dot(row, frame[j]) for j in range(3)] for row in rows_of_inertia]
+        return spin, arm, arm_rate, inertia
+
+    def solve(self, state: Sequence[mpf]) -> tuple[list[mpf], Vector, Vector]:
+        """Return the rates of a state, the force of the plane and the velocity of C."""
+        q, omega, place = state[:4], state[4:7], state[7:]
+        spin, arm, arm_rate, inertia = self.turning(q, omega)
         velocity = add(self.plane_velocity(add(place, arm)), times(mpf(-1), cross(omega, arm)))
         plane = times(self.turntable, cross(self.normal, add(velocity, arm_rate)))
         # The unknowns are α and F; a from the constraint.
@@ -194,15 +199,7 @@ class SlidingBody(RollingBody):
     def solve_slipping(self, state: Sequence[mpf], velocity: Sequence[mpf]) -> tuple[Vector, Vector, Vector]:
         """Return the accelerations α and a, and the force of the plane."""
         q, omega = state[:4], state[4:7]
-        spin = quaternion_rate(q, omega)
-        arm = self.arm(q)
-        with mp.workdps(2 * DIGITS):
-            h = mpf(10) ** -DIGITS
-            ahead, behind = (self.arm([a + s * b for a, b in zip(q, spin, strict=True)]) for s in (h, -h))
-            arm_rate = [(a - b) / (2 * h) for a, b in zip(ahead, behind, strict=True)]
-        frame = rotation(q)
-        rows_of_inertia = [mul(self.inertia, frame[i]) for i in range(3)]
-        inertia = [[dot(row, frame[j]) for j in range(3)] for row in rows_of_inertia]
+        _, arm, arm_rate, inertia = self.turning(q, omega)
         kind, coefficient = self.case["friction"][0], mpf(self.case["friction"][1])
         slip = self.slip(state, velocity)
         slip = add(slip, times(-dot(slip, self.normal), self.normal))

@@ -47,6 +47,8 @@ class Ground:
         The normal of the surface there, outward, components in the body frame.
     friction : numpy.ndarray, shape (T,)
         The friction needed.
+    touches : numpy.ndarray of bool, shape (T,)
+        Whether the body touches the plane; where it flies the contact is its lowest point.
     """
 
     normal: Floats
@@ -57,6 +59,7 @@ class Ground:
     in_body: Floats
     outward: Floats
     friction: Floats
+    touches: NDArray[np.bool_]
 
     def axes(self, t: float) -> Floats:
         """Return two unit vectors along the plane, as rows; they turn with it."""
@@ -80,6 +83,7 @@ def ground_of(trajectory: Trajectory) -> Ground | None:
         in_body=contact.point_in_body - trajectory.body.center_of_mass,
         outward=-_core.rotate(trajectory.quaternion, plane.normal, inverse=True),
         friction=contact.friction_needed,
+        touches=contact.phase != "flying",
     )
 
 

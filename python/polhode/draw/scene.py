@@ -297,8 +297,7 @@ def energy_of(footage: Footage, *, is_exact: bool, travel: float = 0.0) -> Energ
     trajectory, chosen = footage.trajectory, footage.chosen
     kinetic = trajectory.kinetic_energy().total + travel
     potential = trajectory._potential()
-    contact = trajectory._contact
-    if contact is not None and (contact.turntable or contact.law != "rolling" or contact.resistance):
+    if _plane_works(trajectory):
         return Energy(kinetic[chosen], None, "T + V is not kept: the plane does work", 0.0)
     if potential is None:
         return Energy(kinetic[chosen], None, _why(trajectory), 0.0)
@@ -306,6 +305,15 @@ def energy_of(footage: Footage, *, is_exact: bool, travel: float = 0.0) -> Energ
         return Energy(kinetic[chosen], None, "", 0.0, travel)
     size = 0.0 if is_exact else float((kinetic + np.abs(potential)).max())
     return Energy(kinetic[chosen], potential[chosen], "", size)
+
+
+def _plane_works(trajectory: Trajectory) -> bool:
+    """Return whether the plane on which the body rolls or slips may give or take energy."""
+    plane, contact = trajectory._contact, trajectory.contact
+    if plane is None or contact is None:
+        return False
+    slips = (contact.phase == "sliding").any() and plane.friction != 0.0
+    return bool(plane.turntable or plane.resistance or slips)
 
 
 def _why(trajectory: Trajectory) -> str:

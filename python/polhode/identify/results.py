@@ -269,11 +269,11 @@ def _words(vector: Floats, names: Sequence[str]) -> str:
             axis = axes[:, 2] * np.sign(axes[np.argmax(np.abs(axes[:, 2])), 2])
             x, y, z = (f"{one + 0.0:.2g}" for one in axis.round(2))
             return f"the moment about ({x}, {y}, {z})"
-    named = [_named(name) for name in large]
-    return named[0] if len(named) == 1 else f"a combination of {', '.join(named[:-1])} and {named[-1]}"
+    words = [_parameter_words(name) for name in large]
+    return words[0] if len(words) == 1 else f"a combination of {', '.join(words[:-1])} and {words[-1]}"
 
 
-def _named(name: str) -> str:
+def _parameter_words(name: str) -> str:
     if name in NUMBERS[1:4]:
         return f"the centre of mass along {name[1]}"
     if name in NUMBERS[4:7]:

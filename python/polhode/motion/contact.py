@@ -40,7 +40,7 @@ class ContactHistory:
     Attributes
     ----------
     point : numpy.ndarray, shape (..., T, 3)
-        The point of contact, in space.
+        The point of contact, in space; of a body that flies its lowest point.
     point_in_body : numpy.ndarray, shape (..., T, 3)
         The same point from the origin of the body frame, components in the body frame.
     force : numpy.ndarray, shape (..., T, 3)

@@ -282,7 +282,7 @@ class Picture:
         scene, k = self._scene, int(self._scene.sample[frame])
         scale = _ROLLER / longest(scene.shape.vertices)
         center, n = ground.center[k], ground.normal
-        below = center - n * (n @ (center - ground.contact[k]))
+        below = center - n * (n @ (center - ground.middle))
         shift = (below - center) * scale
         draw_ground(
             self._ax, ground, scene.shape, scene.quaternion[frame], k, float(scene.t[frame]),

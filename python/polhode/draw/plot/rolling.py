@@ -52,7 +52,7 @@ def rolling(
         Where to draw; a new figure by default.
     index : int
         At which of the times the body is drawn; the last by default. Traces are those up to this time. The
-        trace on the far side of the body is faint.
+        trace on the far side of the body is faint. In flight nothing is traced.
     length_label : str
         Word for the unit of lengths; it converts no number. The picture says how long a cell of the grid on
         the plane is.
@@ -84,7 +84,7 @@ def rolling(
     low, high = seen.min(axis=0), seen.max(axis=0)
     size = longest(shape.vertices)
     middle = 0.5 * (low + high)
-    middle = middle - ground.normal * (ground.normal @ (middle - ground.contact[k]))
+    middle = middle - ground.normal * (ground.normal @ (middle - ground.middle))
     half = float(0.5 * np.linalg.norm(high - low) + 1.2 * size)
     decade = 10.0 ** np.floor(np.log10(half / 4.0))
     cell = float(decade * max(part for part in (1.0, 2.0, 5.0) if part * decade <= half / 4.0))
@@ -142,6 +142,7 @@ def draw_ground(
         Side of a cell of the grid, in the picture.
     """
     art3d: Any = require("mpl_toolkits.mplot3d.art3d", extra="plot", purpose="drawing")
+    ax.computed_zorder = False  # else the plane, whose middle may be nearer, covers the body
     origin, scale, half = place
     view, to_space = toward_viewer(ax), _core.rotate(quaternion, np.eye(3)).T
     along, across = ground.axes(t)
@@ -158,7 +159,8 @@ def draw_ground(
     ax.add_collection3d(art3d.Line3DCollection(lines, colors="0.82", linewidths=0.7, zorder=0.5))
     trace = (ground.contact[: k + 1] - origin) * scale
     is_near = (np.abs(trace @ np.array([along, across]).T) <= half * (1.0 + 1e-9)).all(axis=1)
-    trace = trace + shift
+    trace, touches = trace + shift, ground.touches[: k + 1]
+    is_near &= touches
     ax.plot(*np.where(is_near[:, np.newaxis], trace, np.nan).T, color=CONTACT_COLOR, linewidth=1.6, zorder=1)
     center = (ground.center[k] - origin) * scale + shift
     triangles = (center + shape.vertices * scale @ to_space.T)[shape.faces]
@@ -173,11 +175,12 @@ def draw_ground(
     ax.add_collection3d(body)
     on_body = center + ground.in_body[: k + 1] * scale @ to_space.T
     near = ground.outward[: k + 1] @ to_space.T @ view >= 0.0
-    for chosen, alpha in ((near, 1.0), (~near, 0.3)):
+    for chosen, alpha in ((near & touches, 1.0), (~near & touches, 0.3)):
         wide = chosen | np.append(chosen[1:], False) | np.insert(chosen[:-1], 0, False)
-        points = np.where((chosen | (wide & near))[:, np.newaxis], on_body, np.nan)
+        points = np.where((chosen | (wide & near & touches))[:, np.newaxis], on_body, np.nan)
         ax.plot(*points.T, color=CONTACT_COLOR, linewidth=1.8, alpha=alpha, zorder=3)
-    ax.plot(*trace[k : k + 1].T, "o", color=CONTACT_COLOR, markersize=5.0, zorder=4)
+    if touches[k]:
+        ax.plot(*trace[k : k + 1].T, "o", color=CONTACT_COLOR, markersize=5.0, zorder=4)
 
 
 @with_hints
@@ -211,6 +214,7 @@ def contact(trajectory: Trajectory, ax: Axes | None = None, *, length_label: str
     along = ground.axes(0.0)
     ax = axes_2d(ax)
     touched = (ground.contact[:known] - ground.middle) @ along.T
+    touched = np.where(ground.touches[:known, np.newaxis], touched, np.nan)
     above = (ground.center[:known] - ground.middle) @ along.T
     ax.plot(*touched.T, color=CONTACT_COLOR, linewidth=1.6, label="contact")
     ax.plot(*above.T, color=AXIS_COLORS[0], linewidth=1.2, linestyle="--", label="centre of mass")

@@ -8,6 +8,7 @@ const BESIDE = 0.95;
 const BELOW = 0.35; // the plane, under the middle of the view
 const PATCH = 1.7;
 const CELL = 0.42;
+const TOUCHES = 1e-9; // height over the plane, relative to the distance of the centre of mass
 
 /** A plane and its places in space; `center` and `contact` are rows of three at each frame. */
 export class Ground {
@@ -19,11 +20,12 @@ export class Ground {
     this.across = cross(n, this.along);
   }
 
-  /** Places at a time: of the centre of mass, and of the contact in space and, from the centre, in the body. */
+  /** Places at a time: of the centre of mass, and of the contact in space and, from the centre, in the body. In flight the contact is the lowest point, and touches nothing. */
   at(t, q) {
     const [low, high, span, s] = this.frames.place(t);
     const center = this.frames.smooth(this.center, low, high, span, s), contact = this.frames.smooth(this.contact, low, high, span, s);
-    return { center, contact, inBody: rotate(conjugate(q), difference(contact, center)), outward: rotate(conjugate(q), scaled(this.normal, -1)) };
+    const touches = Math.abs(dot(this.normal, difference(contact, this.middle))) <= TOUCHES * length(difference(contact, center));
+    return { center, contact, touches, inBody: rotate(conjugate(q), difference(contact, center)), outward: rotate(conjugate(q), scaled(this.normal, -1)) };
   }
 
   /** The lines of a grid that is fixed in the plane, around a point of it, within a distance. */
@@ -52,9 +54,13 @@ function traceOn(view, trail, q, put, width) {
   const isNear = (one) => dot(rotate(q, one.outward), view.toward) >= 0;
   let run = [];
   trail.forEach((one, i) => {
+    if (!one.touches) {
+      run = [];
+      return;
+    }
     run.push(put(one.inBody));
     const last = i === trail.length - 1, near = isNear(one);
-    if (last || isNear(trail[i + 1]) !== near) {
+    if (last || !trail[i + 1].touches || isNear(trail[i + 1]) !== near) {
       if (run.length > 1) view.path(run, colors.contact, width, { alpha: near ? 1 : 0.3 });
       run = [put(one.inBody)];
     }
@@ -65,7 +71,7 @@ function traceOn(view, trail, q, put, width) {
 export function drawOnGround(view, now, motion, shown) {
   if (!view.begin()) return;
   const { q, omega, momentum, place } = now, { ground, solid } = motion, n = ground.normal;
-  const size = ROLLER / solid.reach, below = difference(place.center, scaled(n, dot(n, difference(place.center, place.contact))));
+  const size = ROLLER / solid.reach, below = difference(place.center, scaled(n, dot(n, difference(place.center, ground.middle))));
   const put = (x) => sum(scaled(difference(x, below), size), scaled(n, -BELOW)), center = put(place.center);
   const trail = shown.traces ? [...motion.trail.upTo(now.since).contact, place] : [];
   const plane = () => {
@@ -73,7 +79,7 @@ export function drawOnGround(view, now, motion, shown) {
     for (const line of ground.lines(now.t, below, PATCH / size, CELL / size)) view.path(line.map(put), colors.grey, 1, { alpha: 0.8 });
     let run = []; // what is farther is outside of the plane that is drawn
     trail.forEach((one, i) => {
-      const inside = length(difference(one.contact, below)) * size < PATCH;
+      const inside = one.touches && length(difference(one.contact, below)) * size < PATCH;
       if (inside) run.push(put(one.contact));
       if (run.length > 1 && (!inside || i === trail.length - 1)) view.path(run, colors.contact, 2);
       if (!inside) run = [];
@@ -88,7 +94,7 @@ export function drawOnGround(view, now, motion, shown) {
   };
   const parts = dot(n, view.toward) >= 0 ? [plane, body] : [body, plane];
   for (const draw of parts) draw();
-  view.dot(put(place.contact), colors.contact, 4);
+  if (place.touches) view.dot(put(place.contact), colors.contact, 4);
   if (shown.axes) {
     motion.axes.forEach((axis, i) => {
       const tip = scaled(rotate(q, axis), 1.25 * ROLLER);
@@ -97,7 +103,7 @@ export function drawOnGround(view, now, motion, shown) {
   }
   view.arrow(sum(center, scaled(momentum, 0.85 / motion.strongest)), colors.momentum, "L", center);
   view.arrow(sum(center, scaled(rotate(q, omega), 0.85 / motion.fastest)), colors.omega, "\u03c9", center);
-  view.label(put(place.contact), colors.contact, "P", center);
+  if (place.touches) view.label(put(place.contact), colors.contact, "P", center);
   if (shown.axes) motion.axes.forEach((axis, i) => view.label(sum(center, scaled(rotate(q, axis), 1.25 * ROLLER)), colors.axes[i], E_NAMES[i], center));
   view.end(colors.ground);
 }
@@ -109,9 +115,9 @@ export function drawOnBody(view, now, motion, shown) {
   solid.draw(view, still, size);
   if (shown.traces) traceOn(view, [...motion.trail.upTo(now.since).contact, now.place], still, put, 2.4);
   if (shown.axes) motion.axes.forEach((axis, i) => view.path([scaled(axis, -1.1), scaled(axis, 1.1)], colors.axes[i], 1.4, { alpha: 0.85, dash: DASHES[i] }));
-  view.dot(put(now.place.inBody), colors.contact, 5);
+  if (now.place.touches) view.dot(put(now.place.inBody), colors.contact, 5);
   view.arrow(scaled(now.omega, 1.05 / motion.fastest), colors.omega, "\u03c9");
-  view.label(put(now.place.inBody), colors.contact, "P");
+  if (now.place.touches) view.label(put(now.place.inBody), colors.contact, "P");
   if (shown.axes) motion.axes.forEach((axis, i) => view.label(scaled(axis, 1.1), colors.axes[i], E_NAMES[i]));
   view.end(colors.ground);
 }

@@ -94,7 +94,7 @@ function readouts(now) {
     const flip = motion.body.turnsOver ? motion.body.nextFlip(state.since) : Infinity;
     rows.push(["next flip", Number.isFinite(flip) ? `in ${flip.toPrecision(4)} ${given.time_unit}` : "never"]);
   }
-  if (floor) rows.push(["friction needed", floor.friction[frames.nearest(now.t)].toPrecision(3)]);
+  if (floor) rows.push(["friction needed", now.place.touches ? floor.friction[frames.nearest(now.t)].toPrecision(3) : "none, in flight"]);
   for (const wheel of motion.wheels) rows.push([wheel.name, wheel.words(now.t, given.time_unit, speed)]);
   return rows;
 }
