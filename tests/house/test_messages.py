@@ -40,11 +40,19 @@ def readers(tree: ast.AST) -> Iterator[int]:
             name = node.target.id if node.target.id in NOTES else ""
             scope = node if isinstance(node, ast.For) else tree
         if name:
+            names = [name, *others_of(scope, name)]
             yield from (
                 inner.lineno
                 for inner in ast.walk(scope)
-                if isinstance(inner, ast.expr) and reads(inner, name)
+                if isinstance(inner, ast.expr) and any(reads(inner, each) for each in names)
             )
+
+
+def others_of(scope: ast.AST, name: str) -> Iterator[str]:
+    """Find the other names that the words of an error are given, as in ``text = str(error)``."""
+    for node in ast.walk(scope):
+        if isinstance(node, ast.Assign) and is_words(node.value, name):
+            yield from (target.id for target in node.targets if isinstance(target, ast.Name))
 
 
 def reads(node: ast.AST, name: str) -> bool:
@@ -90,6 +98,7 @@ def test_no_code_reads_a_message() -> None:
         "re.match('row', str(error))",
         "error.args = (str(error).replace('a', 'b'),)",
         "if error.args[0] == 'no': pass",
+        "text = str(error); found = text.startswith('row')",
     ],
 )
 def test_what_reads_is_found(line: str) -> None:

@@ -204,6 +204,16 @@ class TestEdge:
         assert gap < 1e-10
         assert np.allclose(x, (3.0, 0.0), atol=1e-6)
 
+    def test_a_fit_without_certificate_is_an_error(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        maps = np.array([np.diag([1.0, 0.0]), np.diag([0.0, 1.0])])
+        given = np.eye(2), np.array([3.0, -2.0]), maps, np.ones(2)
+        monkeypatch.setattr(cone, "_STEPS", 3)
+        with pytest.raises(IdentificationError, match="the best possible body was not found") as caught:
+            cone.fit_possible(*given)
+        assert caught.value.kind == "no fit"
+        monkeypatch.undo()
+        assert cone.fit_possible(*given)[1] <= 1e-6 * 4.0
+
     def test_sigmas_along_the_edge(self) -> None:
         found = next(one for one, *_ in self.problems(4) if one.at_edge)
         ratio = np.diagonal(found.covariance) / np.diagonal(found.crlb)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -26,7 +25,7 @@ from polhode.io.writing import save_picture
 from polhode.units import quantities, quantity, vector
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
     from numpy.typing import NDArray
 
@@ -154,6 +153,7 @@ def _sizes(roll: RollOptions) -> dict[str, Any]:
             if count is None
             else quantities(given, count, "m", _option(name))
         )
+        _positive(_option(name), "a length", found[name])
     return found
 
 
@@ -162,29 +162,23 @@ def _option(name: str) -> str:
 
 
 def _surface(roll: RollOptions, sizes: dict[str, Any]) -> rolling.Surface:
-    """Make the surface; it says itself which of its numbers is wrong."""
+    """Make the surface at its place in the body."""
     places: dict[str, Any] = {}
     if roll.axis:
         places["axis"] = vector(roll.axis, "1", "--axis")
+        if not np.any(places["axis"]):
+            raise PolhodeError("--axis: the zero vector has no direction; give one, such as 0 1 0")
     if roll.middle:
         places["center"] = vector(roll.middle, "m", "--middle")
-    with _naming_options(*sizes, *places):
-        surface: rolling.Surface = getattr(rolling, str(roll.surface))(**sizes, **places)
-        return surface
+    surface: rolling.Surface = getattr(rolling, str(roll.surface))(**sizes, **places)
+    return surface
 
 
-@contextmanager
-def _naming_options(*names: str) -> Iterator[None]:
-    """Put the option in the place of the argument that an error names."""
-    try:
-        yield
-    except PolhodeError as error:
-        text = str(error)
-        name = next((name for name in names if text.startswith((f"{name}:", f"{name} "))), None)
-        if name is None:
-            raise
-        option = {"center": "--middle"}.get(name, _option(name))
-        raise PolhodeError(option + text.removeprefix(name)) from None
+def _positive(option: str, what: str, value: Any) -> None:
+    """Refuse a number that is not greater than zero, or several of which one is not."""
+    wrong = [each for each in np.ravel(value).tolist() if not each > 0.0]
+    if wrong:
+        raise PolhodeError(f"{option}: expected {what} greater than 0, got {wrong[0]:g}")
 
 
 def _body(file: Path | None, roll: RollOptions, options: BodyOptions, sizes: dict[str, Any]) -> LoadedBody:
@@ -210,6 +204,7 @@ def _body(file: Path | None, roll: RollOptions, options: BodyOptions, sizes: dic
     if options.mass is None:
         raise PolhodeError('--mass: state the mass of the body, as in --mass "200 g"')
     mass, center = (getattr(one, "value", one) for one in mass_and_center(options))
+    _positive("--mass", "a mass", mass)
     if roll.moments:
         moments = vector(roll.moments, "kg m^2", "--moments")
         body = RigidBody(float(mass), np.diag(moments), center_of_mass=center)
@@ -225,8 +220,7 @@ def _body(file: Path | None, roll: RollOptions, options: BodyOptions, sizes: dic
                 f"{_option(name)}: {words} has its middle at the origin and its axis along z; leave it out, "
                 "or give a file, --moments or --inertia"
             )
-    with _naming_options(*sizes, "mass"):
-        body = _HOMOGENEOUS[str(roll.surface)](*sizes.values(), mass=float(mass))
+    body = _HOMOGENEOUS[str(roll.surface)](*sizes.values(), mass=float(mass))
     return LoadedBody(body=body, source=[], mass_unit="kg", length="m", notes=(f"the body is {words}",))
 
 
@@ -250,6 +244,8 @@ def _start(
     if not 0.0 < roll.rtol < 1.0:
         raise PolhodeError(f"--rtol: {roll.rtol:g} is not a tolerance between 0 and 1")
     turntable = 0.0 if roll.turntable is None else quantity(roll.turntable, "rad/s", "--turntable")
+    if roll.friction is not None and not 0.0 <= roll.friction < np.inf:
+        raise PolhodeError(f"--friction: expected a coefficient of 0 or more, got {roll.friction:g}")
     if roll.velocity and roll.friction is None:
         raise PolhodeError(
             "--velocity: a body that rolls has the velocity that rolling gives; give --friction"

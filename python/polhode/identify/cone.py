@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from polhode.errors import IdentificationError
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -25,6 +27,10 @@ _ENOUGH: Final = 1e-12
 _AGAIN: Final = 6
 """Further steps of Newton's method at one weight."""
 _STEPS: Final = 2000
+_CERTIFIED: Final = 1e-6
+"""Gap relative to the sum of squares beyond which a fit has failed."""
+_ROUNDING: Final = 1e-12
+"""The same relative to the squares of the data, whose rounding errors an exact fit has left."""
 
 
 def second_moment_maps(basis: Floats) -> Floats:
@@ -64,6 +70,11 @@ def fit_possible(
         No possible x has a sum of squares that is smaller by more than this.
     at_edge : bool
         Whether the unconstrained minimum is impossible.
+
+    Raises
+    ------
+    IdentificationError
+        ``"no fit"`` where the certificate stays large.
 
     Notes
     -----
@@ -113,6 +124,13 @@ def fit_possible(
                 weight, again = weight * _FACTOR, 0
                 continue
         x = x + step / (1.0 + decrement) if decrement > 0.25 else x + step
+    if not gap <= _CERTIFIED * smallest + _ROUNDING * float(target @ target):
+        raise IdentificationError(
+            f"measurements: the best possible body was not found: the certificate is {gap:.3g} of a chi2 of "
+            f"{smallest:.6g}; ",
+            "give a prior, or leave out what hardly depends on the body",
+            kind="no fit",
+        )
     return best, gap, True
 
 
