@@ -12,7 +12,7 @@ export PYTHONDONTWRITEBYTECODE :=
 # Extension and tests of the core share what is compiled: same features, and the profile `editable`.
 SHARED := --features polhode/serde
 
-RUST := Cargo.toml Cargo.lock pyproject.toml $(shell find rust -name '*.rs' -o -name Cargo.toml)
+RUST := Cargo.toml Cargo.lock pyproject.toml $(shell find rust -name target -prune -o \( -name '*.rs' -o -name Cargo.toml \) -print)
 
 # All commands fill one environment, but for checks that only read it.
 ifndef ABREAST
