@@ -158,6 +158,50 @@ def test_tippe_tops_end_at_a_minimum_of_the_energy(ratio: float, below: float, s
         assert spin > found.upright_unstable_beyond * (1 - 1e-9)
 
 
+def growth_of_vertical_spin(side: int, spin: float, top: RigidBody, radius: float, below: float) -> float:
+    """Return the largest growth rate of a spin upright (1) or inverted (−1), with a force −κ (slip) of the plane.
+
+    To first order in the horizontal part ε = k_x + i k_y of the axis, with the horizontal velocity V of C,
+    the spin s ω about the vertical, r from C to the contact and N = m g:
+
+        s i I_t ε̈ + I_s ω ε̇ = −i N b ε + i r_z F,   m V̇ = F,   F = −κ [V − i r_z (s i ε̇ + ω ε) + i s ω b ε].
+    """
+    across, _, along = top.inertia.diagonal()
+    mass, weight, viscous, s = top.mass, top.mass * 9.81, 0.3 * top.mass, side
+    arm, rate = below * s - radius, s * spin
+    # F of (ε, ε̇, V), then ε̈ and V̇.
+    force = -viscous * np.array([-1j * arm * rate + 1j * s * rate * below, arm * s, 1.0])
+    turn = np.array([-1j * weight * below, -along * rate, 0]) + 1j * arm * force
+    matrix = np.array([[0, 1, 0], turn / (1j * s * across), force / mass])
+    return float(np.max(np.linalg.eigvals(matrix).real))
+
+
+@pytest.mark.parametrize("ratio", [0.8, 0.95, 1.05, 1.2])
+@pytest.mark.parametrize("below", [0.002, 0.004, 0.006])
+@pytest.mark.parametrize("spin", [2.0, 20.0, 60.0, 250.0])
+def test_eigenvalues_of_both_vertical_spins_agree_with_the_verdict(
+    ratio: float, below: float, spin: float
+) -> None:
+    radius = 0.02
+    top = RigidBody.from_principal(0.006, (8e-7, 8e-7, 8e-7 * ratio), center_of_mass=(0, 0, -below))
+    found = rolling.tippe_top(top, rolling.sphere(radius), spin, GRAVITY)
+    inverted_spin = spin * (radius - below) / (radius + below)
+    upright = growth_of_vertical_spin(1, spin, top, radius, below)
+    inverted = growth_of_vertical_spin(-1, inverted_spin, top, radius, below)
+    grows = {"inverts": (True, False), "tumbles": (True, True), "stays upright": (False, None)}
+    is_upright_unstable, is_inverted_unstable = grows[found.verdict]
+    assert (upright > 0) == is_upright_unstable
+    assert is_inverted_unstable in (None, inverted > 0)
+    # Both sides of the critical spins.
+    for side, critical in ((1, found.upright_unstable_beyond), (-1, found.inverted_stable_beyond)):
+        for factor in (0.999, 1.001):
+            if 0 < critical < np.inf:
+                grown = growth_of_vertical_spin(side, factor * critical, top, radius, below) > 0
+                assert grown == ((factor > 1) == (side == 1))
+            else:
+                assert (growth_of_vertical_spin(side, 1e4, top, radius, below) > 0) == (side == -1 or critical == 0)
+
+
 def simulated_end(ratio: float, below: float, spin: float, end: float) -> tuple[float, float]:
     """Return the cosine of the inclination at which a tippe top with friction ends, and of its verdict."""
     top = RigidBody.from_principal(0.006, (8e-7, 8e-7, 8e-7 * ratio), center_of_mass=(0, 0, -below))

@@ -244,38 +244,120 @@ pub(crate) const COUNT: usize = 27;
 /// The series of the variables of a system of differential equations.
 #[derive(Clone, Debug)]
 pub(crate) struct PowerSeries {
-    operations: Vec<Operation>,
+    /// The coefficients of all nodes: variables, constants, and operations in the order of `runs`.
+    nodes: Vec<[f64; COUNT]>,
+    runs: Vec<Run>,
     /// The node of the rate of each variable, and those that are asked for besides.
     rates: Vec<usize>,
     outputs: Vec<usize>,
-    nodes: Vec<[f64; COUNT]>,
-    variables: Vec<[f64; COUNT]>,
+}
+
+/// Operations of one kind, one after the other in `nodes`, none of which needs another one of them. A processor that meets the same
+/// operation many times in turn guesses right what comes next; with another operation at each node it takes three times as long.
+#[derive(Clone, Debug)]
+struct Run {
+    kind: Kind,
+    first: usize,
+    /// Two nodes and a number each.
+    operands: Vec<(usize, usize, f64)>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    Sum,
+    Difference,
+    Product,
+    Quotient,
+    Root,
+    Multiple,
+    Shift,
+}
+
+const KINDS: [Kind; 7] = [
+    Kind::Sum,
+    Kind::Difference,
+    Kind::Product,
+    Kind::Quotient,
+    Kind::Root,
+    Kind::Multiple,
+    Kind::Shift,
+];
+
+impl Operation {
+    /// Return the kind of an operation, the nodes it needs and its number, where it has one.
+    fn parts(self) -> Option<(Kind, [usize; 2], f64)> {
+        Some(match self {
+            Self::Constant(_) | Self::Variable(_) => return None,
+            Self::Sum(a, b) => (Kind::Sum, [a, b], 0.0),
+            Self::Difference(a, b) => (Kind::Difference, [a, b], 0.0),
+            Self::Product(a, b) => (Kind::Product, [a, b], 0.0),
+            Self::Quotient(a, b) => (Kind::Quotient, [a, b], 0.0),
+            Self::Root(a) => (Kind::Root, [a, a], 0.0),
+            Self::Multiple(a, number) => (Kind::Multiple, [a, a], number),
+            Self::Shift(a, number) => (Kind::Shift, [a, a], number),
+        })
+    }
 }
 
 impl PowerSeries {
     /// Make the series of the variables that `rates`, nodes of `recorder`, are the rates of; and of other nodes, `outputs`.
     pub(crate) fn new(recorder: &Recorder, rates: &[Node<'_>], outputs: &[Node<'_>]) -> Self {
-        let operations = recorder.operations.borrow().clone();
-        let mut nodes = vec![[0.0; COUNT]; operations.len()];
-        for (node, operation) in nodes.iter_mut().zip(&operations) {
-            if let Operation::Constant(x) = operation {
-                node[0] = *x;
-            }
+        let operations = recorder.operations.borrow();
+        let mut nodes = vec![[0.0; COUNT]; rates.len()];
+        let mut places = vec![usize::MAX; operations.len()];
+        let mut open = Vec::new();
+        for (index, operation) in operations.iter().enumerate() {
+            places[index] = match *operation {
+                Operation::Variable(number) => number,
+                Operation::Constant(x) => {
+                    let mut series = [0.0; COUNT];
+                    series[0] = x;
+                    nodes.push(series);
+                    nodes.len() - 1
+                }
+                _ => {
+                    open.extend(operation.parts().map(|parts| (index, parts)));
+                    continue;
+                }
+            };
         }
+        let mut runs = Vec::new();
+        while !open.is_empty() {
+            let is_ready = |[a, b]: [usize; 2]| places[a] != usize::MAX && places[b] != usize::MAX;
+            let mut counts = [0; KINDS.len()];
+            for (_, (kind, operands, _)) in &open {
+                counts[*kind as usize] += usize::from(is_ready(*operands));
+            }
+            let Some(kind) = KINDS.into_iter().max_by_key(|kind| counts[*kind as usize]) else {
+                break;
+            };
+            let (now, later): (Vec<_>, Vec<_>) = (open.into_iter())
+                .partition(|(_, (own, operands, _))| *own == kind && is_ready(*operands));
+            runs.push(Run {
+                kind,
+                first: nodes.len(),
+                operands: (now.iter())
+                    .map(|(_, (_, [a, b], number))| (places[*a], places[*b], *number))
+                    .collect(),
+            });
+            for (index, _) in now {
+                places[index] = nodes.len();
+                nodes.push([0.0; COUNT]);
+            }
+            open = later;
+        }
+        let places_of = |nodes: &[Node<'_>]| nodes.iter().map(|node| places[node.index]).collect();
         Self {
-            operations,
-            rates: rates.iter().map(|node| node.index).collect(),
-            outputs: outputs.iter().map(|node| node.index).collect(),
+            runs,
+            rates: places_of(rates),
+            outputs: places_of(outputs),
             nodes,
-            variables: vec![[0.0; COUNT]; rates.len()],
         }
     }
 
     /// Compute the coefficients of all variables up to `order` from their values.
     pub(crate) fn expand(&mut self, values: &[f64], order: usize) {
-        for (variable, value) in self.variables.iter_mut().zip(values) {
-            variable[0] = *value;
-        }
+        self.start(values);
         for sweep in &SWEEPS[..order] {
             sweep(self);
         }
@@ -290,56 +372,84 @@ impl PowerSeries {
         unknown: usize,
         mut coefficient: impl FnMut(usize, usize, &mut [[f64; COUNT]]) -> Option<f64>,
     ) {
-        for (variable, value) in self.variables.iter_mut().zip(values) {
-            variable[0] = *value;
-        }
+        self.start(values);
+        let count = self.rates.len();
         for (k, sweep) in SWEEPS[..order].iter().enumerate() {
             sweep(self);
             let mut trial = 0;
-            while let Some(found) = coefficient(k, trial, &mut self.variables) {
-                self.variables[unknown][k] = found;
+            while let Some(found) = coefficient(k, trial, &mut self.nodes[..count]) {
+                self.nodes[unknown][k] = found;
                 sweep(self);
                 trial += 1;
             }
         }
     }
 
+    fn start(&mut self, values: &[f64]) {
+        let count = self.rates.len();
+        for (variable, value) in self.nodes[..count].iter_mut().zip(values) {
+            variable[0] = *value;
+        }
+    }
+
     /// Compute the coefficients of order K of all nodes, and the next ones of the variables: each order is code of its own, in which
     /// the sums have a known length.
     fn sweep<const K: usize>(&mut self) {
-        for (index, operation) in self.operations.iter().enumerate() {
-            let (nodes, rest) = self.nodes.split_at_mut(index);
-            let Some(node) = rest.first_mut() else {
-                return;
-            };
-            node[K] = match *operation {
-                Operation::Constant(_) => continue,
-                Operation::Variable(number) => self.variables[number][K],
-                Operation::Sum(a, b) => nodes[a][K] + nodes[b][K],
-                Operation::Difference(a, b) => nodes[a][K] - nodes[b][K],
-                Operation::Product(a, b) => product(&nodes[a][..=K], &nodes[b][..=K]),
-                Operation::Quotient(a, b) => {
-                    let known = product(&node[..K], &nodes[b][1..=K]);
-                    (nodes[a][K] - known) / nodes[b][0]
+        let nodes = &mut self.nodes[..];
+        for run in &self.runs {
+            let operands = run.operands.iter().zip(run.first..);
+            match run.kind {
+                Kind::Sum => {
+                    for (&(a, b, _), node) in operands {
+                        nodes[node][K] = nodes[a][K] + nodes[b][K];
+                    }
                 }
-                Operation::Root(a) if K == 0 => nodes[a][0].sqrt(),
-                Operation::Root(a) => {
-                    let known = product(&node[1..K], &node[1..K]);
-                    (nodes[a][K] - known) / (2.0 * node[0])
+                Kind::Difference => {
+                    for (&(a, b, _), node) in operands {
+                        nodes[node][K] = nodes[a][K] - nodes[b][K];
+                    }
                 }
-                Operation::Multiple(a, number) => nodes[a][K] * number,
-                Operation::Shift(a, number) if K == 0 => nodes[a][0] + number,
-                Operation::Shift(a, _) => nodes[a][K],
-            };
+                Kind::Product => {
+                    for (&(a, b, _), node) in operands {
+                        nodes[node][K] = product(&nodes[a][..=K], &nodes[b][..=K]);
+                    }
+                }
+                Kind::Quotient => {
+                    for (&(a, b, _), node) in operands {
+                        let known = product(&nodes[node][..K], &nodes[b][1..=K]);
+                        nodes[node][K] = (nodes[a][K] - known) / nodes[b][0];
+                    }
+                }
+                Kind::Root => {
+                    for (&(a, _, _), node) in operands {
+                        nodes[node][K] = if K == 0 {
+                            nodes[a][0].sqrt()
+                        } else {
+                            let known = product(&nodes[node][1..K], &nodes[node][1..K]);
+                            (nodes[a][K] - known) / (2.0 * nodes[node][0])
+                        };
+                    }
+                }
+                Kind::Multiple => {
+                    for (&(a, _, number), node) in operands {
+                        nodes[node][K] = nodes[a][K] * number;
+                    }
+                }
+                Kind::Shift => {
+                    for (&(a, _, number), node) in operands {
+                        nodes[node][K] = nodes[a][K] + if K == 0 { number } else { 0.0 };
+                    }
+                }
+            }
         }
-        for (variable, rate) in self.variables.iter_mut().zip(&self.rates) {
-            variable[K + 1] = self.nodes[*rate][K] / (K + 1) as f64;
+        for (variable, rate) in self.rates.iter().enumerate() {
+            self.nodes[variable][K + 1] = self.nodes[*rate][K] / (K + 1) as f64;
         }
     }
 
     /// Return the coefficients of each variable.
     pub(crate) fn coefficients(&self) -> &[[f64; COUNT]] {
-        &self.variables
+        &self.nodes[..self.rates.len()]
     }
 
     /// Return the coefficients of an output; it has one less than the variables.
