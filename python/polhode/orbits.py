@@ -20,6 +20,7 @@ from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
+    from scipy.spatial.transform import Rotation
 
     Floats = NDArray[np.float64]
 
@@ -29,6 +30,7 @@ __all__ = [
     "LocalFrame",
     "Orbit",
     "OrbitState",
+    "RelativeMotion",
     "SampledOrbit",
     "from_elements",
     "kepler",
@@ -105,6 +107,71 @@ class LocalFrame(NamedTuple):
 
     def __repr__(self) -> str:
         return short(self)
+
+
+@dataclass(frozen=True, eq=False)
+class RelativeMotion:
+    """Attitude and rates of a body relative to the local frame of an orbit, see :class:`LocalFrame`.
+
+    :meth:`polhode.Trajectory.relative_to` makes it.
+
+    Attributes
+    ----------
+    t : numpy.ndarray, shape (T,)
+        Times of the motion.
+    quaternion : numpy.ndarray, shape (..., T, 4)
+        Attitude R_LB of the body in the local frame L as (x, y, z, w), continuous in time.
+    omega : numpy.ndarray, shape (..., T, 3)
+        Angular velocity of the body relative to L, components in the body frame.
+    """
+
+    t: Floats
+    quaternion: Floats
+    omega: Floats
+
+    @property
+    def roll(self) -> Floats:
+        """Angle of roll, about the body's x, in radians; see :meth:`angles`."""
+        return np.asarray(self.angles()[..., 2])
+
+    @property
+    def pitch(self) -> Floats:
+        """Angle of pitch, in radians; see :meth:`angles`."""
+        return np.asarray(self.angles()[..., 1])
+
+    @property
+    def yaw(self) -> Floats:
+        """Angle of yaw, about the local z, in radians; see :meth:`angles`."""
+        return np.asarray(self.angles()[..., 0])
+
+    @property
+    def rotation(self) -> Rotation:
+        """Attitude in the local frame as a SciPy ``Rotation``."""
+        from polhode._optional import require
+
+        transform = require("scipy.spatial.transform", extra=None, purpose="RelativeMotion.rotation")
+        rotation: Rotation = transform.Rotation.from_quat(self.quaternion)
+        return rotation
+
+    def angles(self, *, degrees: bool = False) -> Floats:
+        """Compute yaw, pitch and roll: R_LB = R_z(yaw) R_y(pitch) R_x(roll).
+
+        Parameters
+        ----------
+        degrees : bool
+            Give degrees.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T, 3)
+            Yaw and roll from -pi to pi, pitch from -pi/2 to pi/2, in radians unless `degrees`. Yaw and roll
+            are NaN where the pitch is a right angle, since only their sum or difference is defined there.
+        """
+        angles = _core.euler_angles_from_quaternion(self.quaternion, "ZYX", "nan")
+        return np.rad2deg(angles) if degrees else angles
+
+    def __repr__(self) -> str:
+        return f"RelativeMotion({self.quaternion.shape[:-1]} attitudes in the local frame of an orbit)"
 
 
 class Path(ABC):

@@ -19,7 +19,7 @@ from polhode.results import AngularMomentum, Invariants, KineticEnergy, State
 
 if TYPE_CHECKING:
     from os import PathLike
-    from pathlib import Path
+    from pathlib import Path as FilePath
 
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from polhode._typing import SupportsQuaternion
     from polhode.draw.html import HtmlPage
     from polhode.errors import IntegrationError, PolhodeError
+    from polhode.orbits import Path, RelativeMotion
     from polhode.results import MotionSensitivity
     from polhode.uncertainty.motion import StateSigma
 
@@ -462,6 +463,55 @@ class Trajectory(metaclass=ClassWithHints):
         record = Trajectory(**known)
         record.__dict__["_origin"] = Origin(derived=omega is None)
         return record
+
+    def relative_to(self, orbit: Path) -> RelativeMotion:
+        """Compute attitude and rates relative to the local frame of an orbit: roll, pitch and yaw.
+
+        Parameters
+        ----------
+        orbit : Orbit or SampledOrbit
+            Of :mod:`polhode.orbits`, with axes of a stack that broadcast with those of the motion. If it has no
+            epoch, it has its given state at the first of the times, as in a load of the run.
+
+        Returns
+        -------
+        RelativeMotion
+            Attitude in the frame L whose z points to the attractor and whose y points against the normal of
+            the orbit, and the angular velocity relative to it.
+
+        Examples
+        --------
+        A satellite that always shows one face to its planet:
+
+        >>> import numpy as np
+        >>> from polhode import orbits, solids
+        >>> orbit = orbits.kepler(1.0, (1, 0, 0), (0, 1, 0))
+        >>> local = orbit.frame(0.0)
+        >>> t = np.linspace(0.0, 6.0, 4)
+        >>> motion = solids.sphere(0.1, mass=1.0).free_motion(local.omega, local.quaternion).at(t)
+        >>> relative = motion.relative_to(orbit)
+        >>> (np.abs(relative.pitch) < 1e-12).all(), (np.abs(relative.omega) < 1e-12).all()
+        (True, True)
+        """
+        from polhode.orbits import Path, RelativeMotion
+
+        if not isinstance(orbit, Path):
+            raise TypeError(
+                f"orbit: expected one of polhode.orbits, such as orbits.kepler(mu, position, velocity), "
+                f"got {type(orbit).__name__}"
+            )
+        start = self.t.flat[0] if getattr(orbit, "epoch", 0.0) is None and self.t.size else 0.0
+        frame = orbit.frame(self.t - start)
+        stack, own = frame.omega.shape[: -1 - self.t.ndim], self.omega.shape[: -1 - self.t.ndim]
+        try:
+            np.broadcast_shapes(stack, own)
+        except ValueError:
+            raise ValueError(
+                f"orbit: its stack of shape {stack} does not broadcast with that of the motion, {own}"
+            ) from None
+        quaternion = _turn_back(frame.quaternion, self.quaternion)
+        omega = self.omega - _core.rotate(quaternion, frame.omega, inverse=True)
+        return RelativeMotion(self.t, _continuous(quaternion) if self.t.ndim == 1 else quaternion, omega)
 
     def euler_angles(
         self,
@@ -917,7 +967,7 @@ class Trajectory(metaclass=ClassWithHints):
 
         return motion(self, plotter, **options)
 
-    def animate(self, path: str | PathLike[str], **options: Any) -> Path:
+    def animate(self, path: str | PathLike[str], **options: Any) -> FilePath:
         """Write the motion of one body as a moving picture.
 
         Parameters
@@ -1181,6 +1231,21 @@ class Trajectory(metaclass=ClassWithHints):
         in_body = np.einsum("...ij,...j->...i", tensor, self.omega)
         torque: Floats = (tensor @ rate)[..., 0] + np.cross(self.omega, in_body)
         return torque
+
+
+def _turn_back(frame: Floats, body: Floats) -> Floats:
+    """Compute ``p⁻¹∘q`` for quaternions p and q: the attitude of a body in a frame."""
+    u, p = frame[..., :3], frame[..., 3:]
+    v, q = body[..., :3], body[..., 3:]
+    vector = p * v - q * u - np.cross(u, v)
+    return np.concatenate([vector, p * q + np.sum(u * v, axis=-1, keepdims=True)], axis=-1)
+
+
+def _continuous(quaternion: Floats) -> Floats:
+    """Choose the signs of quaternions (..., T, 4) so that each is near the one before it."""
+    near = np.sum(quaternion[..., 1:, :] * quaternion[..., :-1, :], axis=-1)
+    signs = np.cumprod(np.where(near < 0.0, -1.0, 1.0), axis=-1)[..., np.newaxis]
+    return np.concatenate([quaternion[..., :1, :], quaternion[..., 1:, :] * signs], axis=-2)
 
 
 def _unwrap(angles: Floats) -> Floats:
