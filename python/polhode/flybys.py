@@ -288,10 +288,10 @@ def flyby(
     }  # fmt: skip
     many = clones(body, orbit, span, **given, n=n, seed=seed, progress=progress, **options)
     motion = body.free_motion_from_periods(rotation_period, precession_period, mode)
-    found = _describe(body, _numbers(motion), seed, many.compute())
+    found = _describe(body, _numbers(motion), seed, many.to_numpy())
     if found.failed.all():
         # Why tells a clone alone.
-        clones(body, orbit, span, **given, n=1, seed=seed, on_failure="raise", **options).compute()
+        clones(body, orbit, span, **given, n=1, seed=seed, on_failure="raise", **options).to_numpy()
     return found
 
 
@@ -333,9 +333,9 @@ def _numbers(motion: FreeMotion) -> distributions.Normal | None:
     return distributions.normal(found.value, found.covariance, name="moments and periods")
 
 
-def _describe(body: RigidBody, numbers: distributions.Normal | None, seed: int, states: Any) -> Flyby:
+def _describe(body: RigidBody, numbers: distributions.Normal | None, seed: int, states: dict[str, Any]) -> Flyby:
     """Describe how clones tumble at the start and at the end, from the states of their ensemble."""
-    omega, quaternion = states.omega.to_numpy(), states.quaternion.to_numpy()
+    omega, quaternion = states["omega"], states["quaternion"]
     failed = ~np.isfinite(omega[:, -1]).all(axis=-1)
     drawn = None if numbers is None else numbers.draw(len(omega), seed=seed)
     before, after = (_tumble(body, drawn, omega[:, k], quaternion[:, k]) for k in (0, -1))

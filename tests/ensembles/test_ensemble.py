@@ -45,6 +45,16 @@ class TestMembers:
         assert found.quaternion.dims == ("member", "time", "quaternion_component")
         assert (found.attrs["seed"], found.attrs["n"]) == (3, 20)
 
+    def test_numpy_has_the_same_arrays(self) -> None:
+        many = twisted(60)
+        found, arrays = many.compute(), many.to_numpy()
+        assert list(arrays) == list(found.data_vars)
+        for name, array in arrays.items():
+            same = np.array_equal(array, found[name], equal_nan=array.dtype.kind == "f")
+            assert same, name
+        with pytest.raises(ValueError, match="to_numpy: returns states, and with reduce= none are kept"):
+            twisted(9, reduce=all_reductions()).to_numpy()
+
     def test_more_members_leave_the_first_as_they_are(self) -> None:
         few, many = twisted(50).compute(), twisted(80, chunk=7).compute()
         for name in few:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import inspect
 import json
 import re
+import subprocess
+import sys
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -150,6 +152,22 @@ def test_a_table_of_positions_serves_from_its_first_time_on() -> None:
     table = orbits.sampled(EARTH, t, ORBIT.at(t - 1e3).position)
     found = flybys.flyby(APOPHIS, table, 6 * DAY, n=20, **PERIODS)
     np.testing.assert_allclose(found.spin_ratio, FOUND.spin_ratio[:20], rtol=1e-6)
+
+
+def test_numpy_alone_is_enough() -> None:
+    """In a process in which no other library can be imported."""
+    code = f"""
+import sys
+for name in ("xarray", "dask", "distributed", "scipy", "pandas"):
+    sys.modules[name] = None
+from polhode import RigidBody, flybys, orbits
+orbit = orbits.from_elements({EARTH}, **{PASSAGE}, since_periapsis={-3 * DAY})
+body = RigidBody.from_principal(1.0, (0.64, 0.97, 1.0))
+found = flybys.flyby(body, orbit, {6 * DAY}, n=300, **{PERIODS})
+print(found.spin_ratio.tolist())
+"""
+    told = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True, timeout=60)
+    assert json.loads(told.stdout) == passed().spin_ratio.tolist()
 
 
 def test_far_from_a_planet_nothing_changes() -> None:

@@ -25,6 +25,7 @@ from polhode.errors import PolhodeError
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
+    from numpy.typing import NDArray
     from xarray import Dataset
 
     from polhode._progress import Progress
@@ -203,20 +204,49 @@ class Ensemble:
                 "to_zarr or to_npz, and go on with resume"
             )
         xarray = require("xarray", extra="cluster", purpose="Ensemble.compute")
-        _check_room(self.memory.results, plan.n)
-        self._check_chunk(may_be_done=False)
-        variables = layout(plan)
-        arrays = {name: np.empty((plan.n, *one.tail), one.dtype) for name, one in variables.items()}
-        for index, chunk in self._run_chunks(partial(arrays_of_chunk, plan), range(plan.chunks)):
-            first, count = plan.bounds(index)
-            for name, array in arrays.items():
-                array[first : first + count] = chunk[name]
+        arrays = self.to_numpy()
         found: Dataset = xarray.Dataset(
-            {name: (one.dims, arrays[name], one.attributes) for name, one in variables.items()},
+            {name: (one.dims, arrays[name], one.attributes) for name, one in layout(plan).items()},
             coordinates(plan),
             {"seed": plan.seed, "n": plan.n, "chunk": plan.chunk, "version": _core.__version__},
         )
         return found
+
+    def to_numpy(self) -> dict[str, NDArray[Any]]:
+        """Run all members, and return their states as arrays; needs NumPy alone.
+
+        Returns
+        -------
+        dict of str and numpy.ndarray
+            The arrays of :meth:`compute` by name: ``omega``, shape (n, T, 3); ``quaternion``, shape
+            (n, T, 4); ``status``, shape (n,); the states of the load, and the drawn numbers.
+
+        Raises
+        ------
+        MemoryError
+            If the states do not fit into the memory of this machine.
+
+        Examples
+        --------
+        >>> from polhode import RigidBody, distributions, ensemble
+        >>> body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
+        >>> many = ensemble(body, [0, 10], distributions.normal((0, 0, 1), sigma=0.1), n=1000, seed=1)
+        >>> many.to_numpy()["quaternion"].shape
+        (1000, 2, 4)
+        """
+        plan = self.plan
+        if self.reduce is not None:
+            raise ValueError(
+                "to_numpy: returns states, and with reduce= none are kept; call compute, or leave it out"
+            )
+        _check_room(self.memory.results, plan.n)
+        self._check_chunk(may_be_done=False)
+        arrays = {name: np.empty((plan.n, *one.tail), one.dtype) for name, one in layout(plan).items()}
+        for index, chunk in self._run_chunks(partial(arrays_of_chunk, plan), range(plan.chunks)):
+            first, count = plan.bounds(index)
+            for name, array in arrays.items():
+                array[first : first + count] = chunk[name]
+        return arrays
 
     def to_zarr(self, path: str | os.PathLike[str]) -> None:
         """Run all members and write their states, a chunk at a time, to a zarr group; needs zarr.
