@@ -252,49 +252,54 @@ pub(crate) struct PowerSeries {
     outputs: Vec<usize>,
 }
 
-/// Operations of one kind, one after the other in `nodes`, none of which needs another one of them. A processor that meets the same
-/// operation many times in turn guesses right what comes next; with another operation at each node it takes three times as long.
+/// Operations of one kind, one after the other in `nodes`. A processor that meets the same operation many times in turn guesses right
+/// what comes next; with another operation at each node it takes three times as long.
 #[derive(Clone, Debug)]
 struct Run {
     kind: Kind,
     first: usize,
-    /// Two nodes and a number each.
-    operands: Vec<(usize, usize, f64)>,
+    operands: Vec<Operands>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
-    Sum,
-    Difference,
+    /// `factors[0] a + factors[1] b + shift`
+    Linear,
     Product,
     Quotient,
     Root,
-    Multiple,
-    Shift,
 }
 
-const KINDS: [Kind; 7] = [
-    Kind::Sum,
-    Kind::Difference,
-    Kind::Product,
-    Kind::Quotient,
-    Kind::Root,
-    Kind::Multiple,
-    Kind::Shift,
-];
+const KINDS: [Kind; 4] = [Kind::Linear, Kind::Product, Kind::Quotient, Kind::Root];
+
+#[derive(Clone, Copy, Debug)]
+struct Operands {
+    nodes: [usize; 2],
+    factors: [f64; 2],
+    shift: f64,
+}
 
 impl Operation {
-    /// Return the kind of an operation, the nodes it needs and its number, where it has one.
-    fn parts(self) -> Option<(Kind, [usize; 2], f64)> {
+    /// Return the kind of an operation and what it needs; nothing for a constant or a variable.
+    fn parts(self) -> Option<(Kind, Operands)> {
+        let linear = |nodes, factors, shift| {
+            let operands = Operands {
+                nodes,
+                factors,
+                shift,
+            };
+            (Kind::Linear, operands)
+        };
+        let of = |kind, nodes| (kind, linear(nodes, [1.0; 2], 0.0).1);
         Some(match self {
             Self::Constant(_) | Self::Variable(_) => return None,
-            Self::Sum(a, b) => (Kind::Sum, [a, b], 0.0),
-            Self::Difference(a, b) => (Kind::Difference, [a, b], 0.0),
-            Self::Product(a, b) => (Kind::Product, [a, b], 0.0),
-            Self::Quotient(a, b) => (Kind::Quotient, [a, b], 0.0),
-            Self::Root(a) => (Kind::Root, [a, a], 0.0),
-            Self::Multiple(a, number) => (Kind::Multiple, [a, a], number),
-            Self::Shift(a, number) => (Kind::Shift, [a, a], number),
+            Self::Sum(a, b) => linear([a, b], [1.0, 1.0], 0.0),
+            Self::Difference(a, b) => linear([a, b], [1.0, -1.0], 0.0),
+            Self::Multiple(a, number) => linear([a, a], [number, 0.0], 0.0),
+            Self::Shift(a, number) => linear([a, a], [1.0, 0.0], number),
+            Self::Product(a, b) => of(Kind::Product, [a, b]),
+            Self::Quotient(a, b) => of(Kind::Quotient, [a, b]),
+            Self::Root(a) => of(Kind::Root, [a, a]),
         })
     }
 }
@@ -304,49 +309,62 @@ impl PowerSeries {
     pub(crate) fn new(recorder: &Recorder, rates: &[Node<'_>], outputs: &[Node<'_>]) -> Self {
         let operations = recorder.operations.borrow();
         let mut nodes = vec![[0.0; COUNT]; rates.len()];
-        let mut places = vec![usize::MAX; operations.len()];
+        let mut places = vec![None; operations.len()];
         let mut open = Vec::new();
         for (index, operation) in operations.iter().enumerate() {
-            places[index] = match *operation {
-                Operation::Variable(number) => number,
+            match *operation {
+                Operation::Variable(number) => places[index] = Some(number),
                 Operation::Constant(x) => {
+                    places[index] = Some(nodes.len());
                     let mut series = [0.0; COUNT];
                     series[0] = x;
                     nodes.push(series);
-                    nodes.len() - 1
                 }
-                _ => {
-                    open.extend(operation.parts().map(|parts| (index, parts)));
-                    continue;
-                }
-            };
+                _ => open.extend(
+                    operation
+                        .parts()
+                        .map(|(kind, needed)| (index, kind, needed)),
+                ),
+            }
         }
         let mut runs = Vec::new();
         while !open.is_empty() {
-            let is_ready = |[a, b]: [usize; 2]| places[a] != usize::MAX && places[b] != usize::MAX;
-            let mut counts = [0; KINDS.len()];
-            for (_, (kind, operands, _)) in &open {
-                counts[*kind as usize] += usize::from(is_ready(*operands));
+            let known = |needed: &Operands, places: &[Option<usize>]| match needed
+                .nodes
+                .map(|node| places[node])
+            {
+                [Some(a), Some(b)] => Some([a, b]),
+                _ => None,
+            };
+            let mut ready = [0; KINDS.len()];
+            for (_, kind, needed) in &open {
+                ready[*kind as usize] += usize::from(known(needed, &places).is_some());
             }
-            let Some(kind) = KINDS.into_iter().max_by_key(|kind| counts[*kind as usize]) else {
+            let Some(kind) = KINDS.into_iter().max_by_key(|kind| ready[*kind as usize]) else {
                 break;
             };
-            let (now, later): (Vec<_>, Vec<_>) = (open.into_iter())
-                .partition(|(_, (own, operands, _))| *own == kind && is_ready(*operands));
-            runs.push(Run {
+            // And what can be done after operations of the same kind.
+            let mut run = Run {
                 kind,
                 first: nodes.len(),
-                operands: (now.iter())
-                    .map(|(_, (_, [a, b], number))| (places[*a], places[*b], *number))
-                    .collect(),
-            });
-            for (index, _) in now {
-                places[index] = nodes.len();
+                operands: Vec::new(),
+            };
+            open.retain(|(index, own, needed)| {
+                let Some(found) = known(needed, &places).filter(|_| *own == kind) else {
+                    return true;
+                };
+                places[*index] = Some(nodes.len());
                 nodes.push([0.0; COUNT]);
-            }
-            open = later;
+                run.operands.push(Operands {
+                    nodes: found,
+                    ..*needed
+                });
+                false
+            });
+            runs.push(run);
         }
-        let places_of = |nodes: &[Node<'_>]| nodes.iter().map(|node| places[node.index]).collect();
+        let places_of =
+            |nodes: &[Node<'_>]| nodes.iter().filter_map(|node| places[node.index]).collect();
         Self {
             runs,
             rates: places_of(rates),
@@ -399,45 +417,35 @@ impl PowerSeries {
         for run in &self.runs {
             let operands = run.operands.iter().zip(run.first..);
             match run.kind {
-                Kind::Sum => {
-                    for (&(a, b, _), node) in operands {
-                        nodes[node][K] = nodes[a][K] + nodes[b][K];
-                    }
-                }
-                Kind::Difference => {
-                    for (&(a, b, _), node) in operands {
-                        nodes[node][K] = nodes[a][K] - nodes[b][K];
+                Kind::Linear => {
+                    for (needed, node) in operands {
+                        let ([a, b], [p, q]) = (needed.nodes, needed.factors);
+                        let shift = if K == 0 { needed.shift } else { 0.0 };
+                        nodes[node][K] = nodes[a][K] * p + nodes[b][K] * q + shift;
                     }
                 }
                 Kind::Product => {
-                    for (&(a, b, _), node) in operands {
+                    for (needed, node) in operands {
+                        let [a, b] = needed.nodes;
                         nodes[node][K] = product(&nodes[a][..=K], &nodes[b][..=K]);
                     }
                 }
                 Kind::Quotient => {
-                    for (&(a, b, _), node) in operands {
+                    for (needed, node) in operands {
+                        let [a, b] = needed.nodes;
                         let known = product(&nodes[node][..K], &nodes[b][1..=K]);
                         nodes[node][K] = (nodes[a][K] - known) / nodes[b][0];
                     }
                 }
                 Kind::Root => {
-                    for (&(a, _, _), node) in operands {
+                    for (needed, node) in operands {
+                        let a = needed.nodes[0];
                         nodes[node][K] = if K == 0 {
                             nodes[a][0].sqrt()
                         } else {
                             let known = product(&nodes[node][1..K], &nodes[node][1..K]);
                             (nodes[a][K] - known) / (2.0 * nodes[node][0])
                         };
-                    }
-                }
-                Kind::Multiple => {
-                    for (&(a, _, number), node) in operands {
-                        nodes[node][K] = nodes[a][K] * number;
-                    }
-                }
-                Kind::Shift => {
-                    for (&(a, _, number), node) in operands {
-                        nodes[node][K] = nodes[a][K] + if K == 0 { number } else { 0.0 };
                     }
                 }
             }
