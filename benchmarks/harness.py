@@ -16,13 +16,15 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from polhode import _core
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
 __all__ = ["Result", "Row", "keep", "kept", "measure", "repeats", "report", "seconds"]
 
 RATIOS = Path(__file__).with_name("ratios.json")
-"""The ratios of each release, by the names of row and peer."""
+"""The ratios of each release on each processor, by the names of row and peer."""
 
 
 @dataclass(frozen=True)
@@ -103,6 +105,7 @@ def report(results: Iterable[Result], path: Path | None = None, ratios: Path = R
     """Print a table of ratios beside those of the last release, and write all as JSON if a path is given."""
     results = list(results)
     release, before = kept(ratios)
+    print(f"on {_processor()}")
     print(f"{'what':66} {'peer':28} {'ours':>10} {'peer':>10} {'times faster':>26} {release:>8}  bar")
     for result in results:
         ratio = "{:.3g} ({:.3g} to {:.3g})".format(*result.speedup)
@@ -119,10 +122,13 @@ def report(results: Iterable[Result], path: Path | None = None, ratios: Path = R
 
 
 def kept(path: Path = RATIOS) -> tuple[str, dict[str, float]]:
-    """The last release whose ratios are kept, and these; nothing where there is none."""
+    """The last release whose ratios on this processor are kept, and these; nothing where there is none."""
     if not path.exists():
         return "", {}
-    releases = json.loads(path.read_text(encoding="utf-8"))
+    known = json.loads(path.read_text(encoding="utf-8"))
+    releases = {name: found[_processor()] for name, found in known.items() if _processor() in found}
+    if not releases:
+        return "", {}
     release = max(releases, key=lambda name: [int(part) for part in name.split(".")])
     # Of the first release the medians alone were kept.
     ratios = releases[release]["ratios"].items()
@@ -130,10 +136,11 @@ def kept(path: Path = RATIOS) -> tuple[str, dict[str, float]]:
 
 
 def keep(release: str, results: Iterable[Result], path: Path = RATIOS) -> None:
-    """Keep the ratios of a release, median, least and most, beside those of the earlier ones."""
+    """Keep the ratios of a release, median, least and most, beside those on other processors."""
     releases = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
     ratios = {_key(result): [float(f"{ratio:.3g}") for ratio in result.speedup] for result in results}
-    releases[release] = {"date": time.strftime("%Y-%m-%d"), "machine": _machine(), "ratios": ratios}
+    found = {"date": time.strftime("%Y-%m-%d"), "machine": _machine(), "ratios": ratios}
+    releases.setdefault(release, {})[_processor()] = found
     path.write_text(json.dumps(releases, indent=2) + "\n", encoding="utf-8")
 
 
@@ -142,7 +149,13 @@ def _key(result: Result) -> str:
 
 
 def _machine() -> dict[str, Any]:
-    return {"cpu": _cpu(), "cores": os.cpu_count(), "python": platform.python_version()}
+    python, level = platform.python_version(), _core.machine()[0]
+    return {"cpu": _cpu(), "level": level, "cores": os.cpu_count(), "python": python}
+
+
+def _processor() -> str:
+    """The processor and the instruction set that is used: ratios of others are not compared."""
+    return f"{_cpu()}, {_core.machine()[0]}"
 
 
 def repeats(call: Callable[[], Any], least_seconds: float) -> int:

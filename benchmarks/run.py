@@ -2,8 +2,8 @@
 
 NAME is the stem of a file of rows beside this one; all of them by default. Everything runs on one thread,
 ours and the peers', unless the environment says otherwise. The last column but one compares each ratio with
-that of the last release in ``ratios.json``: above one, we have become faster beside the peer. ``--keep`` puts
-the ratios of this run into that file.
+that of the last release on the same processor in ``ratios.json``: above one, we have become faster beside the
+peer. ``--keep`` puts the ratios of this run into that file.
 """
 
 from __future__ import annotations

@@ -131,7 +131,8 @@ def validation(found: dict[str, Any]) -> str:
 
 def performance(ratios: dict[str, Any]) -> str:
     """Return the page of times beside the peers."""
-    has_spread = any(isinstance(kept, list) for found in ratios.values() for kept in found["ratios"].values())
+    runs = [(release, found) for release, one in ratios.items() for found in one.values()]
+    has_spread = any(isinstance(kept, list) for _, found in runs for kept in found["ratios"].values())
     lines = [
         "# How fast it is\n",
         "Each row compares the times of two calculations. polhode does the first one, in the column *polhode "
@@ -144,12 +145,12 @@ def performance(ratios: dict[str, Any]) -> str:
         "`make bench` measures anew. `python benchmarks/run.py --keep RELEASE` keeps the ratios, and "
         "`make docs` writes them into this page.\n",
     ]
-    for release, found in ratios.items():
+    for release, found in runs:
         machine = found["machine"]
         lines += [
-            f"## Release {release}\n",
-            f"Measured on {found['date']}: {machine['cpu']}, {machine['cores']} cores, "
-            f"Python {machine['python']}.\n",
+            f"## Release {release}, {machine['cpu']}\n",
+            f"Measured on {found['date']}: {machine['cpu']} with {machine['level']}, "
+            f"{machine['cores']} cores, Python {machine['python']}.\n",
         ]
         left = dict(found["ratios"])
         for section, words in ROWS.items():

@@ -333,7 +333,9 @@ def _numbers(motion: FreeMotion) -> distributions.Normal | None:
     return distributions.normal(found.value, found.covariance, name="moments and periods")
 
 
-def _describe(body: RigidBody, numbers: distributions.Normal | None, seed: int, states: dict[str, Any]) -> Flyby:
+def _describe(
+    body: RigidBody, numbers: distributions.Normal | None, seed: int, states: dict[str, Any]
+) -> Flyby:
     """Describe how clones tumble at the start and at the end, from the states of their ensemble."""
     omega, quaternion = states["omega"], states["quaternion"]
     failed = ~np.isfinite(omega[:, -1]).all(axis=-1)

@@ -166,7 +166,9 @@ body = RigidBody.from_principal(1.0, (0.64, 0.97, 1.0))
 found = flybys.flyby(body, orbit, {6 * DAY}, n=300, **{PERIODS})
 print(found.spin_ratio.tolist())
 """
-    told = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True, timeout=60)
+    told = subprocess.run(
+        [sys.executable, "-c", code], check=True, capture_output=True, text=True, timeout=60
+    )
     assert json.loads(told.stdout) == passed().spin_ratio.tolist()
 
 

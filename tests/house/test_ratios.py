@@ -6,6 +6,7 @@ import json
 import subprocess
 import sys
 from importlib import import_module
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -41,12 +42,23 @@ def test_a_run_is_compared_with_the_last_release(
     for release, ratio in (("0.9.0", 3.0), ("0.10.0", 4.0), ("0.2.0", 5.0)):
         harness.keep(release, [result(harness, "a row", ratio)], path)
     assert harness.kept(path) == ("0.10.0", {"a row, beside a peer": 4.0})
-    first = {"0.1.0": {"date": "2026-11-22", "machine": {}, "ratios": {"a row, beside a peer": 2.0}}}
-    (tmp_path / "first.json").write_text(json.dumps(first), encoding="utf-8")
+    processor = harness._processor()
+    first = {"date": "2026-11-22", "machine": {}, "ratios": {"a row, beside a peer": 2.0}}
+    other = {"0.1.0": {processor: first}, "0.2.0": {"another, avx512": first}}
+    (tmp_path / "first.json").write_text(json.dumps(other), encoding="utf-8")
     assert harness.kept(tmp_path / "first.json") == ("0.1.0", {"a row, beside a peer": 2.0})
+    other.pop("0.1.0")
+    (tmp_path / "first.json").write_text(json.dumps(other), encoding="utf-8")
+    assert harness.kept(tmp_path / "first.json") == ("", {})
+    harness.keep("0.2.0", [result(harness, "a row", 3.0)], tmp_path / "first.json")
+    assert list(json.loads((tmp_path / "first.json").read_text("utf-8"))["0.2.0"]) == [
+        "another, avx512",
+        processor,
+    ]
     rows = [result(harness, "a row", 5.0), result(harness, "another row", 5.0)]
     harness.report(rows, ratios=path)
-    head, old, new = capsys.readouterr().out.splitlines()
+    machine, head, old, new = capsys.readouterr().out.splitlines()
+    assert machine == f"on {processor}"
     assert "0.10.0" in head
     assert "x1.25" in old
     assert " new " in new
@@ -65,15 +77,18 @@ def test_the_page_tells_spread_machine_and_date(
     named = "| moments and axes of a million tensors | NumPy: `linalg.eigh` | 43.2 |\n"
     assert named in page  # no spread was kept: no column
     assert page.count("least to largest |") == 1
-    assert f"Measured on {found['0.2.0']['date']}: {found['0.2.0']['machine']['cpu']}, " in page
-    assert "Measured on 2026-11-22: AMD EPYC, 2 cores, Python 3.11.7." in page
+    run = found["0.2.0"][harness._processor()]
+    assert f"Measured on {run['date']}: {run['machine']['cpu']} with {run['machine']['level']}, " in page
+    assert "Measured on 2026-11-22: AMD EPYC with avx2, 2 cores, Python 3.11.7." in page
 
 
 def test_each_kept_row_has_words_on_the_page(harness: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(ROOT / "docs" / "site"))
     measured: Any = import_module("measured")
     told = {name for rows in measured.ROWS.values() for name in rows}
-    for found in json.loads(harness.RATIOS.read_text("utf-8")).values():
+    for found in chain.from_iterable(
+        one.values() for one in json.loads(harness.RATIOS.read_text("utf-8")).values()
+    ):
         assert set(found["ratios"]) <= told, "give the rows words in docs/site/measured.py"
     page = measured.performance(json.loads(harness.RATIOS.read_text("utf-8")))
     assert "Other rows" not in page

@@ -75,7 +75,9 @@ def test_stacks_and_times_of_any_shape() -> None:
     square = BODY.free_motion((1e-3, 0, 0)).at([[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]]).relative_to(two)
     assert square.yaw.shape == (2, 2, 3)
     three = orbits.kepler(MU, [(7e6, 0, 0)] * 3, (0, 7e3, 1e3))
-    with pytest.raises(ValueError, match=r"orbit: its stack of shape \(3,\) does not broadcast with .*\(2,\)"):
+    with pytest.raises(
+        ValueError, match=r"orbit: its stack of shape \(3,\) does not broadcast with .*\(2,\)"
+    ):
         run.relative_to(three)
     wrong: Any = (7e6, 0, 0)
     with pytest.raises(TypeError, match=r"orbit: expected one of polhode\.orbits"):

@@ -39,7 +39,7 @@ COLUMNS = 9
 """Of an extrapolation."""
 STEP = LONG(1e-30)
 SETTLED = 1e-14
-"""Motions that change by less with half the steps are known, relative to 1 + κ: a change of the start grows by κ."""
+"""Motions that change by less with half the steps are known, relative to 1 + κ: κ is the growth of a change."""
 NEAR, LARGEST_GROWTH = 1e-10, 1e5
 FEWEST_STEPS, MOST_STEPS = 16, 64
 """In a rotation."""

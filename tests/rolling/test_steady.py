@@ -159,7 +159,7 @@ def test_tippe_tops_end_at_a_minimum_of_the_energy(ratio: float, below: float, s
 
 
 def growth_of_vertical_spin(side: int, spin: float, top: RigidBody, radius: float, below: float) -> float:
-    """Return the largest growth rate of a spin upright (1) or inverted (−1), with a force −κ (slip) of the plane.
+    """Return the largest growth rate of a spin upright (1) or inverted (−1), with a friction −κ (slip).
 
     To first order in the horizontal part ε = k_x + i k_y of the axis, with the horizontal velocity V of C,
     the spin s ω about the vertical, r from C to the contact and N = m g:
@@ -199,7 +199,9 @@ def test_eigenvalues_of_both_vertical_spins_agree_with_the_verdict(
                 grown = growth_of_vertical_spin(side, factor * critical, top, radius, below) > 0
                 assert grown == ((factor > 1) == (side == 1))
             else:
-                assert (growth_of_vertical_spin(side, 1e4, top, radius, below) > 0) == (side == -1 or critical == 0)
+                assert (growth_of_vertical_spin(side, 1e4, top, radius, below) > 0) == (
+                    side == -1 or critical == 0
+                )
 
 
 def simulated_end(ratio: float, below: float, spin: float, end: float) -> tuple[float, float]:

@@ -470,8 +470,8 @@ class Trajectory(metaclass=ClassWithHints):
         Parameters
         ----------
         orbit : Orbit or SampledOrbit
-            Of :mod:`polhode.orbits`, with axes of a stack that broadcast with those of the motion. If it has no
-            epoch, it has its given state at the first of the times, as in a load of the run.
+            Of :mod:`polhode.orbits`, with axes of a stack that broadcast with those of the motion. If it has
+            no epoch, it has its given state at the first of the times, as in a load of the run.
 
         Returns
         -------
