@@ -39,7 +39,7 @@ COLUMNS = 9
 """Of an extrapolation."""
 STEP = LONG(1e-30)
 SETTLED = 1e-14
-"""Motions that change by less with half the steps are known, relative to 1 + κ: κ is the growth of a change."""
+"""Motions that change by less with half the steps are known, relative to 1 + κ, κ the growth of a change."""
 NEAR, LARGEST_GROWTH = 1e-10, 1e5
 FEWEST_STEPS, MOST_STEPS = 16, 64
 """In a rotation."""
@@ -588,8 +588,8 @@ def main() -> None:
         for kind in range(5):
             # Short motions are known after fewer steps.
             of_kind = sorted(drawn[kind::5], key=rotations_of)
-            for first in range(0, len(of_kind), 3):
-                known(of_kind[first : first + 3], ExtendedSliding if name == "sliding" else Extended)
+            for first in range(0, len(of_kind), 5):
+                known(of_kind[first : first + 5], ExtendedSliding if name == "sliding" else Extended)
         # Of what comes near to lying flat too little is known.
         found: list[dict[str, Any]] = []
         taken: Counter[tuple[str, str]] = Counter()
