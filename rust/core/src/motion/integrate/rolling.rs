@@ -27,6 +27,9 @@ use crate::numerics::power_series::{Arithmetic, COUNT, PowerSeries, Recorder, do
 /// A sum of a series that is so far from zero, relative to its first term, has its sign, whatever was left out.
 const SURE: f64 = 1e-3;
 
+/// The least order of a series.
+const FEWEST_TERMS: usize = 6;
+
 /// The equations that a body on a plane follows for a while.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Regime {
@@ -54,6 +57,9 @@ pub(crate) struct RollingSeries {
     length: f64,
     rate: f64,
     series: PowerSeries,
+    /// The order of a series, and that of the last step: less where the coefficients of high order overflow, as those of a slip that
+    /// ceases do.
+    most_terms: usize,
     order: usize,
     last_term: f64,
     /// The least ω that errors are relative to, in the unit of rates.
@@ -196,7 +202,8 @@ impl RollingSeries {
             mass,
             length,
             rate,
-            order: order_of_least_work(tolerance.relative, COUNT - 1),
+            most_terms: order_of_least_work(tolerance.relative, COUNT - 1),
+            order: 0,
             last_term: (LAST_TERM * tolerance.relative).log2(),
             floor: tolerance.absolute / tolerance.relative / rate,
             value,
@@ -223,7 +230,9 @@ impl RollingSeries {
             self.now = (elapsed * self.rate, 0.0);
         }
         if regime == Regime::Flying {
-            self.take_off();
+            if self.regime != Regime::Flying {
+                self.take_off();
+            }
         } else if regime != Regime::Sliding {
             self.value[12..14].fill(0.0);
             self.rest[12..14].fill(0.0);
@@ -275,12 +284,12 @@ impl RollingSeries {
         self.farthest = self.farthest.max(x.hypot(y));
         let slip = state.slip[0].hypot(state.slip[1]);
         self.quickest = self.quickest.max(slip).max(self.fastest * self.size);
-        if let Regime::Parting { direction, slowly } = self.regime {
-            self.expand_from_rest(direction, slowly);
-        } else {
-            self.series.expand(&self.value, self.order);
+        self.order = self.most_terms;
+        let mut longest = self.expand();
+        while longest.is_nan() && self.order > FEWEST_TERMS {
+            self.order = FEWEST_TERMS.max(self.order / 2);
+            longest = self.expand();
         }
-        let longest = self.longest_step();
         let left = (self.end - self.now.0) - self.now.1;
         let is_last = left.abs() <= longest;
         let step = if is_last {
@@ -313,6 +322,16 @@ impl RollingSeries {
         self.steps += 1;
         self.steps_here += 1;
         Ok(())
+    }
+
+    /// Compute the series at the end of the last step, and the longest step for it.
+    fn expand(&mut self) -> f64 {
+        if let Regime::Parting { direction, slowly } = self.regime {
+            self.expand_from_rest(direction, slowly);
+        } else {
+            self.series.expand(&self.value, self.order);
+        }
+        self.longest_step()
     }
 
     /// Compute the series of a slip that begins: `s = d⊥ η + d` times its length, with the unknown series η(t) of its direction.

@@ -26,6 +26,8 @@ use crate::motion::state::Phase;
 /// ceased.
 const CEASED: f64 = 64.0 * f64::EPSILON;
 const OF_TOLERANCE: f64 = 0.01;
+/// How often the part of a step in which a slip is looked for is made smaller.
+const HALVINGS: usize = 12;
 /// How near to the edge of the cone of friction it is not known whether a body rolls, relative to the force.
 const EDGE: f64 = 1e-12;
 /// Where the equation for the normal force multiplies it by less, a step that fails fails for that reason.
@@ -337,6 +339,7 @@ impl Rolling<'_> {
                 }
             }
             self.begin(regime);
+            self.is_fresh.set(self.is_fresh.get() && limit.is_some());
             dense.series.go_on(elapsed, regime);
             phase = dense.series.phase();
             if limit.is_some() && regime != Regime::Flying && self.has_lifted(time, &phase)? {
@@ -439,7 +442,8 @@ impl Rolling<'_> {
             run.effort = dense.series.effort();
             let steps = run.effort.steps;
             dense.looks_at_limits = true;
-            let to = dense.elapsed();
+            let end = dense.elapsed();
+            let to = self.end_of_rise(dense, from, end);
             let place = own.look(dense, start, from, to);
             dense.looks_at_limits = false;
             let place = place?;
@@ -462,7 +466,8 @@ impl Rolling<'_> {
                         && !self.is_fresh.get()
                         && self.has_ceased(*limit, &dense.series, to)
                 });
-                (reached, ends) = (to, gone.map(|limit| Reached::Limit(limit, to)));
+                let cut = (to != end).then_some(Reached::Cut(to));
+                (reached, ends) = (to, gone.map(|limit| Reached::Limit(limit, to)).or(cut));
             }
             let found = detector.search_step(dense, start, [from, reached], |step, part| {
                 let has_ended = part.event.is_some();
@@ -510,6 +515,33 @@ impl Rolling<'_> {
             }
         }
         Ok(Reached::End(End::Complete))
+    }
+
+    /// Return where in the first step of a regime a slip or a height that rises from zero is the largest: near zero its sign is unknown,
+    /// so another step has to find where it comes back to zero. The end of the step where it only rises, and of other steps.
+    fn end_of_rise<E>(&self, dense: &RollingStep<'_, E>, from: f64, end: f64) -> f64 {
+        let rises = |limit: &&Limit| matches!(limit, Limit::Slip | Limit::Height);
+        let Some(limit) = dense
+            .limits
+            .iter()
+            .find(rises)
+            .filter(|_| self.is_fresh.get())
+        else {
+            return end;
+        };
+        let mut to = end;
+        for _ in 0..HALVINGS {
+            let place = |part: usize| from + (to - from) * (part as f64 / PARTS as f64);
+            let values: [f64; PARTS] =
+                std::array::from_fn(|part| self.value(*limit, &dense.series.at(place(part + 1))));
+            let most = values.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+            match values.iter().position(|value| *value == most) {
+                Some(part) if part + 1 == PARTS => return to,
+                Some(part) if most > f64::MIN_POSITIVE => return place(part + 1),
+                _ => to = place(1),
+            }
+        }
+        end
     }
 
     fn cross<E>(&self, run: &mut Run<E>, event: ContactEvent, time: f64, phase: &Phase) {
