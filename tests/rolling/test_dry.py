@@ -165,6 +165,34 @@ def draw(rng: np.random.Generator) -> tuple[RigidBody, Any, dict[str, Any], floa
     return body, surface, {"omega": omega, "attitude": attitude, "velocity": velocity}, rng.uniform(0.05, 0.4)
 
 
+def check_law(found: Trajectory, mu: float) -> tuple[int, int]:
+    """Check friction at each output, and the events; count changes of the phase, and events."""
+    there = ~np.isnan(found.omega[:, 0])
+    assert found.contact is not None
+    phase, needed = found.contact.phase[there], found.contact.friction_needed[there]
+    slip = np.linalg.norm(found.contact.slip[there], axis=1)
+    rolls = phase == "rolling"
+    speed = 1 + np.linalg.norm(found.velocity[there], axis=1)
+    assert np.all(needed[rolls] <= mu * (1 + 1e-12))
+    assert np.all(slip[rolls] <= 1e-13 * speed[rolls])
+    assert np.all(found.contact.normal_force[there] > -1e-11)
+    slides = ~rolls & (slip > 1e-6)
+    force = found.contact.force[there][slides]
+    against = -force[:, :2] / np.linalg.norm(force[:, :2], axis=1)[:, None]
+    along = found.contact.slip[there][slides][:, :2] / slip[slides][:, None]
+    assert np.all(np.abs(against - along) < 1e-8)
+    # Each change of the phase between two outputs has its event, and each event its reason.
+    kinds = [kind for kind in found.events.kind if kind in ("slip", "roll")]
+    now = "rolling" if phase[0] == "rolling" else "sliding"
+    for kind in kinds:
+        assert (kind == "roll") == (now == "sliding")
+        now = "rolling" if kind == "roll" else "sliding"
+    if there.all():
+        assert phase[-1] == now
+    assert found.invariants().energy_drift < 1e-11
+    return int(np.sum(rolls[1:] != rolls[:-1])), len(kinds)
+
+
 @pytest.mark.parametrize("count", [100, pytest.param(10_000, marks=pytest.mark.long)])
 def test_no_change_is_missed_and_none_invented(count: int) -> None:
     rng = np.random.default_rng(47)
@@ -180,32 +208,46 @@ def test_no_change_is_missed_and_none_invented(count: int) -> None:
             continue
         if found.status == "lift-off" and found.events.t[0] == 0.0:
             continue
-        there = ~np.isnan(found.omega[:, 0])
-        assert found.contact is not None
-        phase, needed = found.contact.phase[there], found.contact.friction_needed[there]
-        slip = np.linalg.norm(found.contact.slip[there], axis=1)
-        rolls = phase == "rolling"
-        speed = 1 + np.linalg.norm(found.velocity[there], axis=1)
-        assert np.all(needed[rolls] <= mu * (1 + 1e-12)), number
-        assert np.all(slip[rolls] <= 1e-13 * speed[rolls]), number
-        assert np.all(found.contact.normal_force[there] > -1e-11), number
-        slides = ~rolls & (slip > 1e-6)
-        force = found.contact.force[there][slides]
-        against = -force[:, :2] / np.linalg.norm(force[:, :2], axis=1)[:, None]
-        along = found.contact.slip[there][slides][:, :2] / slip[slides][:, None]
-        assert np.all(np.abs(against - along) < 1e-8), number
-        # Each change of the phase between two outputs has its event, and each event its reason.
-        kinds = [kind for kind in found.events.kind if kind in ("slip", "roll")]
-        changes += int(np.sum(rolls[1:] != rolls[:-1]))
-        switches += len(kinds)
-        now = "rolling" if phase[0] == "rolling" else "sliding"
-        for kind in kinds:
-            assert (kind == "roll") == (now == "sliding"), number
-            now = "rolling" if kind == "roll" else "sliding"
-        if there.all():
-            assert phase[-1] == now, number
-        assert found.invariants().energy_drift < 1e-11, number
+        try:
+            counts = check_law(found, mu)
+        except AssertionError as error:
+            error.add_note(f"number {number}")
+            raise
+        changes, switches = changes + counts[0], switches + counts[1]
     assert switches >= changes > count / 4
+
+
+def test_a_slip_that_comes_back_to_zero_in_its_first_step() -> None:
+    """Friction is not enough by 1e-6 of it for 10 ms."""
+    center = (0.013779997827720186, -0.037391301762764936, -0.09626620941197171)
+    moments = (0.09994014672445567, 0.11159178270778919, 0.13170182366921418)
+    body = RigidBody.from_principal(1.0, moments, center_of_mass=center)
+    omega = (-4.357952062912301, -4.01989513285972, -2.9108395017001234)
+    attitude = (0.6367464327413791, 0.14053026247768702, -0.6180391960623745, 0.4391272911692632)
+    mu, t = 0.1703245510777031, np.linspace(0, 1.5, 301)
+    found = dry(body, rolling.sphere(0.5), t, omega, None, mu, attitude=attitude, rtol=1e-13)
+    assert found.events.kind[:2].tolist() == ["slip", "roll"]
+    assert found.events.t[:2] == pytest.approx([0.32972195, 0.34023558], abs=1e-8)
+    check_law(found, mu)
+    # The slip is so small that its time ends where it does for a motion that is cut into pieces.
+    for rtol in (1e-10, 2.3e-15):
+        other = dry(body, rolling.sphere(0.5), [0, 0.4], omega, None, mu, attitude=attitude, rtol=rtol)
+        assert other.events.t[:2] == pytest.approx(found.events.t[:2], abs=1e-8)
+
+
+@pytest.mark.parametrize("rtol", [1e-10, 1e-13, 2.3e-15])
+def test_a_slip_whose_series_overflow_before_it_ceases(rtol: float) -> None:
+    """A torus that is pressed hard: the slip loses its last 1e-13 in 1e-14 s."""
+    center = (0.053855510250013006, 0.003821824195078233, -0.0615525204370802)
+    moments = (0.10981698825526362, 0.1143076358042252, 0.12732310277563086)
+    body = RigidBody.from_principal(1.0, moments, center_of_mass=center)
+    omega = (-0.6214050915308232, -1.017192832613387, -0.30521964612967195)
+    attitude = (0.7066639600854763, 0.08789109846451296, -0.10957023083358955, 0.6934663415351084)
+    mu, t = 0.3741866348800028, np.linspace(0, 0.7, 141)
+    found = dry(body, rolling.torus(0.4, 0.1), t, omega, None, mu, attitude=attitude, rtol=rtol)
+    assert found.events.kind.tolist() == ["slip", "roll"]
+    assert found.events.t == pytest.approx([0.49138432, 0.63466902], abs=1e-8)
+    check_law(found, mu)
 
 
 def test_dry_friction_does_not_depend_on_the_tolerance() -> None:
