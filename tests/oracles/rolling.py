@@ -19,7 +19,6 @@ import json
 import math
 import random
 import sys
-from collections import Counter
 from collections.abc import Sequence
 from itertools import compress
 from pathlib import Path
@@ -39,16 +38,12 @@ COLUMNS = 9
 """Of an extrapolation."""
 STEP = LONG(1e-30)
 SETTLED = 1e-14
-"""Motions that change by less with half the steps are known, relative to 1 + κ, κ the growth of a change."""
-NEAR, LARGEST_GROWTH = 1e-10, 1e5
-FEWEST_STEPS, MOST_STEPS = 16, 64
-"""In a rotation."""
+"""Motions that change by less with half the steps are known; the others depend on their start that much."""
+MOST_STEPS = 1024
 LEAST_MARGIN = 0.05
 """Motions that come nearer to lying flat, or to the rim of their surface, are left out."""
-DRAWN = {"rolling": 50, "sliding": 75}
-"""How many motions of 5 to 60 rotations are drawn; some are not known."""
-MOST = 6
-"""How many are taken of each surface and law."""
+SHORT, LONGER = 50, 100
+"""How many motions are drawn of about 5 rotations, and of 5 to 60; some are not known."""
 
 Wide = Any
 Vector = list[mpf]
@@ -525,14 +520,9 @@ def draw(number: int, rng: random.Random) -> dict[str, Any]:
 
 
 def longer(number: int, case: dict[str, Any]) -> dict[str, Any]:
-    """Return the case over 5 to 60 rotations, with friction that leaves some slip."""
+    """Return the case over 5 to 60 rotations."""
     rotations = 5 * 12 ** (number // 5 % 10 / 9)
-    t = 2 * math.pi * rotations / math.hypot(*case["omega"])
-    case = case | {"t": t}
-    if "friction" in case:
-        kind, coefficient = case["friction"]
-        case["friction"] = (kind, coefficient * 2.5 / t)
-    return case
+    return case | {"t": 2 * math.pi * rotations / math.hypot(*case["omega"])}
 
 
 def rotations_of(case: dict[str, Any]) -> float:
@@ -554,52 +544,47 @@ def slipping(number: int, case: dict[str, Any], rng: random.Random) -> dict[str,
     return case | {"friction": friction, "velocity": velocity}
 
 
-def known(drawn: list[dict[str, Any]], kind: type[Extended]) -> None:
+def known(drawn: list[dict[str, Any]], kind: type[Extended], most: int = MOST_STEPS) -> None:
     """Add the ends of cases with one kind of surface, as far as they are known."""
-    left, rotations = drawn, math.ceil(max(map(rotations_of, drawn)))
-    steps = FEWEST_STEPS * rotations
+    left, steps = drawn, 64
     before, _ = kind(left).ends(steps)
     while left:
         steps *= 2
-        extended, count = kind(left * 2), len(left)
-        extended.start[count:] += NEAR * np.random.default_rng(steps).standard_normal(before.shape)
-        ends, _ = extended.ends(steps)
-        now, margin = ends[:count], extended.least_margin[:count]
+        extended = kind(left)
+        now, _ = extended.ends(steps)
         off = np.max(np.abs(now - before), axis=1)
-        growth = np.max(np.abs(now - ends[count:]), axis=1) / NEAR
-        is_known = (off < SETTLED * (1 + growth)) & (growth < LARGEST_GROWTH) & (margin > LEAST_MARGIN)
-        print(kind, steps, np.array(off, dtype=float), np.array(growth, dtype=float), file=sys.stderr)
+        # What is not known of the start grows with the rotations at least.
+        is_known = off < SETTLED * np.array([1 + rotations_of(case) for case in left])
+        is_known &= extended.least_margin > LEAST_MARGIN
+        print(kind, steps, np.array(off, dtype=float), file=sys.stderr)
         for case, end in zip(compress(left, is_known), now[is_known], strict=True):
             case["end"] = [np.format_float_scientific(x, unique=False, precision=20) for x in end]
         is_left = ~is_known & np.isfinite(np.array(now, dtype=float)).all(axis=1)
-        is_left &= margin > 0
+        is_left &= extended.least_margin > 0
         left, before = list(compress(left, is_left)), now[is_left]
-        left = left if steps < MOST_STEPS * rotations else []
+        left = left if steps < most else []
 
 
 def main() -> None:
     """Write the tables, or the one that is named, which takes minutes."""
-    for name in sys.argv[1:] or DRAWN:
+    for name in sys.argv[1:] or ("rolling", "sliding"):
         rng = random.Random(47)
-        drawn = [draw(number, rng) for number in range(DRAWN[name])]
-        if name == "sliding":
+        drawn = [draw(number, rng) for number in range(SHORT)]
+        if name == "rolling":
+            rng = random.Random(47)
+            drawn += [longer(number, draw(number, rng)) for number in range(LONGER)]
+        else:
             drawn = [slipping(number, case, rng) for number, case in enumerate(drawn)]
-        drawn = [longer(number, case) for number, case in enumerate(drawn)]
+            drawn += [longer(number, case) for number, case in enumerate(drawn[:15])]
         for kind in range(5):
-            # Short motions are known after fewer steps.
-            of_kind = sorted(drawn[kind::5], key=rotations_of)
-            for first in range(0, len(of_kind), 5):
-                known(of_kind[first : first + 5], ExtendedSliding if name == "sliding" else Extended)
-        # Of what comes near to lying flat too little is known.
-        found: list[dict[str, Any]] = []
-        taken: Counter[tuple[str, str]] = Counter()
-        for case in drawn:
-            what = (case["surface"]["kind"], case.get("friction", ("",))[0])
-            if "end" in case and taken[what] < (MOST if name == "rolling" else MOST // 2):
-                taken[what] += 1
-                found.append(case)
-        print(taken, file=sys.stderr)
-        (TABLES / f"{name}.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+            if name == "rolling":
+                known(drawn[kind::5], Extended)
+            else:
+                known(drawn[kind::5], ExtendedSliding, MOST_STEPS // 4)
+            # Of what comes near to lying flat too little is known.
+            ended = (case for case in drawn if "end" in case)
+            found = [case for case in ended if np.isfinite(np.array(case["end"], dtype=float)).all()]
+            (TABLES / f"{name}.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
 
 
 def cases() -> list[dict[str, Any]]:
