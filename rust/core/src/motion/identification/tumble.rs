@@ -32,9 +32,10 @@ const PIECE: f64 = 1.0;
 /// Rows so near are as good as at the same time, for a start.
 const NEAR: f64 = 0.15;
 /// Steps of a chain, at most.
-const JOINS: usize = 20;
-/// Rows on which further starts are tried out.
+const JOINS: usize = 15;
+/// Rows on which further starts are tried out, and how many of them.
 const HEAD: usize = 2000;
+const TRIED: usize = 300;
 /// Of log L: maxima that are lower by more are not told.
 const WITHIN: f64 = 3.0;
 
@@ -125,7 +126,7 @@ struct Linked {
 }
 
 /// The log in units of the fit: times of 1/rate from the first one on, a tensor of about 1.
-struct Scaled<'a, 'w> {
+struct Scaled<'a> {
     tumble: &'a Tumble<'a>,
     t: Vec<f64>,
     omega: Vec<[f64; 3]>,
@@ -138,7 +139,7 @@ struct Scaled<'a, 'w> {
     has_scale: bool,
     /// The noise that the log seems to have.
     level: f64,
-    watch: RefCell<&'a mut Watch<'w>>,
+    watch: &'a dyn Fn(f64) -> ControlFlow<()>,
     stopped: Cell<bool>,
     /// The fraction done.
     done: Cell<f64>,
@@ -188,7 +189,9 @@ pub fn fit_tumble(tumble: &Tumble<'_>, watch: &mut Watch<'_>) -> Result<Vec<Fit>
     assert!(tumble.t.len() >= 3, "at least three times");
     assert_eq!(tumble.t.len(), tumble.omega.len(), "a row for each time");
     let level = noise(tumble.t, Rows::Vectors(tumble.omega), watch)?;
-    let scaled = Scaled::new(tumble, usual_rate(tumble.omega), level, watch);
+    let watch = RefCell::new(watch);
+    let watch = |done: f64| (watch.borrow_mut())(done);
+    let scaled = Scaled::new(tumble, usual_rate(tumble.omega), level, &watch);
     let found = scaled.maxima();
     if scaled.stopped.get() {
         return Err(Error::Stopped);
@@ -210,7 +213,9 @@ pub fn information(
     watch: &mut Watch<'_>,
 ) -> Result<Fit, Error> {
     assert!(!tumble.t.is_empty(), "times");
-    let scaled = Scaled::new(tumble, Vector3::from(omega).norm(), 0.0, watch);
+    let watch = RefCell::new(watch);
+    let watch = |done: f64| (watch.borrow_mut())(done);
+    let scaled = Scaled::new(tumble, Vector3::from(omega).norm(), 0.0, &watch);
     let point = Point {
         omega: Vector3::from(omega) / scaled.rate,
         inertia: tensor(&inertia) / scaled.unit,
@@ -275,8 +280,13 @@ fn usual_rate(omega: &[[f64; 3]]) -> f64 {
     *rates.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-impl<'a, 'w> Scaled<'a, 'w> {
-    fn new(tumble: &'a Tumble<'a>, rate: f64, level: f64, watch: &'a mut Watch<'w>) -> Self {
+impl<'a> Scaled<'a> {
+    fn new(
+        tumble: &'a Tumble<'a>,
+        rate: f64,
+        level: f64,
+        watch: &'a dyn Fn(f64) -> ControlFlow<()>,
+    ) -> Self {
         let rate = if rate > 0.0 { rate } else { 1.0 };
         let (h, n) = (Vector3::from(tumble.momentum), Vector3::from(tumble.torque));
         let prior = tumble.prior.map(|(mean, _)| mean[0] + mean[1] + mean[2]);
@@ -295,9 +305,23 @@ impl<'a, 'w> Scaled<'a, 'w> {
             rate,
             unit,
             level,
-            watch: RefCell::new(watch),
+            watch,
             stopped: Cell::new(false),
             done: Cell::new(0.0),
+        }
+    }
+
+    /// Some of the rows, on which starts are tried out.
+    fn thinned(&self) -> Self {
+        let head = self.rows().min(HEAD);
+        let stride = head.div_ceil(TRIED);
+        Self {
+            t: self.t[..head].iter().step_by(stride).copied().collect(),
+            omega: self.omega[..head].iter().step_by(stride).copied().collect(),
+            sigma: self.sigma.clone(),
+            stopped: Cell::new(false),
+            done: self.done.clone(),
+            ..*self
         }
     }
 
@@ -328,7 +352,7 @@ impl<'a, 'w> Scaled<'a, 'w> {
 
     /// Whether to go on, asked now and then.
     fn look(&self) -> ControlFlow<()> {
-        let answer = (self.watch.borrow_mut())(self.done.get());
+        let answer = (self.watch)(self.done.get());
         if answer.is_break() {
             self.stopped.set(true);
         }
@@ -776,23 +800,24 @@ impl<'a, 'w> Scaled<'a, 'w> {
             (point, linear, converged) = found;
         }
         let mut all = vec![(point, linear.cost, converged)];
-        let head = n.min(HEAD);
-        let (here, headed, _) = if head < n {
-            self.refine(&point, head, &stop).unwrap_or((point, linear, converged))
-        } else {
-            (point, linear, converged)
+        let some = self.thinned();
+        let count = some.rows();
+        let Some((here, headed, _)) = some.refine(&point, count, &stop) else {
+            return Vec::new();
         };
         for start in self.others(&point, &starts[used..]).into_iter().take(self.tumble.starts) {
             self.done.set(0.5 + 0.5 * self.done.get());
-            let Some((other, linked)) = self.join(&start, head) else {
-                if self.stopped.get() {
-                    return Vec::new();
-                }
+            let found = some.join(&start, count);
+            if some.stopped.get() {
+                self.stopped.set(true);
+                return Vec::new();
+            }
+            let Some((other, linked)) = found else {
                 continue;
             };
             // The same maximum once more, or none that could be the best.
             if linked.triangle.square(&self.between(&other, &here)) < 0.1
-                || linked.cost > headed.cost + 2.0 * WITHIN + 50.0
+                || linked.cost > headed.cost + 2.0 * WITHIN + 30.0
             {
                 continue;
             }
@@ -800,11 +825,11 @@ impl<'a, 'w> Scaled<'a, 'w> {
                 inertia: other.inertia,
                 bias: other.bias,
             };
-            let other = if head < n { self.join(&again, n).map(|(other, _)| other) } else { Some(other) };
+            let other = self.join(&again, n).map(|(other, _)| other);
             let Some((other, own, converged)) = other.and_then(|other| self.refine(&other, n, &stop)) else {
                 continue;
             };
-            if all.iter().all(|(one, ..)| own.triangle.square(&self.between(&other, one)) > 0.1) {
+            if converged && all.iter().all(|(one, ..)| own.triangle.square(&self.between(&other, one)) > 0.1) {
                 all.push((other, own.cost, converged));
             }
         }
@@ -831,9 +856,15 @@ impl<'a, 'w> Scaled<'a, 'w> {
         }
         let mut found: Vec<Balanced> = moments
             .into_iter()
-            .map(|moments| Balanced {
-                inertia: axes * Matrix3::from_diagonal(&Vector3::from(moments)) * axes.transpose(),
-                bias: best.bias,
+            .map(|moments| {
+                let mut moments = Vector3::from(moments);
+                if !self.has_scale {
+                    moments /= moments.sum();
+                }
+                Balanced {
+                    inertia: axes * Matrix3::from_diagonal(&moments) * axes.transpose(),
+                    bias: best.bias,
+                }
             })
             .collect();
         found.extend_from_slice(left);
