@@ -119,7 +119,7 @@ class Identified:
     dropped : dict of str and int
         Number of rows that were left out, by reason.
     window : int or None
-        Number of samples of a window, where momentum was balanced over windows.
+        Number of samples of a window, where the angular acceleration was not given.
     """
 
     body: RigidBody
