@@ -2,9 +2,11 @@
 
 :func:`from_pendulum` takes periods of pendulums, :func:`from_wrench` a log of a force and torque sensor.
 Each result is an :class:`Identified`: a body with its covariance, how well it fits, whether it lies at the
-edge of what is possible, and every direction that the data hardly determine.
+edge of what is possible, and every direction that the data hardly determine. :func:`labellings` explains the
+frequencies in the light curve of a tumbling body.
 """
 
+from polhode.identify.labellings import Labellings, labellings
 from polhode.identify.pendulum import Pendulum, bifilar, compound, from_pendulum, torsional, trifilar
 from polhode.identify.results import Direction, Identified
 from polhode.identify.wrench import from_wrench
@@ -12,11 +14,13 @@ from polhode.identify.wrench import from_wrench
 __all__ = [
     "Direction",
     "Identified",
+    "Labellings",
     "Pendulum",
     "bifilar",
     "compound",
     "from_pendulum",
     "from_wrench",
+    "labellings",
     "torsional",
     "trifilar",
 ]

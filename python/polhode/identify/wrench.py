@@ -39,6 +39,8 @@ _FINER: Final = 3
 """The wrench is projected on splines with so many times as many pieces."""
 _EVEN: Final = 1e-3
 """Share of a step by which times may differ from even ones in what follows from them."""
+_RAGGED: Final = 2.0
+"""A window is left out if gaps make the noise of its acceleration larger than so many usual ones."""
 _SOME: Final = 16
 """Windows from which the share of noise is found that products have."""
 _LEAST: Final = 32
@@ -358,7 +360,13 @@ def _windows(
     pieces = max(min(math.ceil(_PIECES * highest * window), window - _DEGREE), 1)
     splines, slopes = _splines(place, pieces)
     smooth, change = np.linalg.qr(splines)
-    slope = slopes @ np.linalg.inv(change)
+    # A window in which rows are too far apart for its splines has no acceleration: its noise is as good as
+    # infinite, and the tiny number keeps it from being so.
+    slope = slopes @ np.linalg.inv(change + 1e-14 * np.eye(splines.shape[2]))
+    if len(place) > 1:
+        noise = np.sum(slope**2, axis=(1, 2)) / span[:, 0] ** 2
+        kept = noise <= _RAGGED * np.median(noise)
+        index, span, place, smooth, slope = (one[kept] for one in (index, span, place, smooth, slope))
     fine = np.linalg.qr(_splines(place, min(_FINER * pieces, window - _DEGREE))[0])[0]
     base = fine @ np.linalg.svd(fine.swapaxes(1, 2) @ slope)[0]
     spin = ((base.swapaxes(1, 2) @ slope) ** 2).sum(axis=2).mean(axis=0) * float((span**-2).mean())
