@@ -71,6 +71,7 @@ __all__ = [
     "euler_angles_from_quaternion",
     "euler_rates",
     "feedback",
+    "fit_tumble",
     "free_precession",
     "from_log_cholesky",
     "from_parameters",
@@ -152,6 +153,7 @@ __all__ = [
     "transport",
     "triangle",
     "tube",
+    "tumble_information",
     "uniform_gravity",
     "wedge",
     "wheel",
@@ -1175,6 +1177,15 @@ def rates(
     t: ArrayLike, rows: ArrayLike, order: int | None = None, sigma: float | None = None
 ) -> tuple[_Floats, _Floats]: ...
 def white_noise(t: ArrayLike, rows: ArrayLike) -> float: ...
+def fit_tumble(
+    t: ArrayLike,
+    omega: ArrayLike,
+    known: dict[str, Any],
+    progress: Callable[[float], object] | None = None,
+) -> list[dict[str, Any]]: ...
+def tumble_information(
+    t: ArrayLike, omega: Sequence[float], inertia: Sequence[float], known: dict[str, Any]
+) -> dict[str, Any]: ...
 def attitudes(
     t: ArrayLike, omega: ArrayLike, attitude: _Attitude, frame: Literal["body", "space"], order: int
 ) -> tuple[_Floats, _Floats]: ...

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from polhode._core import RigidBody, Uncertain
+    from polhode._core import FreeMotion, GyrostatMotion, RigidBody, Uncertain
+    from polhode.results import State
 
     Floats = NDArray[np.float64]
 
@@ -120,6 +121,14 @@ class Identified:
         Number of rows that were left out, by reason.
     window : int or None
         Number of samples of a window, where the angular acceleration was not given.
+    start : State or None
+        Of a tumble: the state at the first time. The log does not tell the attitude; it is the identity.
+    start_covariance : numpy.ndarray, shape (3, 3), or None
+        Covariance of the angular velocity at the first time.
+    motion : FreeMotion, GyrostatMotion or None
+        The motion that was fitted; its times count from the first time.
+    alternatives : tuple of Identified
+        Other maxima of the likelihood whose logarithm is less by at most 3.
     """
 
     body: RigidBody
@@ -140,6 +149,10 @@ class Identified:
     scale_known: bool
     dropped: dict[str, int]
     window: int | None = None
+    start: State | None = None
+    start_covariance: Floats | None = None
+    motion: FreeMotion | GyrostatMotion | None = None
+    alternatives: tuple[Identified, ...] = ()
 
     def __repr__(self) -> str:
         told = {

@@ -41,6 +41,7 @@ mod free_motion;
 mod gyrostat;
 mod heavy_top;
 mod hints;
+mod identification;
 mod indexing;
 mod interrupt;
 mod items;
@@ -110,6 +111,8 @@ mod _core {
     use crate::gyrostat::PyGyrostatMotion;
     #[pymodule_export]
     use crate::heavy_top::PyHeavyTop;
+    #[pymodule_export]
+    use crate::identification::{fit_tumble, tumble_information};
     #[pymodule_export]
     use crate::kinematics::transport;
     #[pymodule_export]

@@ -17,6 +17,7 @@
 //! | what internal dissipation does to its nutation | [`mod@nutation_damping`] |
 //! | symmetric top in a uniform field: steady precession, sleeping | [`heavy_top`] |
 //! | a body that rolls on a plane | [`rolling`] |
+//! | the body that fits a log of its motion | [`identification`] |
 //! | attitude, ω, position and velocity together | [`state`] |
 //! | motions in closed form: states at one time and at many | [`closed_form`] |
 //! | what acts on the body | [`loads`] |
@@ -33,6 +34,7 @@ pub mod free;
 pub mod free_precession;
 pub mod gyrostat;
 pub mod heavy_top;
+pub mod identification;
 pub mod integrate;
 pub mod kinematics;
 pub mod kinetic_energy;

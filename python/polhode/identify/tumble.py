@@ -1,0 +1,657 @@
+"""From a log of the angular velocity of a tumbling body to its tensor, and what a throw would tell of it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+import numpy as np
+
+from polhode._core import RigidBody, Uncertain, fit_tumble, tumble_information, white_noise
+from polhode._hints import check_kind
+from polhode.errors import IdentificationError
+from polhode.identify.results import ELEMENTS, NUMBERS, Direction, Identified, p_value_of, tensor_of
+from polhode.results import State
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["best_throw", "design", "from_tumble"]
+
+_STARTS: Final = 6
+_LEAST: Final = 8
+"""Rows of a log, at least."""
+_NEVER: Final = 1e-6
+"""Probability below which noise does not explain a sum of squares."""
+_UNCERTAIN: Final = 0.1
+"""Share of its own size beyond which the sigma of a direction is told."""
+_LOST: Final = 1.0
+"""Share beyond which a direction is not determined: its sigma exceeds the size of the tensor."""
+_SHARE: Final = 0.15
+_RANK: Final = 1e-13
+_AXES: Final = "xyz"
+_SCALE: Final = "the scale of the tensor"
+_SCALE_REMEDY: Final = (
+    "no torque acts and no rotor turns: let a rotor of known momentum turn inside, or give what is known "
+    "by prior="
+)
+_REMEDY: Final = "throw it so that ω moves about all axes (identify.best_throw), spin it faster, or log longer"
+_BASIS: Final = np.array(tensor_of(np.eye(6)))
+_TRACE: Final = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
+
+
+def from_tumble(
+    t: ArrayLike,
+    omega: ArrayLike,
+    *,
+    sigma: ArrayLike | None = None,
+    bias: bool | Uncertain = False,
+    rotor: ArrayLike | None = None,
+    mass: float | None = None,
+    prior: RigidBody | None = None,
+    loss: Literal["gaussian", "student"] = "gaussian",
+    starts: int | None = None,
+    progress: Callable[[float], object] | None = None,
+) -> Identified:
+    """Find the most likely tensor of a freely tumbling body from a log of its angular velocity.
+
+    The model is the exact motion of Euler's equations, ``I ω̇ + ω × (I ω + h) = 0``, plus white noise. Body
+    frame: the axes of the gyro, with the origin at the centre of mass. Without a rotor or a prior only ratios
+    of the tensor are told: its trace is then 1, and ``scale_known`` is False.
+
+    Parameters
+    ----------
+    t : array_like, shape (n,)
+        Ascending times, evenly spaced or not.
+    omega : array_like, shape (n, 3)
+        Measured angular velocity in rad per unit of time. A row with a number that is not finite is a lost
+        sample: it is left out, and counted in ``dropped``.
+    sigma : float or array_like, shape (3,), optional
+        Standard deviations of white noise; without one it is estimated from the residuals.
+    bias : bool or Uncertain
+        Constant offset of the gyro: none, estimated, or known beforehand as an Uncertain of shape (3,).
+    rotor : array_like, shape (3,), optional
+        Known constant angular momentum of rotors inside, relative to the body, in its axes.
+    mass : float, optional
+        Mass of the body that is returned, 1 by default. The motion does not depend on it.
+    prior : RigidBody, optional
+        What is known of the tensor beforehand: a body with a covariance.
+    loss : {"gaussian", "student"}
+        The second bears outliers: noise by Student's distribution with 4 degrees of freedom.
+    starts : int, optional
+        Number of further starts, 6 by default, so that no second maximum is missed.
+    progress : callable, optional
+        Called with the fraction done.
+
+    Returns
+    -------
+    Identified
+        ``parameters`` are the angular velocity at the first time, the tensor and, if there is one, the bias.
+        ``motion`` is the motion of the most likely body; its times count from the first one.
+
+    Raises
+    ------
+    IdentificationError
+        ``"undetermined"`` where the sigma of a direction of the tensor exceeds its size; ``"no fit"`` where
+        no free motion explains the log, with a probability below 1e-6; ``"units"`` where one explains it in
+        degrees; ``"clock"`` for times that do not ascend; ``"saturated"`` where values pile up at a limit.
+    ValueError
+        For arrays whose shapes do not agree.
+
+    Notes
+    -----
+    Pieces of the log are fitted first, whose gaps close as the fit goes on; then one motion is fitted to the
+    whole log. See :doc:`/theory/identification`.
+
+    Examples
+    --------
+    A box thrown with a gyro of 0.01 rad/s noise and an unknown offset, 100 samples a second:
+
+    >>> import numpy as np
+    >>> from polhode import RigidBody, identify
+    >>> body = RigidBody.from_principal(1.0, (0.2, 0.35, 0.45))
+    >>> t = np.linspace(0.0, 8.0, 800)
+    >>> exact = body.free_motion((1.0, 3.0, 0.5)).at(t).omega
+    >>> gyro = exact + (0.05, -0.02, 0.03) + np.random.default_rng(1).normal(0.0, 0.01, (800, 3))
+    >>> found = identify.from_tumble(t, gyro, bias=True)
+    >>> found.body.principal_moments.round(2), found.scale_known
+    (array([0.2 , 0.35, 0.45]), False)
+    >>> [one.words for one in found.observability]
+    ['the scale of the tensor']
+    """
+    times, rows, dropped = _log(t, omega)
+    known, momentum = _known(sigma, bias, rotor, prior, loss)
+    if starts is not None and (isinstance(starts, bool) or int(starts) != starts or starts < 0):
+        raise ValueError(f"starts: expected a whole number of at least 0, got {starts!r}")
+    known["starts"] = _STARTS if starts is None else int(starts)
+    own_mass = 1.0 if mass is None else float(mass)
+    if not 0.0 < own_mass < math.inf:
+        raise ValueError(f"mass: expected a positive number, got {mass!r}")
+    _check_saturation(rows)
+    scale_known = bool(momentum.any()) or prior is not None
+    found = fit_tumble(times, rows, known, progress)
+    if not found:
+        raise IdentificationError(
+            "omega: no free motion was found near this log; check its units and axes, and that nothing ",
+            "touches the body",
+            kind="no fit",
+        )
+    _check_fit(times, rows, known, found[0])
+    fits = [
+        _result(one, known, momentum, own_mass, prior is not None, scale_known, dropped) for one in found
+    ]
+    undetermined = tuple(one for one in fits[0].observability if one.relative >= _LOST and one.words != _SCALE)
+    if undetermined or np.isnan(fits[0].covariance).any():
+        raise IdentificationError(
+            f"omega: {len(times)} rows leave undetermined: ",
+            "; ".join(one.words for one in undetermined) or "combinations of start and offsets",
+            f"; {_REMEDY}",
+            kind="undetermined",
+            observability=fits[0].observability,
+        )
+    others = tuple(one for one in fits[1:] if not np.isnan(one.covariance).any())
+    return replace(fits[0], alternatives=others)
+
+
+def design(
+    body: RigidBody,
+    omega: ArrayLike,
+    t: ArrayLike,
+    sigma: ArrayLike,
+    *,
+    bias: bool | Uncertain = False,
+    rotor: ArrayLike | None = None,
+) -> Identified:
+    """Compute what a log of a throw would tell of a body, before it is thrown.
+
+    Parameters
+    ----------
+    body : RigidBody
+        What one believes of the body.
+    omega : array_like, shape (3,)
+        Angular velocity at the first time, in the body frame.
+    t : array_like, shape (n,)
+        Ascending times.
+    sigma : float or array_like, shape (3,)
+        Standard deviations of the noise.
+    bias : bool or Uncertain
+        As in :func:`from_tumble`.
+    rotor : array_like, shape (3,), optional
+        As in :func:`from_tumble`.
+
+    Returns
+    -------
+    Identified
+        Without data: ``covariance`` and ``crlb`` are the bound of Cramér and Rao, ``observability`` has each
+        direction that the log would hardly determine, ``residuals`` is empty. Where something would not be
+        determined at all, the covariances are NaN.
+
+    Raises
+    ------
+    ValueError
+        For arguments of wrong shapes.
+
+    Examples
+    --------
+    A box that spins about an axis tells of few numbers; one that tumbles, of all:
+
+    >>> import numpy as np
+    >>> from polhode import RigidBody, identify
+    >>> body = RigidBody.from_principal(1.0, (0.2, 0.35, 0.45))
+    >>> t = np.linspace(0.0, 2.0, 200)
+    >>> spin = identify.design(body, (0.0, 0.0, 9.0), t, sigma=0.01)
+    >>> tumble = identify.design(body, (3.0, 8.0, 2.0), t, sigma=0.01)
+    >>> len(spin.observability), [one.words for one in tumble.observability]
+    (4, ['the scale of the tensor'])
+    """
+    check_kind(body, "body", "RigidBody")
+    if body.shape != ():
+        raise ValueError(f"body: expected one body, got a stack of shape {body.shape}")
+    times = _times(t)
+    if not np.isfinite(times).all():
+        raise ValueError("t: expected finite times")
+    known, momentum = _known(sigma, bias, rotor, None, "gaussian")
+    known["starts"] = 0
+    scale_known = bool(momentum.any())
+    inertia = np.asarray(body.inertia)
+    if not scale_known:
+        inertia = inertia / np.trace(inertia)
+    told = tumble_information(
+        times, _vector("omega", omega).tolist(), [float(inertia[i, j]) for i, j in ELEMENTS], known
+    )
+    told["residuals"] = np.zeros((0, 3))
+    told["chi2"] = 0.0
+    return _result(told, known, momentum, float(body.mass), False, scale_known, {}, rows=len(times))
+
+
+def best_throw(
+    body: RigidBody,
+    energy: float,
+    end: float,
+    sigma: ArrayLike,
+    n: int = 200,
+    *,
+    bias: bool | Uncertain = False,
+    rotor: ArrayLike | None = None,
+) -> Floats:
+    """Find the angular velocity with which a throw of given energy tells most of the tensor.
+
+    The best throw has the least sum of the variances of the elements of the tensor.
+
+    Parameters
+    ----------
+    body : RigidBody
+        What one believes of the body.
+    energy : float
+        Kinetic energy of rotation about the centre of mass.
+    end : float
+        Duration of the log.
+    sigma : float or array_like, shape (3,)
+        Standard deviations of the noise.
+    n : int
+        Number of samples.
+    bias : bool or Uncertain
+        As in :func:`from_tumble`.
+    rotor : array_like, shape (3,), optional
+        As in :func:`from_tumble`.
+
+    Returns
+    -------
+    numpy.ndarray, shape (3,)
+        In the body frame.
+
+    Raises
+    ------
+    ValueError
+        For a body with a moment of zero, and for numbers that are not positive.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from polhode import RigidBody, identify
+    >>> body = RigidBody.from_principal(1.0, (0.2, 0.35, 0.45))
+    >>> omega = identify.best_throw(body, energy=10.0, end=1.0, sigma=0.01)
+    >>> t = np.linspace(0.0, 1.0, 200)
+    >>> best = identify.design(body, omega, t, sigma=0.01)
+    >>> flat = identify.design(body, (7.0, 3.0, 1.0), t, sigma=0.01)
+    >>> bool(best.body.sigma.principal_moments.max() < flat.body.sigma.principal_moments.max())
+    True
+    """
+    check_kind(body, "body", "RigidBody")
+    if body.shape != ():
+        raise ValueError(f"body: expected one body, got a stack of shape {body.shape}")
+    for name, x in (("energy", energy), ("end", end)):
+        if not 0.0 < float(x) < 1e100:
+            raise ValueError(f"{name}: expected a positive number, got {x!r}")
+    if isinstance(n, bool) or int(n) != n or not _LEAST <= n <= 10_000_000:
+        raise ValueError(f"n: expected a whole number from {_LEAST} to 10000000, got {n!r}")
+    moments, axes = np.linalg.eigh(np.asarray(body.inertia))
+    if not moments[0] > 1e-9 * moments[2]:
+        raise ValueError(
+            f"body: the moment {moments[0]:.3g} is zero beside {moments[2]:.3g}; a spin about this axis has no energy"
+        )
+    times = np.linspace(0.0, float(end), int(n))
+    known, momentum = _known(sigma, bias, rotor, None, "gaussian")
+    known["starts"] = 0
+    scaled = bool(momentum.any())
+    inertia = np.asarray(body.inertia)
+    if not scaled:
+        inertia = inertia / np.trace(inertia)
+    elements = [float(inertia[i, j]) for i, j in ELEMENTS]
+
+    def throw(direction: Floats) -> Floats:
+        unit = direction / np.linalg.norm(direction)
+        return np.asarray(axes @ (unit * np.sqrt(2.0 * float(energy) / moments)))
+
+    def loss(direction: Floats) -> float:
+        told = tumble_information(times, throw(direction).tolist(), elements, known)
+        space = _allowed(inertia, scaled, False)
+        covariance = _covariance(np.array(told["triangle"]), space)
+        return math.inf if covariance is None else float(np.trace(covariance[3:9, 3:9]))
+
+    # Without a rotor the signs of the components do not matter: reflections of the motion.
+    k = np.arange(64)
+    height, turn = (k + 0.5) / 64.0, k * math.pi * (3.0 - math.sqrt(5.0))
+    side = np.sqrt(1.0 - height**2)
+    directions = np.stack([side * np.cos(turn), side * np.sin(turn), height], axis=1)
+    directions = np.vstack([directions, -directions]) if scaled else np.abs(directions)
+    losses = [loss(one) for one in directions]
+    best, least = directions[int(np.argmin(losses))], min(losses)
+    step = 0.1
+    while step > 1e-3:
+        tried = [best + step * sign * one for one in np.eye(3) for sign in (1.0, -1.0)]
+        tried = [one / np.linalg.norm(one) for one in tried]
+        losses = [loss(one) for one in tried]
+        if min(losses) < least:
+            best, least = tried[int(np.argmin(losses))], min(losses)
+        else:
+            step *= 0.4
+    return throw(best)
+
+
+def _times(t: ArrayLike) -> Floats:
+    times = np.asarray(t, dtype=float)
+    if times.ndim != 1 or len(times) < _LEAST:
+        raise ValueError(f"t: expected shape (n,) of at least {_LEAST} times, got {times.shape}")
+    finite = np.flatnonzero(np.isfinite(times))
+    back = np.flatnonzero(np.diff(times[finite]) <= 0.0)
+    if len(back):
+        k, after = finite[back[0]], finite[back[0] + 1]
+        raise IdentificationError(
+            f"t: time does not ascend from row {k} to row {after}: {times[k]}, {times[after]}",
+            "; sort the rows, and keep each once; where a clock was reset, take one side of it",
+            kind="clock",
+        )
+    return times
+
+
+def _log(t: ArrayLike, omega: ArrayLike) -> tuple[Floats, Floats, dict[str, int]]:
+    times, rows = _times(t), np.asarray(omega, dtype=float)
+    if rows.shape != (len(times), 3):
+        raise ValueError(f"omega: expected shape ({len(times)}, 3), a row for each time, got {rows.shape}")
+    good = np.isfinite(times) & np.isfinite(rows).all(axis=1)
+    dropped = {"not finite": int((~good).sum())} if not good.all() else {}
+    times, rows = times[good], rows[good]
+    if len(times) < _LEAST:
+        raise IdentificationError(
+            f"omega: {len(times)} finite rows are too few: at least {_LEAST} are needed; record longer",
+            kind="undetermined",
+        )
+    largest = float(np.abs(rows).max())
+    if largest > 1e100 or not np.abs(times).max() < 1e100:
+        raise ValueError("omega, t: numbers beyond 1e100 are none of a gyro; check the file")
+    if not largest > 1e-100:
+        raise IdentificationError(
+            "omega: all rows are zero; a body at rest tells nothing of its tensor; check the columns",
+            kind="undetermined",
+        )
+    return times, rows, dropped
+
+
+def _vector(name: str, given: ArrayLike) -> Floats:
+    found = np.asarray(given, dtype=float)
+    if found.shape != (3,) or not (np.abs(found) < 1e100).all():
+        raise ValueError(f"{name}: expected three finite numbers, shape (3,), got {given!r}")
+    return found
+
+
+def _known(
+    sigma: ArrayLike | None,
+    bias: bool | Uncertain,
+    rotor: ArrayLike | None,
+    prior: RigidBody | None,
+    loss: str,
+) -> tuple[dict[str, Any], Floats]:
+    """Return what the core is told beside the log, and the momentum inside."""
+    sigmas = None
+    if sigma is not None:
+        found = np.asarray(sigma, dtype=float)
+        if found.shape not in ((), (3,)) or not ((found > 1e-100) & (found < 1e100)).all():
+            raise ValueError(f"sigma: expected a positive number or three, got {sigma!r}")
+        sigmas = np.broadcast_to(found, 3).tolist()
+    if loss not in ("gaussian", "student"):
+        raise ValueError(f"loss: expected 'gaussian' or 'student', got {loss!r}")
+    offset: Any = bias
+    if isinstance(bias, Uncertain):
+        if bias.value.shape != (3,):
+            raise ValueError(f"bias: expected an Uncertain of shape (3,), got {bias.value.shape}")
+        offset = (bias.value.tolist(), _whitening("bias", np.asarray(bias.covariance)).tolist())
+    elif not isinstance(bias, (bool, np.bool_)):
+        raise ValueError(
+            f"bias: expected True, False or an Uncertain of shape (3,), got {bias!r}; "
+            "a known offset is subtracted: omega - bias"
+        )
+    else:
+        offset = bool(bias)
+    momentum = np.zeros(3) if rotor is None else _vector("rotor", rotor)
+    before = None
+    if prior is not None:
+        check_kind(prior, "prior", "RigidBody")
+        if prior.shape != () or prior.covariance is None:
+            raise ValueError("prior: expected one body with a covariance; give it one by with_covariance")
+        mean = [float(prior.inertia[i, j]) for i, j in ELEMENTS]
+        before = (mean, _whitening("prior", np.asarray(prior.covariance)[4:, 4:]).tolist())
+    known = {
+        "sigma": sigmas, "bias": offset, "momentum": momentum.tolist(), "torque": [0.0] * 3,
+        "prior": before, "student": loss == "student",
+    }  # fmt: skip
+    return known, momentum
+
+
+def _whitening(name: str, covariance: Floats) -> Floats:
+    """Return rows that make errors of unit variance; what has no variance is known to nine digits."""
+    largest = float(np.abs(covariance).max())
+    if not 0.0 < largest < 1e200:
+        raise ValueError(f"{name}: expected a covariance that is not zero")
+    values, vectors = np.linalg.eigh(covariance)
+    return np.asarray((vectors / np.sqrt(np.maximum(values, 1e-18 * largest))).T)
+
+
+def _check_saturation(rows: Floats) -> None:
+    """Refuse a log whose values pile up at the largest one: a gyro beyond its range."""
+    for k, axis in enumerate(_AXES):
+        for sign in (1.0, -1.0):
+            values, counts = np.unique(sign * rows[:, k], return_counts=True)
+            if len(values) < 2:
+                continue
+            piled = int(counts[-1])
+            # A rounded peak has many values just below it, too.
+            if piled >= max(5, 0.01 * len(rows)) and piled > 4 * int(counts[-2]):
+                limit = sign * float(values[-1])
+                raise IdentificationError(
+                    f"omega: {piled} of {len(rows)} rows have {limit:g} about {axis}, and none is beyond: ",
+                    "the gyro is saturated; throw it slower, choose a wider range, or set these rows to NaN",
+                    kind="saturated",
+                )
+
+
+def _misfit(times: Floats, rows: Floats, fit: dict[str, Any], known: dict[str, Any]) -> bool:
+    """Return whether noise does not explain the residuals."""
+    count = 3 * len(times)
+    if known["sigma"] is not None:
+        return not known["student"] and p_value_of(fit["chi2"], count - _unknowns(known)) < _NEVER
+    level = white_noise(times, rows)
+    floor = 1e-7 * float(np.sqrt(np.mean(rows**2)))
+    # A smooth curve through the rows leaves the noise; a motion that leaves far more does not fit.
+    return bool(fit["sigma"][0] > 2.0 * max(level, floor))
+
+
+def _unknowns(known: dict[str, Any]) -> int:
+    scaled = any(known["momentum"]) or known["prior"] is not None
+    free = 8 + scaled + 3 * (known["bias"] is not False)
+    return free - 6 * (known["prior"] is not None) - 3 * isinstance(known["bias"], tuple)
+
+
+def _check_fit(times: Floats, rows: Floats, known: dict[str, Any], fit: dict[str, Any]) -> None:
+    if not _misfit(times, rows, fit, known):
+        return
+    by = math.pi / 180.0
+    again = dict(known)
+    if known["sigma"] is not None:
+        again["sigma"] = [by * one for one in known["sigma"]]
+    if isinstance(known["bias"], tuple):
+        mean, white = known["bias"]
+        again["bias"] = ((by * np.array(mean)).tolist(), (np.array(white) / by).tolist())
+    in_degrees = fit_tumble(times, by * rows, again)
+    if in_degrees and not _misfit(times, by * rows, in_degrees[0], again):
+        raise IdentificationError(
+            f"omega: no free motion fits rates up to {np.abs(rows).max():.3g} rad per unit of time, ",
+            "but one fits them in degrees; convert them: np.deg2rad(omega)",
+            kind="units",
+        )
+    if known["sigma"] is None:
+        said = f"the residuals have a sigma of {fit['sigma'][0]:.3g}, far more than the noise of the log; "
+    else:
+        said = f"chi2 is {fit['chi2']:.6g} with {3 * len(times) - _unknowns(known)} degrees of freedom; "
+    raise IdentificationError(
+        f"omega: {said}",
+        "no free motion explains the log; cut off the rows of throw and catch, estimate the offset by ",
+        'bias=True, take loss="student" for outliers, or enlarge sigma',
+        kind="no fit",
+    )
+
+
+def _allowed(inertia: Floats, scaled: bool, at_edge: bool) -> Floats:
+    """Return an orthonormal basis, shape (6, k), of changes of the elements that were free."""
+    laws = []
+    if not scaled:
+        laws.append(_TRACE)
+    if at_edge:
+        axis = np.linalg.eigh(inertia)[1][:, 2]
+        normal = 0.5 * np.eye(3) - np.outer(axis, axis)
+        laws.append(np.array([np.sum(one * normal) for one in _BASIS]))
+    if not laws:
+        return np.eye(6)
+    rows = np.linalg.svd(np.array(laws))[2]
+    return np.asarray(rows[len(laws) :].T)
+
+
+def _covariance(triangle: Floats, space: Floats) -> Floats | None:
+    """Return the covariance of all parameters with tensors in a space; None where it is not finite."""
+    extra = len(triangle) - 9
+    maps = np.zeros((len(triangle), 3 + space.shape[1] + extra))
+    maps[:3, :3] = np.eye(3)
+    maps[3:9, 3 : 3 + space.shape[1]] = space
+    maps[9:, 3 + space.shape[1] :] = np.eye(extra)
+    inner = triangle @ maps
+    lengths = np.linalg.norm(inner, axis=0)
+    if not (lengths > 0.0).all():
+        return None
+    upper = np.linalg.qr(inner / lengths, mode="r")
+    values, rows = np.linalg.svd(upper)[1:]
+    if values[-1] <= _RANK * values[0]:
+        return None
+    root = maps @ ((rows.T / values) / lengths[:, None])
+    return np.asarray(root @ root.T)
+
+
+def _marginal(triangle: Floats) -> Floats:
+    """Return the triangle of what the log tells of the tensor where start and offsets are not known."""
+    order = [*range(3), *range(9, len(triangle)), *range(3, 9)]
+    upper = np.linalg.qr(triangle[:, order], mode="r")
+    return np.asarray(upper[-6:, -6:])
+
+
+def _directions(triangle: Floats, inertia: Floats, scaled: bool) -> tuple[Direction, ...]:
+    """Find the directions of the tensor that the log hardly determines, the worst first."""
+    space, size = _allowed(inertia, scaled, False), float(np.trace(inertia)) / 3.0
+    jacobian = _marginal(triangle) @ space * size
+    values, rows = np.linalg.svd(jacobian, full_matrices=True)[1:]
+    values = np.append(values, np.zeros(space.shape[1] - len(values)))
+    found = [] if scaled else [_scale_direction(inertia)]
+    large = float(np.abs(triangle[:, :3]).max()) * float(np.sqrt(size))
+    for value, row in sorted(zip(values, rows, strict=True), key=lambda one: one[0]):
+        if value * _UNCERTAIN >= 1.0:
+            continue
+        relative = math.inf if value <= 1e-11 * large else 1.0 / float(value)
+        vector, words = _named(space @ row, inertia, scaled)
+        sigma = relative * size * float(np.abs(vector).max())
+        found.append(Direction(words, vector * size, sigma, relative, _REMEDY))
+    return tuple(sorted(found, key=lambda one: -one.relative))
+
+
+def _scale_direction(inertia: Floats) -> Direction:
+    vector = np.array([inertia[i, j] for i, j in ELEMENTS])
+    return Direction(_SCALE, vector, math.inf, math.inf, _SCALE_REMEDY)
+
+
+def _named(vector: Floats, inertia: Floats, scaled: bool) -> tuple[Floats, str]:
+    """Return a direction and its name.
+
+    Without a scale a multiple of the tensor changes nothing, and the multiple with the fewest parts is taken.
+    """
+    own = np.array([inertia[i, j] for i, j in ELEMENTS])
+    tries = [vector]
+    if not scaled:
+        moments, axes = np.linalg.eigh(inertia)
+        along = np.einsum("ik,ij,jk->k", axes, tensor_of(vector), axes)
+        tries += [vector - one / moment * own for one, moment in zip(along, moments, strict=True)]
+    best, words, fewest = vector, "", math.inf
+    for one in tries:
+        size = float(np.linalg.norm(tensor_of(one)))
+        if not size > 1e-3 * np.linalg.norm(vector):
+            continue
+        moments, axes = np.linalg.eigh(tensor_of(one) / size)
+        order = np.argsort(-np.abs(moments))
+        parts = float(np.abs(moments[order[1:]]).sum())
+        if parts < fewest:
+            best, fewest = one, parts
+            if abs(moments[order[1]]) < 2.0 * _SHARE:
+                axis = axes[:, order[0]]
+                axis = axis * np.sign(axis[np.argmax(np.abs(axis))])
+                words = f"the moment about {_axis_words(axis)}"
+            else:
+                words = _mixed(one)
+    return best * (np.linalg.norm(vector) / np.linalg.norm(best)), words
+
+
+def _axis_words(axis: Floats) -> str:
+    for k, name in enumerate(_AXES):
+        if abs(axis[k]) > 0.999:
+            return name
+    x, y, z = (f"{one + 0.0:.2g}" for one in axis.round(2))
+    return f"({x}, {y}, {z})"
+
+
+def _mixed(vector: Floats) -> str:
+    most = float(np.abs(vector).max())
+    parts = [name for name, x in zip(NUMBERS[4:], vector, strict=True) if abs(x) > _SHARE * most]
+    words = [
+        f"the moment about {one[1]}" if one[1] == one[2] else f"the product of inertia {one[1:]}"
+        for one in parts
+    ]
+    return words[0] if len(words) == 1 else f"a combination of {', '.join(words[:-1])} and {words[-1]}"
+
+
+def _result(
+    fit: dict[str, Any],
+    known: dict[str, Any],
+    momentum: Floats,
+    mass: float,
+    has_prior: bool,
+    scaled: bool,
+    dropped: dict[str, int],
+    rows: int | None = None,
+) -> Identified:
+    omega, elements, offset = (np.array(fit[one]) for one in ("omega", "inertia", "bias"))
+    triangle, edge = np.array(fit["triangle"]), bool(fit["at_edge"])
+    has_bias = len(triangle) > 9
+    inertia = np.asarray(tensor_of(elements))
+    bound = _covariance(triangle, _allowed(inertia, scaled, False))
+    covariance = _covariance(triangle, _allowed(inertia, scaled, True)) if edge else bound
+    nothing = np.full((len(triangle), len(triangle)), np.nan)
+    names = [f"omega_{one}" for one in _AXES] + list(NUMBERS[4:]) + [f"bias_{one}" for one in _AXES] * has_bias
+    body = RigidBody(mass=mass, inertia=inertia)
+    if covariance is not None:
+        whole = np.zeros((10, 10))
+        whole[4:, 4:] = covariance[3:9, 3:9]
+        body = body.with_covariance(0.5 * (whole + whole.T))
+    estimated = known["sigma"] is None
+    count = 3 * (len(fit["residuals"]) if rows is None else rows)
+    freedom = count - _unknowns(known)
+    chi2 = float(fit["chi2"])
+    has_p = rows is None and not estimated and not known["student"]
+    sigmas = np.array(fit["sigma"])
+    bias = None
+    if has_bias:
+        bias = Uncertain(offset) if covariance is None else Uncertain(
+            offset, covariance=0.5 * (covariance[9:, 9:] + covariance[9:, 9:].T)
+        )  # fmt: skip
+    still = np.zeros(3)
+    motion = body.gyrostat(momentum).free_motion(omega) if momentum.any() else body.free_motion(omega)
+    return Identified(
+        body=body, parameters=tuple(names), estimate=np.concatenate([omega, elements, offset])[: len(names)],
+        covariance=nothing if covariance is None else covariance, crlb=nothing if bound is None else bound,
+        residuals=np.asarray(fit["residuals"]), chi2=chi2, degrees_of_freedom=freedom,
+        p_value=p_value_of(chi2, freedom) if has_p else math.nan,
+        noise=Uncertain(sigmas, sigmas / math.sqrt(2.0 * count)) if estimated and rows is None else None,
+        bias=bias, at_edge=edge, linear=not edge, gap=0.0,
+        observability=_directions(triangle, inertia, scaled), scale_known=scaled, dropped=dropped,
+        start=State(omega, np.array([0.0, 0.0, 0.0, 1.0]), still, still),
+        start_covariance=None if covariance is None else covariance[:3, :3], motion=motion,
+    )  # fmt: skip

@@ -1,0 +1,942 @@
+//! The most likely tensor of a body that turns freely, from a log of its angular velocity.
+//!
+//! The log is that of the exact motion plus white noise, and perhaps a constant offset:
+//!
+//! ```text
+//! y_i = ω(t_i; ω₀, I) + b + n_i ,        I ω̇ + ω × (I ω + h) = N .
+//! ```
+//!
+//! Without a known h or N only ratios of the tensor are told; its trace is 1 then.
+
+use std::cell::{Cell, RefCell};
+use std::ops::ControlFlow;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::momentum_balance::{Balanced, Question, estimates, is_tensor};
+use super::series::{Follower, Place, Sample, Spinning};
+use super::triangle::{Linear, Stop, Triangle, descend};
+use crate::error::Error;
+use crate::motion::rates::derivatives::{Rows, noise};
+use crate::numerics::eigen3::eigen3;
+use crate::numerics::threads::Watch;
+
+/// Degrees of freedom of Student's distribution.
+const NU: f64 = 4.0;
+/// Places of the tensor's elements: xx, yy, zz, xy, xz, yz.
+pub const ELEMENTS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+/// Rows between two looks at `watch`.
+const LOOK: usize = 1024;
+/// Length of a piece of the log, in units of angle at the usual rate.
+const PIECE: f64 = 1.0;
+/// Rows so near are as good as at the same time, for a start.
+const NEAR: f64 = 0.15;
+/// Steps of a chain, at most.
+const JOINS: usize = 15;
+/// Rows on which further starts are tried out, and how many of them.
+const HEAD: usize = 2000;
+const TRIED: usize = 300;
+/// Of log L: maxima that are lower by more are not told.
+const WITHIN: f64 = 3.0;
+
+/// What is known of the offset of the gyro.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bias {
+    /// There is none.
+    Zero,
+    /// Nothing.
+    Free,
+    /// Its mean, and the rows that make errors of unit variance of its deviation.
+    Prior([f64; 3], [[f64; 3]; 3]),
+}
+
+/// A log of a tumble and what is known of the body.
+#[derive(Clone, Copy, Debug)]
+pub struct Tumble<'a> {
+    /// Ascending times.
+    pub t: &'a [f64],
+    /// Measured angular velocity in B at these times; finite.
+    pub omega: &'a [[f64; 3]],
+    /// Standard deviations of its components; None where unknown, and one for the three.
+    pub sigma: Option<[f64; 3]>,
+    /// Constant offset of the gyro.
+    pub bias: Bias,
+    /// Constant momentum of rotors inside, in B.
+    pub momentum: [f64; 3],
+    /// Constant torque, in B.
+    pub torque: [f64; 3],
+    /// The elements of the tensor beforehand, and the rows that make errors of unit variance of their deviations.
+    pub prior: Option<([f64; 6], [[f64; 6]; 6])>,
+    /// Whether noise follows Student's distribution with 4 degrees of freedom, not the normal one.
+    pub student: bool,
+    /// Number of further starts, at most.
+    pub starts: usize,
+}
+
+/// The most likely parameters.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// ω at the first time.
+    pub omega: [f64; 3],
+    /// Elements xx, yy, zz, xy, xz, yz of the tensor.
+    pub inertia: [f64; 6],
+    /// Offset of the gyro.
+    pub bias: [f64; 3],
+    /// Standard deviations of the noise.
+    pub sigma: [f64; 3],
+    /// −2 log L, but for a constant.
+    pub cost: f64,
+    /// Sum of squares of the residuals of log and priors in units of sigma.
+    pub chi2: f64,
+    /// Measured minus predicted, in units of sigma.
+    pub residuals: Vec<[f64; 3]>,
+    /// The triangle of the derivatives of all predictions by ω₀ (3), tensor (6) and, unless it is zero, bias (3), in units of sigma; rows.
+    pub triangle: Vec<Vec<f64>>,
+    /// Whether the tensor is the best on the edge of those of bodies.
+    pub at_edge: bool,
+    /// Whether the iteration came to its end.
+    pub converged: bool,
+}
+
+/// Parameters, in units of the fit.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    omega: Vector3<f64>,
+    inertia: Matrix3<f64>,
+    bias: Vector3<f64>,
+}
+
+/// Parameters with the angular velocity at the start of each piece of the log, not only of the first.
+#[derive(Clone, Debug)]
+struct Chain {
+    point: Point,
+    /// Of all pieces but the first.
+    nodes: Vec<Vector3<f64>>,
+}
+
+/// What is known of a chain.
+struct Linked {
+    triangle: Triangle,
+    /// What the log costs.
+    cost: f64,
+    /// The sum of squares of the gaps, in units of sigma.
+    gaps: f64,
+    /// How each node follows the parameters, if the gaps are closed.
+    follows: Vec<Place<10>>,
+}
+
+/// The log in units of the fit: times of 1/rate from the first one on, a tensor of about 1.
+struct Scaled<'a> {
+    tumble: &'a Tumble<'a>,
+    t: Vec<f64>,
+    omega: Vec<[f64; 3]>,
+    sigma: Cell<[f64; 3]>,
+    momentum: Vector3<f64>,
+    torque: Vector3<f64>,
+    rate: f64,
+    unit: f64,
+    /// Whether the scale of the tensor is told by something.
+    has_scale: bool,
+    /// The noise that the log seems to have.
+    level: f64,
+    watch: &'a dyn Fn(f64) -> ControlFlow<()>,
+    stopped: Cell<bool>,
+    /// The fraction done.
+    done: Cell<f64>,
+}
+
+/// Fits a log: the best maximum of the likelihood first, then others within 3 of its logarithm.
+///
+/// The first start balances momentum over windows; the horizon of the fit grows to as far as the prediction holds. Further starts have other
+/// tensors. `watch` gets the fraction done and may end the work.
+///
+/// # Examples
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use polhode::RigidBody;
+/// use polhode::motion::free::FreeMotion;
+/// use polhode::motion::identification::{Bias, Tumble, fit_tumble};
+/// use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
+///
+/// let tensor = Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45));
+/// let body = RigidBody::new(1.0, &tensor, &Vector3::zeros(), 0.0)?;
+/// let motion = FreeMotion::of(&body, &Vector3::new(1.0, 2.0, 0.5), &UnitQuaternion::identity())?;
+/// let t: Vec<f64> = (0..300).map(|i| 0.02 * f64::from(i)).collect();
+/// let omega: Vec<[f64; 3]> = t.iter().map(|&t| motion.at(t).omega.into()).collect();
+/// let tumble = Tumble {
+///     t: &t,
+///     omega: &omega,
+///     sigma: Some([1e-3; 3]),
+///     bias: Bias::Zero,
+///     momentum: [0.0; 3],
+///     torque: [0.0; 3],
+///     prior: None,
+///     student: false,
+///     starts: 4,
+/// };
+/// let found = fit_tumble(&tumble, &mut |_| ControlFlow::Continue(()))?;
+/// assert!((found[0].inertia[0] - 0.2).abs() < 1e-9);
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Stopped`] if `watch` said so.
+///
+/// # Panics
+/// If there are fewer than three times, or not a row for each.
+pub fn fit_tumble(tumble: &Tumble<'_>, watch: &mut Watch<'_>) -> Result<Vec<Fit>, Error> {
+    assert!(tumble.t.len() >= 3, "at least three times");
+    assert_eq!(tumble.t.len(), tumble.omega.len(), "a row for each time");
+    let level = noise(tumble.t, Rows::Vectors(tumble.omega), watch)?;
+    let watch = RefCell::new(watch);
+    let watch = |done: f64| (watch.borrow_mut())(done);
+    let scaled = Scaled::new(tumble, usual_rate(tumble.omega), level, &watch);
+    let found = scaled.maxima();
+    if scaled.stopped.get() {
+        return Err(Error::Stopped);
+    }
+    Ok(found)
+}
+
+/// The derivatives of the predictions of a log by ω₀, tensor and offset in units of `tumble.sigma`, and the predictions:
+/// what the motion from `omega` would tell of the tensor `inertia`. The measured values do not matter.
+///
+/// # Errors
+/// [`Error::Stopped`] if `watch` said so.
+///
+/// # Panics
+/// If there are no times.
+pub fn information(
+    tumble: &Tumble<'_>,
+    (omega, inertia): ([f64; 3], [f64; 6]),
+    watch: &mut Watch<'_>,
+) -> Result<Fit, Error> {
+    assert!(!tumble.t.is_empty(), "times");
+    let watch = RefCell::new(watch);
+    let watch = |done: f64| (watch.borrow_mut())(done);
+    let scaled = Scaled::new(tumble, Vector3::from(omega).norm(), 0.0, &watch);
+    let point = Point {
+        omega: Vector3::from(omega) / scaled.rate,
+        inertia: tensor(&inertia) / scaled.unit,
+        bias: Vector3::zeros(),
+    };
+    let fit = scaled.told(&point, false, true);
+    match fit {
+        Some(fit) if !scaled.stopped.get() => Ok(fit),
+        _ => Err(Error::Stopped),
+    }
+}
+
+fn tensor(elements: &[f64; 6]) -> Matrix3<f64> {
+    let mut found = Matrix3::zeros();
+    for (x, (i, j)) in elements.iter().zip(ELEMENTS) {
+        found[(i, j)] = *x;
+        found[(j, i)] = *x;
+    }
+    found
+}
+
+/// The change of the tensor with each of its elements.
+fn element_directions() -> Vec<Matrix3<f64>> {
+    (0..6)
+        .map(|k| {
+            let mut one = [0.0; 6];
+            one[k] = 1.0;
+            tensor(&one)
+        })
+        .collect()
+}
+
+/// Orthonormal directions of tensors across the given ones.
+fn directions_across(without: &[Matrix3<f64>]) -> Vec<Matrix3<f64>> {
+    let mut basis: Vec<Matrix3<f64>> = Vec::new();
+    let mut found = Vec::new();
+    for (k, one) in without.iter().copied().chain(element_directions()).enumerate() {
+        let mut rest = one / one.norm();
+        for _ in 0..2 {
+            for other in &basis {
+                rest -= other * other.dot(&rest);
+            }
+        }
+        if rest.norm() > 1e-6 {
+            let own = rest / rest.norm();
+            basis.push(own);
+            if k >= without.len() {
+                found.push(own);
+            }
+        }
+        if basis.len() == 6 {
+            break;
+        }
+    }
+    found
+}
+
+/// The median of |ω|.
+fn usual_rate(omega: &[[f64; 3]]) -> f64 {
+    let mut rates: Vec<f64> = omega.iter().map(|one| Vector3::from(*one).norm()).collect();
+    let middle = rates.len() / 2;
+    *rates.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+impl<'a> Scaled<'a> {
+    fn new(
+        tumble: &'a Tumble<'a>,
+        rate: f64,
+        level: f64,
+        watch: &'a dyn Fn(f64) -> ControlFlow<()>,
+    ) -> Self {
+        let rate = if rate > 0.0 { rate } else { 1.0 };
+        let (h, n) = (Vector3::from(tumble.momentum), Vector3::from(tumble.torque));
+        let prior = tumble.prior.map(|(mean, _)| mean[0] + mean[1] + mean[2]);
+        let told = (h.norm() / rate).max(n.norm() / rate.powi(2));
+        let unit = prior.unwrap_or(if told > 0.0 { 3.0 * told } else { 1.0 });
+        // Noise below rounding is none.
+        let level = (level / rate).max(1e-13);
+        Self {
+            t: tumble.t.iter().map(|t| (t - tumble.t[0]) * rate).collect(),
+            omega: tumble.omega.iter().map(|y| y.map(|x| x / rate)).collect(),
+            sigma: Cell::new(tumble.sigma.map_or([level; 3], |sigma| sigma.map(|x| x / rate))),
+            momentum: h / (rate * unit),
+            torque: n / (rate * rate * unit),
+            has_scale: prior.is_some() || told > 0.0,
+            tumble,
+            rate,
+            unit,
+            level,
+            watch,
+            stopped: Cell::new(false),
+            done: Cell::new(0.0),
+        }
+    }
+
+    /// Some of the rows, on which starts are tried out.
+    fn thinned(&self) -> Self {
+        let head = self.rows().min(HEAD);
+        let stride = head.div_ceil(TRIED);
+        Self {
+            t: self.t[..head].iter().step_by(stride).copied().collect(),
+            omega: self.omega[..head].iter().step_by(stride).copied().collect(),
+            sigma: self.sigma.clone(),
+            stopped: Cell::new(false),
+            done: self.done.clone(),
+            ..*self
+        }
+    }
+
+    fn rows(&self) -> usize {
+        self.t.len()
+    }
+
+    fn has_bias(&self) -> bool {
+        self.tumble.bias != Bias::Zero
+    }
+
+    /// Changes of the tensor that keep its scale, if nothing tells it.
+    fn directions(&self) -> Vec<Matrix3<f64>> {
+        if self.has_scale {
+            directions_across(&[])
+        } else {
+            directions_across(&[Matrix3::identity()])
+        }
+    }
+
+    fn spinning(&self, at: &Point) -> Spinning {
+        Spinning {
+            inertia: at.inertia,
+            momentum: self.momentum,
+            torque: self.torque,
+        }
+    }
+
+    /// Whether to go on, asked now and then.
+    fn look(&self) -> ControlFlow<()> {
+        let answer = (self.watch)(self.done.get());
+        if answer.is_break() {
+            self.stopped.set(true);
+        }
+        answer
+    }
+
+    /// The cost of the first rows at a place, and its derivatives by ω₀, the tensor along the directions, and bias.
+    ///
+    /// With a place to keep the residuals the derivatives have the weights that are expected, not those of these residuals.
+    fn evaluate<const C: usize>(
+        &self,
+        at: &Point,
+        rows: usize,
+        limit: f64,
+        directions: &[Matrix3<f64>],
+        mut told: Option<&mut Vec<[f64; 3]>>,
+    ) -> Option<Linear> {
+        let inner = 3 + directions.len();
+        let unknowns = inner + if self.has_bias() { 3 } else { 0 };
+        let mut triangle = Triangle::new(unknowns);
+        let mut cost = self.prior_rows(at, directions, &mut triangle);
+        let weights = Vector3::from(self.sigma.get().map(f64::recip));
+        let mut follower = Follower::<C>::of(&self.spinning(at), directions)?;
+        let axes = follower.axes;
+        let whole = follower.run(
+            &Place::start(at.omega),
+            (0.0, self.t[rows - 1]),
+            &self.t[..rows],
+            |sample: &Sample<'_, C>| {
+                if sample.row % LOOK == LOOK - 1 {
+                    self.look()?;
+                }
+                let predicted = axes * Vector3::from(*sample.omega) + at.bias;
+                let rest = (Vector3::from(self.omega[sample.row]) - predicted)
+                    .component_mul(&weights);
+                let square = rest.norm_squared();
+                let mut root = 1.0;
+                if self.tumble.student {
+                    cost += (NU + 3.0) * (square / NU).ln_1p();
+                    let expected = told.is_some();
+                    root = ((NU + 3.0) / if expected { NU + 5.0 } else { NU + square }).sqrt();
+                } else {
+                    cost += square;
+                }
+                if let Some(told) = told.as_deref_mut() {
+                    told.push(rest.into());
+                }
+                if !(cost <= limit) {
+                    return ControlFlow::Break(());
+                }
+                for i in 0..3 {
+                    let share = weights[i] * root;
+                    let a = [0, 1, 2].map(|k| axes[(i, k)] * share);
+                    let [x, y, z] = sample.columns;
+                    let motion =
+                        (0..inner).map(|c| a[0] * x[c] + a[1] * y[c] + a[2] * z[c]);
+                    let offset = (inner..unknowns).map(|c| if c == inner + i { share } else { 0.0 });
+                    triangle.push(motion.chain(offset), rest[i] * root);
+                }
+                ControlFlow::Continue(())
+            },
+        );
+        triangle.fold();
+        (whole.is_some() && cost.is_finite()).then_some(Linear { triangle, cost })
+    }
+
+    /// Adds the rows of what is known beforehand, and returns their cost.
+    fn prior_rows(
+        &self,
+        at: &Point,
+        directions: &[Matrix3<f64>],
+        triangle: &mut Triangle,
+    ) -> f64 {
+        let (inner, unknowns) = (3 + directions.len(), triangle.unknowns());
+        let mut cost = 0.0;
+        let mut push = |first: usize, row: &[f64], target: f64| {
+            let row = (0..unknowns).map(|c| {
+                c.checked_sub(first).and_then(|k| row.get(k)).copied().unwrap_or(0.0)
+            });
+            triangle.push(row, target);
+            cost += target * target;
+        };
+        if let Bias::Prior(mean, white) = self.tumble.bias {
+            let off = Vector3::from(mean) - at.bias * self.rate;
+            for row in white {
+                let target = Vector3::from(row).dot(&off);
+                push(inner, &row.map(|x| x * self.rate), target);
+            }
+        }
+        if let Some((mean, white)) = self.tumble.prior {
+            let own = ELEMENTS.map(|place| at.inertia[place] * self.unit);
+            for row in white {
+                let target = (0..6).map(|k| row[k] * (mean[k] - own[k])).sum();
+                let slopes: Vec<f64> = directions
+                    .iter()
+                    .map(|one| (0..6).map(|k| row[k] * one[ELEMENTS[k]]).sum::<f64>() * self.unit)
+                    .collect();
+                push(3, &slopes, target);
+            }
+        }
+        cost
+    }
+
+    /// Goes down to the nearest maximum of the likelihood of the first rows.
+    fn refine(&self, start: &Point, rows: usize, stop: &Stop) -> Option<(Point, Linear, bool)> {
+        let directions = self.directions();
+        let evaluate = |at: &Point, limit: f64| {
+            if self.has_scale {
+                self.evaluate::<9>(at, rows, limit, &directions, None)
+            } else {
+                self.evaluate::<8>(at, rows, limit, &directions, None)
+            }
+        };
+        descend(*start, stop, evaluate, |at, step| {
+            let next = moved(at, step, &directions);
+            is_tensor(&next.inertia).then_some(next)
+        })
+    }
+
+    /// Rows at which pieces begin, the first left out.
+    fn cuts(&self, rows: usize) -> Vec<usize> {
+        let mut found = Vec::new();
+        let (mut from, mut row) = (0.0, 0);
+        for (i, &t) in self.t[..rows].iter().enumerate() {
+            if t - from >= PIECE && i - row >= 4 {
+                found.push(i);
+                (from, row) = (t, i);
+            }
+        }
+        found
+    }
+
+    /// The angular velocity about a row, from the rows beside it.
+    fn smoothed(&self, row: usize, rows: usize) -> Vector3<f64> {
+        let near = |i: &usize| (self.t[*i] - self.t[row]).abs() < NEAR;
+        let from = (0..row).rev().take_while(near).last().unwrap_or(row);
+        let to = (row..rows).take_while(near).last().unwrap_or(row);
+        // As many on either side, so that slopes do not matter; at an end of the log they do.
+        let side = (row - from).min(to - row);
+        let mut own: Vec<Vector3<f64>> =
+            (self.omega[row - side..=row + side].iter()).map(|y| Vector3::from(*y)).collect();
+        let middle = own.len() / 2;
+        Vector3::from_fn(|i, _| {
+            if self.tumble.student {
+                own.sort_unstable_by(|a, b| a[i].total_cmp(&b[i]));
+                own[middle][i]
+            } else {
+                own.iter().map(|y| y[i]).sum::<f64>() / own.len() as f64
+            }
+        })
+    }
+
+    /// The chain of a start: its nodes are those of the log.
+    fn chain(&self, start: &Balanced, rows: usize) -> Chain {
+        let omega = |row| self.smoothed(row, rows) - start.bias;
+        Chain {
+            point: Point {
+                omega: omega(0),
+                inertia: start.inertia,
+                bias: start.bias,
+            },
+            nodes: self.cuts(rows).into_iter().map(omega).collect(),
+        }
+    }
+
+    /// What a chain costs, and the triangle of the steps that close its gaps.
+    ///
+    /// The last column carries the gaps on: how far the motion would be from the nodes if they were closed.
+    fn link(&self, at: &Chain, rows: usize, directions: &[Matrix3<f64>]) -> Option<Linked> {
+        let inner = 3 + directions.len();
+        let unknowns = inner + if self.has_bias() { 3 } else { 0 };
+        let mut triangle = Triangle::new(unknowns);
+        let mut cost = self.prior_rows(&at.point, directions, &mut triangle);
+        let weights = Vector3::from(self.sigma.get().map(f64::recip));
+        let mut follower = Follower::<10>::of(&self.spinning(&at.point), directions)?;
+        let axes = follower.axes;
+        let mut place = Place::start(at.point.omega);
+        let mut follows = Vec::with_capacity(at.nodes.len());
+        let (mut first, mut gaps) = (0, 0.0);
+        let cuts = self.cuts(rows);
+        for piece in 0..=cuts.len() {
+            let next = cuts.get(piece).copied();
+            let last = next.unwrap_or(rows);
+            let end = self.t[next.unwrap_or(rows - 1)];
+            let reached = follower.run(
+                &place,
+                (self.t[first], end),
+                &self.t[first..last],
+                |sample| {
+                    let row = first + sample.row;
+                    if row % LOOK == LOOK - 1 {
+                        self.look()?;
+                    }
+                    let [x, y, z] = sample.columns;
+                    let predicted = axes * Vector3::from(*sample.omega) + at.point.bias;
+                    let off = axes * Vector3::new(x[9], y[9], z[9]);
+                    let rest = (Vector3::from(self.omega[row]) - predicted).component_mul(&weights);
+                    let square = rest.norm_squared();
+                    let mut root = 1.0;
+                    if self.tumble.student {
+                        cost += (NU + 3.0) * (square / NU).ln_1p();
+                        root = ((NU + 3.0) / (NU + square)).sqrt();
+                    } else {
+                        cost += square;
+                    }
+                    for i in 0..3 {
+                        let share = weights[i] * root;
+                        let a = [0, 1, 2].map(|k| axes[(i, k)] * share);
+                        let motion = (0..inner).map(|c| a[0] * x[c] + a[1] * y[c] + a[2] * z[c]);
+                        let offset = (inner..unknowns).map(|c| if c == inner + i { share } else { 0.0 });
+                        triangle.push(motion.chain(offset), rest[i] * root - off[i] * share);
+                    }
+                    ControlFlow::Continue(())
+                },
+            )?;
+            if let Some(next) = next {
+                let gap = reached.omega - at.nodes[piece];
+                gaps += gap.component_mul(&weights).norm_squared();
+                place = Place {
+                    omega: at.nodes[piece],
+                    ..reached
+                };
+                for i in 0..3 {
+                    place.columns[i][9] += gap[i];
+                }
+                follows.push(place);
+                first = next;
+            }
+        }
+        triangle.fold();
+        (cost + gaps).is_finite().then_some(Linked {
+            triangle,
+            cost,
+            gaps,
+            follows,
+        })
+    }
+
+    /// Fits the first rows by pieces whose gaps close as the fit goes on (H. G. Bock, Springer Series in Chemical Physics 18,
+    /// 1981, 102). Neither a separatrix nor the length of the log makes its way crooked, as that of ω₀ alone would be.
+    fn join(&self, start: &Balanced, rows: usize) -> Option<(Point, Linked)> {
+        let directions = self.directions();
+        let mut here = self.chain(start, rows);
+        let mut linked = self.link(&here, rows, &directions)?;
+        for _ in 0..JOINS {
+            // What nothing tells stays within half of its size.
+            let sizes = vec![2.0; linked.triangle.unknowns()];
+            let (step, gain) = linked.triangle.step(1.0, &sizes)?;
+            if linked.gaps < 1e-9 && gain < 1e-2 {
+                break;
+            }
+            let mut share = 1.0;
+            let mut taken = false;
+            while share > 0.01 && !taken {
+                let scaled: Vec<f64> = step.iter().map(|x| x * share).collect();
+                let mut next = Chain {
+                    point: moved(&here.point, &scaled, &directions),
+                    nodes: here.nodes.clone(),
+                };
+                for (node, place) in next.nodes.iter_mut().zip(&linked.follows) {
+                    for i in 0..3 {
+                        let own = &place.columns[i];
+                        node[i] += share * own[9];
+                        node[i] += (0..3 + directions.len()).map(|c| own[c] * scaled[c]).sum::<f64>();
+                    }
+                }
+                if is_tensor(&next.point.inertia)
+                    && let Some(found) = self.link(&next, rows, &directions)
+                {
+                    let merit = |one: &Linked| one.cost + 10.0 * one.gaps;
+                    taken = merit(&found) <= merit(&linked)
+                        || found.gaps < 0.3 * linked.gaps
+                            && found.cost < linked.cost * 1.1 + 30.0 + linked.gaps;
+                    if taken {
+                        (here, linked) = (next, found);
+                    }
+                }
+                if self.stopped.get() {
+                    return None;
+                }
+                share *= 0.4;
+            }
+            if !taken {
+                break;
+            }
+        }
+        Some((here.point, linked))
+    }
+
+    /// Goes down among the tensors of flat bodies: those where the triangle inequality of the moments is an equality.
+    fn refine_on_edge(&self, start: &Point, stop: &Stop) -> Option<(Point, Linear, bool)> {
+        let directions = |at: &Point| {
+            let axis = eigen3(&at.inertia).vectors.column(2).into_owned();
+            let normal = Matrix3::identity() * 0.5 - axis * axis.transpose();
+            if self.has_scale {
+                directions_across(&[normal])
+            } else {
+                directions_across(&[Matrix3::identity(), normal])
+            }
+        };
+        let evaluate = |at: &Point, limit: f64| {
+            self.evaluate::<8>(at, self.rows(), limit, &directions(at), None)
+        };
+        descend(self.flattened(start), stop, evaluate, |at, step| {
+            let next = self.flattened(&moved(at, step, &directions(at)));
+            is_tensor(&next.inertia).then_some(next)
+        })
+    }
+
+    /// The point with the nearest tensor of a flat body.
+    fn flattened(&self, at: &Point) -> Point {
+        let eigen = eigen3(&at.inertia);
+        let [a, b, c] = eigen.values;
+        // Second moments in the plane; a motion needs some moment about a rod.
+        let long = 0.5 * (c + b - a);
+        let short = (0.5 * (c + a - b)).max(1e-4 * long);
+        let moments = Vector3::new(short, long, short + long);
+        let mut inertia =
+            eigen.vectors * Matrix3::from_diagonal(&moments) * eigen.vectors.transpose();
+        if !self.has_scale {
+            inertia /= inertia.trace();
+        }
+        Point { inertia, ..*at }
+    }
+
+    /// By how much the largest moment exceeds the sum of the others, relative to it.
+    fn excess(at: &Point) -> f64 {
+        let [a, b, c] = eigen3(&at.inertia).values;
+        (c - a - b) / c
+    }
+
+    /// Measured minus predicted, in units of sigma.
+    fn residuals(&self, at: &Point) -> Vec<[f64; 3]> {
+        let weights = Vector3::from(self.sigma.get().map(f64::recip));
+        let mut found = Vec::with_capacity(self.rows());
+        let Some(mut follower) = Follower::<0>::of(&self.spinning(at), &[]) else {
+            return found;
+        };
+        let axes = follower.axes;
+        follower.run(
+            &Place::start(at.omega),
+            (0.0, self.t[self.rows() - 1]),
+            &self.t,
+            |sample: &Sample<'_, 0>| {
+                let predicted = axes * Vector3::from(*sample.omega) + at.bias;
+                let rest = Vector3::from(self.omega[sample.row]) - predicted;
+                found.push(rest.component_mul(&weights).into());
+                ControlFlow::Continue(())
+            },
+        );
+        found
+    }
+
+    /// Sets the sigma, where it is not known, to that of the residuals at a point; by how much it changed.
+    fn set_sigma(&self, at: &Point) -> f64 {
+        if self.tumble.sigma.is_some() {
+            return 0.0;
+        }
+        let rest = self.residuals(at);
+        let squares: Vec<f64> = rest.iter().map(|r| Vector3::from(*r).norm_squared()).collect();
+        let count = 3.0 * squares.len() as f64;
+        let old = self.sigma.get()[0];
+        let mut square: f64;
+        if self.tumble.student {
+            square = 1.0;
+            for _ in 0..200 {
+                let sum: f64 = (squares.iter()).map(|r| (NU + 3.0) / (NU + r / square) * r).sum();
+                let new = sum / count;
+                let settled = (new / square - 1.0).abs() < 1e-12;
+                square = new;
+                if settled || !(square > 0.0) {
+                    break;
+                }
+            }
+        } else {
+            let unknowns = 3 + self.directions().len() + if self.has_bias() { 3 } else { 0 };
+            square = squares.iter().sum::<f64>() / (count - unknowns as f64).max(1.0);
+        }
+        let new = (old * square.sqrt()).max(1e-15);
+        self.sigma.set([new; 3]);
+        (new / old - 1.0).abs()
+    }
+
+    /// The maxima of the likelihood, the best first.
+    fn maxima(&self) -> Vec<Fit> {
+        let directions = self.directions();
+        let prior = self.tumble.prior.map(|(mean, _)| tensor(&mean) / self.unit);
+        let bias = match self.tumble.bias {
+            Bias::Prior(mean, _) => Vector3::from(mean) / self.rate,
+            Bias::Zero | Bias::Free => Vector3::zeros(),
+        };
+        let scales: &[f64] = if self.has_scale { &[1.0, 0.1, 10.0, 100.0] } else { &[1.0] };
+        let firsts: Vec<Balanced> = match prior {
+            Some(inertia) => vec![Balanced { inertia, bias }],
+            None => scales
+                .iter()
+                .map(|scale| Balanced { inertia: Matrix3::identity() * (scale / 3.0), bias })
+                .collect(),
+        };
+        let question = Question {
+            t: &self.t,
+            omega: &self.omega,
+            sigma: self.level.max(1e-9),
+            directions: &directions,
+            has_bias: self.has_bias(),
+            momentum: self.momentum,
+            torque: self.torque,
+            rate: 1.0,
+        };
+        let mut starts = estimates(&question, &firsts);
+        starts.extend(&firsts);
+        // What noise alone costs: a fit with much more is not the best one.
+        let sigma = self.sigma.get()[0];
+        let usual = 3.0 * self.rows() as f64 * (self.level / sigma).powi(2).max(1.0);
+        let stop = Stop { gain: 1e-9, passes: 30 };
+        let n = self.rows();
+        let mut best: Option<(Point, Linear, bool)> = None;
+        let mut used = 0;
+        for start in starts.iter().take(self.tumble.starts + 1) {
+            used += 1;
+            let joined = self.join(start, n);
+            let found = joined.and_then(|(point, _)| self.refine(&point, n, &stop));
+            if self.stopped.get() {
+                return Vec::new();
+            }
+            if let Some(found) = found
+                && best.as_ref().is_none_or(|(_, best, _)| found.1.cost < best.cost)
+            {
+                best = Some(found);
+            }
+            if best.as_ref().is_some_and(|(_, best, _)| best.cost < 2.0 * usual) {
+                break;
+            }
+        }
+        let Some((mut point, mut linear, mut converged)) = best else {
+            return Vec::new();
+        };
+        for _ in 0..50 {
+            if self.set_sigma(&point) < 1e-9 {
+                break;
+            }
+            let Some(found) = self.refine(&point, n, &stop) else {
+                break;
+            };
+            (point, linear, converged) = found;
+        }
+        let mut all = vec![(point, linear.cost, converged)];
+        let some = self.thinned();
+        let count = some.rows();
+        let Some((here, headed, _)) = some.refine(&point, count, &stop) else {
+            return Vec::new();
+        };
+        for start in self.others(&point, &starts[used..]).into_iter().take(self.tumble.starts) {
+            self.done.set(0.5 + 0.5 * self.done.get());
+            let found = some.join(&start, count);
+            if some.stopped.get() {
+                self.stopped.set(true);
+                return Vec::new();
+            }
+            let Some((other, linked)) = found else {
+                continue;
+            };
+            // The same maximum once more, or none that could be the best.
+            if linked.triangle.square(&self.between(&other, &here)) < 0.1
+                || linked.cost > headed.cost + 2.0 * WITHIN + 30.0
+            {
+                continue;
+            }
+            let again = Balanced {
+                inertia: other.inertia,
+                bias: other.bias,
+            };
+            let other = self.join(&again, n).map(|(other, _)| other);
+            let Some((other, own, converged)) = other.and_then(|other| self.refine(&other, n, &stop)) else {
+                continue;
+            };
+            if converged && all.iter().all(|(one, ..)| own.triangle.square(&self.between(&other, one)) > 0.1) {
+                all.push((other, own.cost, converged));
+            }
+        }
+        all.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let least = all[0].1;
+        all.retain(|(_, cost, _)| cost - least < 2.0 * WITHIN);
+        all.iter().filter_map(|(point, _, converged)| self.possible(point, *converged)).collect()
+    }
+
+    /// Starts with other tensors than a fit has: the estimates that are left, and pairs of moments exchanged, where the motion is on the
+    /// other side of the separatrix, or of a symmetry.
+    fn others(&self, best: &Point, left: &[Balanced]) -> Vec<Balanced> {
+        let eigen = eigen3(&best.inertia);
+        let [a, b, c] = eigen.values;
+        let axes = eigen.vectors;
+        let momentum = axes.transpose() * (best.inertia * best.omega);
+        let energy = best.omega.dot(&(best.inertia * best.omega));
+        // The moment of the middle axis of a motion on the separatrix.
+        let middle = momentum.norm_squared() / energy;
+        let mut moments = vec![[b, a, c], [a, c, b], [c, b, a]];
+        let mirrored = 2.0 * middle - b;
+        if mirrored > a && mirrored < c {
+            moments.insert(0, [a, mirrored, c]);
+        }
+        let mut found: Vec<Balanced> = moments
+            .into_iter()
+            .map(|moments| {
+                let mut moments = Vector3::from(moments);
+                if !self.has_scale {
+                    moments /= moments.sum();
+                }
+                Balanced {
+                    inertia: axes * Matrix3::from_diagonal(&moments) * axes.transpose(),
+                    bias: best.bias,
+                }
+            })
+            .collect();
+        found.extend_from_slice(left);
+        found
+    }
+
+    /// The fit at a maximum, or the best one on the edge where it is that of no body.
+    fn possible(&self, at: &Point, converged: bool) -> Option<Fit> {
+        if Self::excess(at) <= 1e-14 {
+            return self.told(at, false, converged);
+        }
+        let stop = Stop { gain: 1e-9, passes: 60 };
+        let (mut point, _, mut converged) = self.refine_on_edge(at, &stop)?;
+        for _ in 0..50 {
+            if self.set_sigma(&point) < 1e-9 {
+                break;
+            }
+            (point, _, converged) = self.refine_on_edge(&point, &stop)?;
+        }
+        self.told(&point, true, converged)
+    }
+
+    /// What is told of a point, in the units of the log.
+    fn told(&self, at: &Point, at_edge: bool, converged: bool) -> Option<Fit> {
+        let mut residuals = Vec::with_capacity(self.rows());
+        let elements = element_directions();
+        let linear =
+            self.evaluate::<9>(at, self.rows(), f64::INFINITY, &elements, Some(&mut residuals))?;
+        let unknowns = linear.triangle.unknowns();
+        let by = |column: usize| if (3..9).contains(&column) { self.unit } else { self.rate };
+        let triangle = (0..unknowns)
+            .map(|row| (0..unknowns).map(|column| linear.triangle.at(row, column) / by(column)).collect())
+            .collect();
+        let mut beside = Triangle::new(unknowns);
+        let chi2 = self.prior_rows(at, &elements, &mut beside)
+            + residuals.iter().map(|r| Vector3::from(*r).norm_squared()).sum::<f64>();
+        Some(Fit {
+            omega: (at.omega * self.rate).into(),
+            inertia: ELEMENTS.map(|place| at.inertia[place] * self.unit),
+            bias: (at.bias * self.rate).into(),
+            sigma: self.sigma.get().map(|x| x * self.rate),
+            cost: linear.cost,
+            chi2,
+            residuals,
+            triangle,
+            at_edge,
+            converged,
+        })
+    }
+
+    /// The step that leads from one point to another.
+    fn between(&self, from: &Point, to: &Point) -> Vec<f64> {
+        let (change, bias) = (to.inertia - from.inertia, to.bias - from.bias);
+        let mut step: Vec<f64> = (to.omega - from.omega).iter().copied().collect();
+        step.extend(self.directions().iter().map(|one| one.dot(&change)));
+        if self.has_bias() {
+            step.extend(bias.iter());
+        }
+        step
+    }
+}
+
+fn moved(at: &Point, step: &[f64], directions: &[Matrix3<f64>]) -> Point {
+    let mut next = *at;
+    for i in 0..3 {
+        next.omega[i] += step[i];
+    }
+    for (x, direction) in step[3..].iter().zip(directions) {
+        next.inertia += direction * *x;
+    }
+    for (i, x) in step[3 + directions.len()..].iter().enumerate() {
+        next.bias[i] += x;
+    }
+    next
+}

@@ -1,0 +1,143 @@
+//! Logs of tumbles and the bodies that fit them. `polhode.identify` reads their arguments.
+
+use numpy::{PyArrayMethods, PyReadonlyArrayDyn};
+use polhode::Error;
+use polhode::motion::identification::{
+    Bias, Fit, Tumble, fit_tumble as fit_of, information as information_of,
+};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use crate::arrays::floats;
+use crate::errors::to_py;
+use crate::interrupt::Interrupt;
+
+/// What is known beside the log, as numbers and rows of numbers.
+struct Known {
+    sigma: Option<[f64; 3]>,
+    bias: Bias,
+    momentum: [f64; 3],
+    torque: [f64; 3],
+    prior: Option<([f64; 6], [[f64; 6]; 6])>,
+    student: bool,
+    starts: usize,
+}
+
+impl Known {
+    fn of(given: &Bound<'_, PyDict>) -> PyResult<Self> {
+        let item = |name: &str| {
+            let found = given.get_item(name)?;
+            found.ok_or_else(|| PyValueError::new_err(format!("known: expected the key {name:?}")))
+        };
+        let bias = item("bias")?;
+        Ok(Self {
+            sigma: item("sigma")?.extract()?,
+            bias: if let Ok(free) = bias.extract::<bool>() {
+                if free { Bias::Free } else { Bias::Zero }
+            } else {
+                let (mean, white) = bias.extract()?;
+                Bias::Prior(mean, white)
+            },
+            momentum: item("momentum")?.extract()?,
+            torque: item("torque")?.extract()?,
+            prior: item("prior")?.extract()?,
+            student: item("student")?.extract()?,
+            starts: item("starts")?.extract()?,
+        })
+    }
+
+    fn with<'a>(&self, t: &'a [f64], omega: &'a [[f64; 3]]) -> Tumble<'a> {
+        Tumble {
+            t,
+            omega,
+            sigma: self.sigma,
+            bias: self.bias,
+            momentum: self.momentum,
+            torque: self.torque,
+            prior: self.prior,
+            student: self.student,
+            starts: self.starts,
+        }
+    }
+}
+
+/// The times and the rows of the log.
+fn log<'a>(
+    t: &'a PyReadonlyArrayDyn<'_, f64>,
+    omega: &'a PyReadonlyArrayDyn<'_, f64>,
+    least: usize,
+) -> PyResult<(&'a [f64], &'a [[f64; 3]])> {
+    let (t, omega) = (t.as_slice()?, omega.as_slice()?.as_chunks().0);
+    if t.len() < least || omega.len() != t.len() {
+        return Err(PyValueError::new_err(format!(
+            "t: needs at least {least} times and a row for each, got {} and {}",
+            t.len(),
+            omega.len()
+        )));
+    }
+    Ok((t, omega))
+}
+
+fn dict<'py>(py: Python<'py>, fit: &Fit) -> PyResult<Bound<'py, PyDict>> {
+    let found = PyDict::new(py);
+    found.set_item("omega", fit.omega)?;
+    found.set_item("inertia", fit.inertia)?;
+    found.set_item("bias", fit.bias)?;
+    found.set_item("sigma", fit.sigma)?;
+    found.set_item("cost", fit.cost)?;
+    found.set_item("chi2", fit.chi2)?;
+    found.set_item("triangle", fit.triangle.clone())?;
+    found.set_item("at_edge", fit.at_edge)?;
+    found.set_item("converged", fit.converged)?;
+    let rows = numpy::PyArray1::from_vec(py, fit.residuals.as_flattened().to_vec());
+    found.set_item("residuals", rows.reshape([fit.residuals.len(), 3])?)?;
+    Ok(found)
+}
+
+/// The maxima of the likelihood of a log t (n,), omega (n, 3), the best first.
+#[pyfunction]
+#[pyo3(signature = (t, omega, known, progress=None))]
+pub(crate) fn fit_tumble<'py>(
+    py: Python<'py>,
+    t: &Bound<'py, PyAny>,
+    omega: &Bound<'py, PyAny>,
+    known: &Bound<'py, PyDict>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyList>> {
+    let known = Known::of(known)?;
+    let (t, omega) = (floats(t, "t")?, floats(omega, "omega")?);
+    let (t, omega) = log(&t, &omega, 3)?;
+    let tumble = known.with(t, omega);
+    let interrupt = Interrupt::new(progress);
+    let found = py.detach(|| fit_of(&tumble, &mut |done| interrupt.poll(Some(done))));
+    interrupt.finish(py, found.is_ok())?;
+    let found: Result<Vec<Fit>, Error> = found;
+    let found = found.map_err(|error| to_py(py, &error))?;
+    let found: Vec<_> = found.iter().map(|fit| dict(py, fit)).collect::<PyResult<_>>()?;
+    PyList::new(py, found)
+}
+
+/// What the motion from `omega` of a body with the elements `inertia` would tell at the times t (n,).
+#[pyfunction]
+pub(crate) fn tumble_information<'py>(
+    py: Python<'py>,
+    t: &Bound<'py, PyAny>,
+    omega: [f64; 3],
+    inertia: [f64; 6],
+    known: &Bound<'py, PyDict>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let known = Known::of(known)?;
+    let t = floats(t, "t")?;
+    let t = t.as_slice()?;
+    if t.is_empty() {
+        return Err(PyValueError::new_err("t: needs at least one time"));
+    }
+    let still = vec![[0.0; 3]; t.len()];
+    let tumble = known.with(t, &still);
+    let interrupt = Interrupt::new(None);
+    let found =
+        py.detach(|| information_of(&tumble, (omega, inertia), &mut |_| interrupt.poll(None)));
+    interrupt.finish(py, found.is_ok())?;
+    dict(py, &found.map_err(|error| to_py(py, &error))?)
+}
