@@ -239,27 +239,85 @@ class TestWindows:
             squares.append(off @ np.linalg.solve(found.crlb, off))
         assert 8.0 < np.mean(squares) < 13.0
 
-    def test_a_noisy_gyro_beats_differences(self) -> None:
-        """Wrenches predicted on another motion, beside central differences with the best smoothing."""
+    def compare(self, rate: float, spin: float, seeds: int) -> tuple[float, float]:
+        """Errors of wrenches predicted on another motion, by those of central differences with the best
+        smoothing, and by those of a fit that knows the true motion."""
         signal = pytest.importorskip("scipy.signal")
         ours: list[float] = []
-        theirs: dict[int, list[float]] = {window: [] for window in (11, 21, 41, 61, 81)}
+        known: list[float] = []
+        theirs: dict[int, list[float]] = {window: [] for window in (5, 11, 21, 41, 61, 81, 121, 161)}
         weights = np.repeat([10.0, 100.0], 3)
-        for seed in range(8):
-            data, other = record(BOX, 1000, seed, spin=0.1, rate=2.0), record(BOX, 300, 100 + seed)
+        for seed in range(seeds):
+            data, other = record(BOX, 1000, seed, spin=spin, rate=rate), record(BOX, 300, 100 + seed)
             motion = other["omega"], other["angular_acceleration"], other["specific_force"]
-            del data["angular_acceleration"]
 
             def off(body: RigidBody, motion: Any = motion) -> float:
                 return float(np.mean(((predicted(body, *motion) - predicted(BOX, *motion)) * weights) ** 2))
 
-            ours.append(off(fitted(**data, **SIGMAS).body))
+            true = data | {"omega": record(BOX, 1000, seed, rate=rate)["omega"]}
+            known.append(off(fitted(**true).body))
+            del data["angular_acceleration"]
+            ours.append(off(fitted(**data).body))
             for window, errors in theirs.items():
                 smooth = signal.savgol_filter(data["omega"], window, 3, axis=0)
                 turn = np.gradient(smooth, data["t"], axis=0)
                 errors.append(off(fitted(**data | {"omega": smooth}, angular_acceleration=turn).body))
         best = min(np.mean(errors) for errors in theirs.values())
-        assert np.sqrt(np.mean(ours) / best) < 0.7
+        return float(np.sqrt(np.mean(ours) / best)), float(np.sqrt(np.mean(ours) / np.mean(known)))
+
+    def test_a_noisy_gyro_beats_differences(self) -> None:
+        assert self.compare(2.0, 0.1, 5)[0] < 0.7
+
+    @pytest.mark.long
+    @pytest.mark.parametrize("rate", [1.0, 2.0, 4.0])
+    @pytest.mark.parametrize("spin", [0.1, 0.3])
+    def test_a_noisy_gyro_beats_differences_at_any_speed(self, rate: float, spin: float) -> None:
+        assert self.compare(rate, spin, 24)[0] < 0.7
+
+    @pytest.mark.parametrize("rate", [0.5, 2.0])
+    def test_a_quiet_gyro_is_as_good_as_the_true_motion(self, rate: float) -> None:
+        """Where no method can be better than differences."""
+        assert self.compare(rate, 0.003, 5)[1] < 1.1
+
+    def test_times_that_are_not_even(self) -> None:
+        data = record(BOX, 1000, spin=0.05)
+        rng = np.random.default_rng(7)
+        keep = np.sort(rng.permutation(1000)[:850])
+        keep = keep[(keep < 450) | (keep >= 480)]
+        rows = {name: one[keep] for name, one in data.items() if name != "angular_acceleration"}
+        found = fitted(**rows, **SIGMAS, omega_sigma=0.05)
+        assert found.dropped.get("outside windows", 0) < 80  # a tenth
+        off = found.estimate - numbers(BOX)
+        assert off @ np.linalg.solve(found.crlb, off) < 35.0  # chi-square with 10 degrees: 1e-4
+        assert 1e-3 < found.p_value < 0.999
+
+    def test_a_window_of_too_many_cycles(self) -> None:
+        data = record(BOX, 1200, rate=18.0, end=12.0)
+        del data["angular_acceleration"]
+        with pytest.raises(ValueError, match="cycles of the fastest motion") as caught:
+            fitted(**data, window=1200)
+        most = int(str(caught.value).split(" rows; or")[0].split()[-1])
+        assert fitted(**data, window=most).window == most
+
+    def test_a_motion_that_is_sampled_too_coarsely(self) -> None:
+        """Eight samples a cycle of the fastest motion of three, and fewer."""
+        for rate, coarse in ((22.0, False), (28.0, True)):
+            data = record(BOX, 1000, rate=rate)
+            del data["angular_acceleration"]
+            if not coarse:
+                off = (fitted(**data).estimate - numbers(BOX)) / numbers(BOX)[0]
+                assert np.abs(off).max() < 0.01
+                continue
+            with pytest.raises(IdentificationError, match="samples a cycle") as caught:
+                fitted(**data)
+            assert caught.value.kind == "undetermined"
+
+    def test_few_rows(self) -> None:
+        data = record(BOX, 40)
+        del data["angular_acceleration"]
+        data["omega"][1:] = np.nan
+        with pytest.raises(IdentificationError, match="too few"):
+            fitted(**data)
 
     def test_a_gap_ends_no_window_in_its_middle(self) -> None:
         data = record(BOX, 2000)
@@ -267,7 +325,7 @@ class TestWindows:
         keep[720:790] = False
         rows = {name: one[keep] for name, one in data.items() if name != "angular_acceleration"}
         found = fitted(**rows, **SIGMAS, window=100)
-        assert found.dropped == {"outside windows": 130}
+        assert found.dropped == {"outside windows": 30}  # 20 of 720 before the gap, 10 of 1210 after
         off = (found.estimate - numbers(BOX)) / np.sqrt(np.diagonal(found.crlb))
         assert np.abs(off).max() < 5.0
 

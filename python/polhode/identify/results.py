@@ -12,8 +12,10 @@ from polhode._format import one_line
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from os import PathLike
 
-    from numpy.typing import NDArray
+    from matplotlib.axes import Axes
+    from numpy.typing import ArrayLike, NDArray
 
     from polhode._core import FreeMotion, GyrostatMotion, RigidBody, Uncertain
     from polhode.results import State
@@ -120,7 +122,7 @@ class Identified:
     dropped : dict of str and int
         Number of rows that were left out, by reason.
     window : int or None
-        Number of samples of a window, where momentum was balanced over windows.
+        Number of samples of a window, where the angular acceleration was not given.
     start : State or None
         Of a tumble: the state at the first time. The log does not tell the attitude; it is the identity.
     start_covariance : numpy.ndarray, shape (3, 3), or None
@@ -153,6 +155,75 @@ class Identified:
     start_covariance: Floats | None = None
     motion: FreeMotion | GyrostatMotion | None = None
     alternatives: tuple[Identified, ...] = ()
+
+    def plot(self, ax: Axes | None = None, *, t: ArrayLike | None = None) -> Axes:
+        """Draw what the fit leaves of the measurements, in units of their standard deviations.
+
+        Noise that is as assumed lies in the grey band between −2 and 2 for 95 of 100 points, and has no
+        pattern. Needs matplotlib (extra `plot`).
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; a new figure by default.
+        t : array_like, shape (n,), optional
+            A time for each row of residuals; by default they are drawn row by row.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+        """
+        from polhode.identify.picture import residuals
+
+        return residuals(self, t, ax)
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the result to a file, with every bit of it; :meth:`from_file` reads it.
+
+        The body keeps its sources of uncertainty. Those of `bias` and `noise` are new when they are read:
+        they keep their covariances, but none with the body. ``body.save`` writes the body alone.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            Ends in ``.json``.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> import numpy as np
+        >>> from polhode import RigidBody, identify
+        >>> t = np.linspace(0.0, 4.0, 200)
+        >>> exact = RigidBody.from_principal(1.0, (0.2, 0.35, 0.45)).free_motion((1.0, 3.0, 0.5)).at(t).omega
+        >>> found = identify.from_tumble(t, exact + np.random.default_rng(1).normal(0.0, 0.01, (200, 3)))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     found.save(Path(folder) / "throw.json")
+        ...     again = identify.Identified.from_file(Path(folder) / "throw.json")
+        >>> again.body == found.body
+        True
+        """
+        from polhode.identify.saved import save_identified
+
+        save_identified(self, path)
+
+    @staticmethod
+    def from_file(path: str | PathLike[str]) -> Identified:
+        """Read a result that :meth:`save` wrote.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            Ends in ``.json``.
+
+        Raises
+        ------
+        FileFormatError
+            If the file is damaged, or holds something else.
+        """
+        from polhode.identify.saved import read_identified
+
+        return read_identified(path)
 
     def __repr__(self) -> str:
         told = {

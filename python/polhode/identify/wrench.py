@@ -25,15 +25,35 @@ _BASIS: Final = np.array(tensor_of(np.eye(6)))
 _MAPS: Final = pseudo_inertia_maps(_BASIS)
 _FEATURES: Final = 13
 """Of the motion: specific force, angular acceleration, six products of angular velocities, and 1."""
-_FUNCTIONS: Final = 8
-"""Number of functions by which momentum is balanced in each window."""
+_CYCLES: Final = 10.0
+"""Cycles of the fastest motion in a window."""
+_MOST: Final = 100.0
+"""Cycles in a window that a caller may ask for: the work grows with them."""
+_COARSE: Final = 0.125
+"""Cycles of the fastest motion in a sample, beyond which samples do not tell its acceleration."""
+_DEGREE: Final = 5
+"""Of splines."""
+_PIECES: Final = 5.0
+"""Pieces of a spline in a cycle of the fastest motion."""
+_FINER: Final = 3
+"""The wrench is projected on splines with so many times as many pieces."""
+_EVEN: Final = 1e-3
+"""Share of a step by which times may differ from even ones in what follows from them."""
+_RAGGED: Final = 2.0
+"""A window is left out if gaps make the noise of its acceleration larger than so many usual ones."""
+_SOME: Final = 16
+"""Windows from which the share of noise is found that products have."""
+_LEAST: Final = 32
+"""Samples of the shortest window."""
 _SMOOTH: Final = 7
 """Lines of a spectrum over which it is smoothed."""
 _BLOCK: Final = 65536
 _NU: Final = 4.0
 """Degrees of freedom of Student's distribution."""
 _GAP: Final = 3.0
-"""A step of time is a gap if it is longer than so many usual ones."""
+"""A step of time is a gap if it is longer than so many usual ones,"""
+_BRIDGE: Final = 0.125
+"""and than this share of the cycle of the fastest motion."""
 _PASSES: Final = 50
 
 
@@ -43,7 +63,7 @@ class _Sums(NamedTuple):
     features: list[Floats]
     triangles: list[Floats]
     shares: list[tuple[float, float]]
-    """Of each group: how much of the variance of the wrench, and of ω in its acceleration, is in it."""
+    """Of each group: how much of the noise of ω is in its products, and in its acceleration."""
     spins: Floats
     """Three vectors u with Σ u uᵀ the mean of ω ωᵀ."""
 
@@ -83,7 +103,8 @@ def from_wrench(
     specific_force : array_like, shape (n, 3)
         Acceleration of O minus gravity, as an accelerometer at O reads: −g at rest.
     angular_acceleration : array_like, shape (n, 3), optional
-        Without it momentum is balanced over windows, so that nothing is differentiated.
+        Without it the angular velocity is a spline in each window, whose derivative is the acceleration;
+        what noise of ω does to both is in the weights.
     force_sigma, torque_sigma : float or array_like, shape (3,), optional
         Standard deviations of white noise; without one it is estimated from the residuals.
     omega_sigma : float, optional
@@ -96,7 +117,8 @@ def from_wrench(
     prior : RigidBody, optional
         What is known of the payload beforehand, in the body frame: a body with a covariance.
     window : int, optional
-        Number of samples of a window; by default from the spectrum of `omega`.
+        Number of samples of a window; by default some ten cycles of the fastest motion, from the spectra of
+        `omega` and `specific_force`.
     loss : {"gaussian", "student"}
         The second bears outliers: noise by Student's distribution with 4 degrees of freedom.
 
@@ -116,8 +138,8 @@ def from_wrench(
 
     Notes
     -----
-    A row with a number that is not finite is left out, and so is a window with a gap of time; ``dropped``
-    counts the rows. Noise of `specific_force` is not modelled.
+    A row with a number that is not finite is left out, and so are rows that fill no window before a gap of
+    time; ``dropped`` counts them. Noise of `specific_force` is not modelled.
 
     Examples
     --------
@@ -165,6 +187,7 @@ def from_wrench(
     for one in data.values():
         good = good & np.isfinite(one).all(axis=1)
     dropped = {"not finite": int((~good).sum())} if not good.all() else {}
+    least = 4 + 2 * bias
     if angular_acceleration is not None:
         if window is not None:
             raise ValueError(
@@ -174,25 +197,35 @@ def from_wrench(
         features = [_features(whole, whole["angular_acceleration"])]
         shares, spin_sigma = [(1.0, 0.0)], spin_sigma or 0.0
     else:
-        if window is not None and (int(window) != window or not 4 * _FUNCTIONS <= window <= len(times)):
+        if window is not None and (int(window) != window or not _LEAST <= window <= len(times)):
             raise ValueError(
-                f"window: expected a whole number from {4 * _FUNCTIONS} to {len(times)} rows, got {window}"
+                f"window: expected a whole number from {_LEAST} to {len(times)} rows, got {window}"
             )
+        window = None if window is None else int(window)
         whole = {name: one[good] for name, one in data.items()}
-        cutoff, level = _spectrum(whole["omega"])
-        spin_sigma = level if spin_sigma is None else spin_sigma
-        window = int(window) if window is not None else cutoff
-        features, shares, lost = _windows(times[good], whole, window)
+        count = int(good.sum())
+        _check_rows(count, least)
+        highest = max(_highest(times[good], whole[name]) for name in ("omega", "specific_force"))
+        spin_sigma = _level(whole["omega"]) if spin_sigma is None else spin_sigma
+        if highest > _COARSE:
+            raise IdentificationError(
+                f"omega, specific_force: the fastest motion has {1.0 / highest:.3g} samples a cycle, ",
+                f"and {1.0 / _COARSE:g} tell its acceleration",
+                "; record at a higher rate, or give angular_acceleration",
+                kind="undetermined",
+            )
+        runs = _runs(times[good], highest)
+        if window is None:
+            window = _best_window([len(one) for one in runs], highest)
+        elif highest * window > _MOST:
+            raise ValueError(
+                f"window: {window} rows hold {highest * window:.4g} cycles of the fastest motion, expected "
+                f"at most {_MOST:g}: {int(_MOST / highest)} rows; or leave window out"
+            )
+        features, shares, lost = _windows(times[good], whole, runs, window, highest)
         if lost:
             dropped["outside windows"] = lost
-    least = 4 + 2 * bias
-    if len(features[0]) * len(features) < least:
-        raise IdentificationError(
-            f"t: {int(good.sum())} rows without a gap are too few: ",
-            f"at least {least} equations are needed",
-            "; record longer, or choose a smaller window",
-            kind="undetermined",
-        )
+    _check_rows(len(features[0]) * len(features), least)
     mean = whole["omega"].T @ whole["omega"] / len(whole["omega"])
     values, vectors = np.linalg.eigh(mean)
     spins = (vectors * np.sqrt(np.maximum(values, 0.0))).T
@@ -215,6 +248,15 @@ def _times(t: ArrayLike) -> Floats:
             kind="clock",
         )
     return times
+
+
+def _check_rows(count: int, least: int) -> None:
+    if count < least:
+        raise IdentificationError(
+            f"t: {count} rows without a gap are too few: at least {least} equations are needed",
+            "; record longer, or choose a smaller window",
+            kind="undetermined",
+        )
 
 
 def _columns(name: str, given: ArrayLike, n: int) -> Floats:
@@ -252,72 +294,111 @@ def _triangle(features: Floats) -> Floats:
     return found
 
 
-def _spectrum(omega: Floats) -> tuple[int, float]:
-    """Return the window that resolves what moves, in samples, and the level of the white noise of ω."""
-    n = len(omega)
-    if n < 4 * _FUNCTIONS:
-        return max(n, 2), 0.0
-    taper = np.sin(np.pi * (np.arange(n) + 0.5) / n) ** 2
-    line = omega - omega.mean(axis=0)
-    power = np.sum(np.abs(np.fft.rfft(line * taper[:, None], axis=0)) ** 2, axis=1)[1:]
+def _highest(t: Floats, omega: Floats) -> float:
+    """Return the highest frequency of a motion, in cycles a sample, from rows between which it is even."""
+    n = len(t)
+    if n < _LEAST:
+        return 0.0
+    even = np.linspace(t[0], t[-1], n)
+    power = _power(np.stack([np.interp(even, t, one) for one in omega.T], axis=1))
     floor = float(power[-len(power) // 4 :].mean())
     power = np.convolve(power, np.full(_SMOOTH, 1.0 / _SMOOTH), mode="same")  # else noise passes for motion
-    frequency = np.arange(1, len(power) + 1) / n  # in cycles per sample
+    frequency = np.arange(1, len(power) + 1) / n
     moving = np.cumsum(np.maximum(power - 4.0 * floor, 0.0) * frequency**2)
-    level = math.sqrt(floor / (3.0 * float(np.sum(taper**2))))
-    if moving[-1] <= 0.0:
-        return max(n // 4, min(n, 4 * _FUNCTIONS)), level
-    highest = float(frequency[np.searchsorted(moving, 0.99 * moving[-1])])
-    longest = max(n // 4, min(n, 4 * _FUNCTIONS))
-    return int(min(max((_FUNCTIONS + 1) / (2.0 * highest), 4 * _FUNCTIONS), longest)), level
+    return float(frequency[np.searchsorted(moving, 0.99 * moving[-1])]) if moving[-1] > 0.0 else 0.0
+
+
+def _level(omega: Floats) -> float:
+    """Return the level of the white noise of ω: that of the last quarter of its spectrum."""
+    if len(omega) < _LEAST:
+        return 0.0
+    power = _power(omega)
+    return math.sqrt(float(power[-len(power) // 4 :].mean()) / (3.0 * 0.375 * len(omega)))
+
+
+def _power(rows: Floats) -> Floats:
+    """Return the power of a tapered record in each line of its spectrum but the first."""
+    taper = np.sin(np.pi * (np.arange(len(rows)) + 0.5) / len(rows)) ** 2
+    line = (rows - rows.mean(axis=0)) * taper[:, None]
+    return np.asarray(np.sum(np.abs(np.fft.rfft(line, axis=0)) ** 2, axis=1)[1:])
+
+
+def _runs(t: Floats, highest: float) -> list[NDArray[np.int64]]:
+    """Return the indices of rows between gaps that a spline does not bridge."""
+    steps = np.diff(t)
+    longest = max(_GAP, _BRIDGE / highest if highest > 0.0 else 0.0) * float(np.median(steps))
+    return np.split(np.arange(len(t)), np.flatnonzero(steps > longest) + 1)
+
+
+def _best_window(runs: list[int], highest: float) -> int:
+    """Return the window, of five to ten cycles where there are so many, that leaves the fewest rows out."""
+    longest = max(runs)
+    most = min(longest, max(_LEAST, int(_CYCLES / highest) if highest > 0.0 else longest))
+    tried = range(most, max(most // 2, min(_LEAST, most)) - 1, -1)
+    return max(tried, key=lambda window: sum(one // window for one in runs) * window)
 
 
 def _windows(
-    t: Floats, data: dict[str, Floats], window: int
+    t: Floats, data: dict[str, Floats], runs: list[NDArray[np.int64]], window: int, highest: float
 ) -> tuple[list[Floats], list[tuple[float, float]], int]:
-    """Return features of functions φ over windows: ∫φ of what is measured, and −∫φ̇ω for the acceleration.
+    """Return features of windows, projected on orthonormal splines of time.
 
-    φ and φ̇ vanish at both ends of a window. The functions are combined so that white noise of the wrench is
-    independent in all of them, and white noise of ω too. The last result is the number of rows in no window.
+    In a window the angular velocity is the spline that fits it best, and its acceleration is the derivative
+    of that. Finer splines keep what products of the motion tell. They are combined so that white noise of
+    the wrench is independent in all of them, and noise of ω in its acceleration too. The last result is the
+    number of rows in no window.
     """
-    index = (np.arange(len(t) // window) * window)[:, None] + np.arange(window)
-    if len(index):
-        steps = np.diff(t[index], axis=1)
-        index = index[(steps < _GAP * np.median(steps)).all(axis=1)]
+    tiles = [one[: len(one) // window * window].reshape(-1, window) for one in runs]
+    index = np.concatenate(tiles)
     if not len(index):
-        return [np.zeros((0, 19))], [(1.0, 0.0)], len(t)
+        return [np.zeros((0, 19))], [(0.0, 0.0)], len(t)
     local = t[index]
-    # The quadrature is that of samples in the middle of their steps.
-    step = np.gradient(local, axis=1)
-    span = local[:, -1] - local[:, 0] + 0.5 * (step[:, 0] + step[:, -1])
-    place = (local - (local[:, 0] - 0.5 * step[:, 0])[:, None]) / span[:, None]
-    mix = _independent(window)
-    phi, slope = (one @ mix for one in _functions(place))
-    phi, slope = phi * step[..., None], slope * (step / span[:, None])[..., None]
-    rows = _features(data, np.zeros_like(data["omega"]))
-    groups, shares = [], []
-    for k in range(_FUNCTIONS):
-        found = np.einsum("wj,wjc->wc", phi[..., k], rows[index])
-        found[:, 3:6] = -np.einsum("wj,wjc->wc", slope[..., k], data["omega"][index])
-        size = math.sqrt(float(np.mean(np.sum(phi[..., k] ** 2, axis=1))))
-        groups.append(found / size)
-        shares.append((1.0, float(np.mean(np.sum(slope[..., k] ** 2, axis=1))) / size**2))
-    return groups, shares, len(t) - int(index.size)
+    span = local[:, -1:] - local[:, :1]
+    place = (local - local[:, :1]) / span
+    if np.abs(place - place[0]).max() < _EVEN / window:
+        place = place[:1]  # evenly spaced rows have the same functions in all windows
+    pieces = max(min(math.ceil(_PIECES * highest * window), window - _DEGREE), 1)
+    splines, slopes = _splines(place, pieces)
+    smooth, change = np.linalg.qr(splines)
+    # A window in which rows are too far apart for its splines has no acceleration: its noise is as good as
+    # infinite, and the tiny number keeps it from being so.
+    slope = slopes @ np.linalg.inv(change + 1e-14 * np.eye(splines.shape[2]))
+    if len(place) > 1:
+        noise = np.sum(slope**2, axis=(1, 2)) / span[:, 0] ** 2
+        kept = noise <= _RAGGED * np.median(noise)
+        index, span, place, smooth, slope = (one[kept] for one in (index, span, place, smooth, slope))
+    fine = np.linalg.qr(_splines(place, min(_FINER * pieces, window - _DEGREE))[0])[0]
+    base = fine @ np.linalg.svd(fine.swapaxes(1, 2) @ slope)[0]
+    spin = ((base.swapaxes(1, 2) @ slope) ** 2).sum(axis=2).mean(axis=0) * float((span**-2).mean())
+    weights = smooth.swapaxes(1, 2) @ data["omega"][index]
+    motion = {name: one[index].reshape(-1, 3) for name, one in data.items()}
+    motion["omega"] = (smooth @ weights).reshape(-1, 3)
+    turn = (slope @ weights / span[..., None]).reshape(-1, 3)
+    rows = _features(motion, turn).reshape(*index.shape, -1)
+    found = (base.swapaxes(1, 2) @ rows).swapaxes(0, 1)
+    some = motion["omega"].reshape(*index.shape, 3)[:: len(index) // _SOME + 1]
+    turned = base[:: len(index) // _SOME + 1, :, None] * some[..., None]
+    within = np.einsum("wjcm,wjk->wckm", turned, smooth[:: len(index) // _SOME + 1], optimize=True)
+    product = (within**2).sum(axis=(0, 1, 2)) / np.maximum((turned**2).sum(axis=(0, 1, 2)), 1e-300)
+    spin[smooth.shape[2] :] = 0.0  # but for rounding
+    shares = list(zip(product.tolist(), spin.tolist(), strict=True))
+    return list(found), shares, len(t) - int(index.size)
 
 
-def _functions(place: Floats) -> tuple[Floats, Floats]:
-    """Return sin²(πx) cos(kπx) and the derivatives by x, shape (..., 8)."""
-    x, k = np.pi * place[..., None], np.arange(_FUNCTIONS)
-    hump, wave = np.sin(x) ** 2, np.cos(k * x)
-    return hump * wave, np.pi * (np.sin(2.0 * x) * wave - k * hump * np.sin(k * x))
+def _splines(place: Floats, pieces: int) -> tuple[Floats, Floats]:
+    """Return B-splines on equal pieces of [0, 1] and their derivatives, shape (..., pieces + degree).
 
-
-def _independent(window: int) -> Floats:
-    """Return combinations of the functions that are orthogonal, and whose derivatives are orthogonal."""
-    phi, slope = _functions((np.arange(window) + 0.5) / window)
-    whiten = np.linalg.inv(np.linalg.qr(phi, mode="r"))
-    vectors = np.linalg.svd(slope @ whiten, full_matrices=False)[2]
-    return np.asarray(whiten @ vectors.T)
+    By the recursion of Cox and de Boor.
+    """
+    u = place[..., None] * pieces - np.arange(-_DEGREE, pieces + _DEGREE)
+    found = ((u >= 0.0) & (u < 1.0)).astype(float)
+    found[..., pieces + _DEGREE - 1] += place == 1.0  # the end belongs to the last piece
+    found[..., pieces + _DEGREE] = 0.0
+    lower = found
+    for p in range(1, _DEGREE + 1):
+        lower, u = found, u[..., : found.shape[-1]]
+        found = (u[..., :-1] * lower[..., :-1] + (p - u[..., 1:]) * lower[..., 1:]) / p
+    return found, pieces * (lower[..., :-1] - lower[..., 1:])
 
 
 def _regressor() -> Floats:
@@ -403,7 +484,7 @@ class _Fit:
         sigmas = np.where(np.isnan(self.given), np.repeat([self.unit[10], self.unit[13]], 3), self.given)
         jacobian: Floats = np.zeros((0, 0))
         for trial in range(_PASSES):
-            whiten = [np.linalg.inv(np.linalg.cholesky(one)) for one in self.covariances(x, sigmas)]
+            whiten = np.linalg.inv(np.linalg.cholesky(self.covariances(x, sigmas)))
             jacobian, target, rest = self.least_squares(whiten)
             self._check_rank(jacobian)
             before, x, gap, edge = x, *self.possible(jacobian, target, rest)
@@ -425,8 +506,8 @@ class _Fit:
             x, jacobian, inverse, np.vstack(white), gap, edge, sigmas, origin, dropped, window
         )
 
-    def covariances(self, x: Floats, sigmas: Floats) -> list[Floats]:
-        """Return the covariance of the six equations of a row of each group: noise of the wrench and of ω."""
+    def covariances(self, x: Floats, sigmas: Floats) -> Floats:
+        """Return the covariances of the six equations of each group, (g, 6, 6): noise of wrench and ω."""
         by_features = np.einsum("efp,p->ef", _REGRESSOR[:, :, :10], x[:10] * self.unit[:10])
         turn, products = by_features[:, 3:6], np.zeros((6, 6))
         for u in self.sums.spins:
@@ -435,21 +516,20 @@ class _Fit:
             by_spin = by_features[:, 6:12] @ slopes
             products += by_spin @ by_spin.T
         noise = self.spin_sigma**2
-        return [
-            own * (np.diag(sigmas**2) + noise * products) + spin * noise * turn @ turn.T
-            for own, spin in self.sums.shares
-        ]
+        product, spin = np.array(self.sums.shares).T[:, :, None, None]
+        found: Floats = np.diag(sigmas**2) + noise * (product * products + spin * (turn @ turn.T))
+        return found
 
-    def least_squares(self, whiten: list[Floats]) -> tuple[Floats, Floats, float]:
+    def least_squares(self, whiten: Floats) -> tuple[Floats, Floats, float]:
         """Return triangle, target and rest of the weighted problem, in scaled parameters, offsets first."""
+        columns = len(self.columns)
+        slopes = _REGRESSOR[:, :, self.columns] * self.unit[self.columns]
+        slopes = np.tensordot(whiten, slopes, 1)  # of group, equation, feature and parameter
         blocks = []
-        for triangle, own in zip(self._triangles(), whiten, strict=True):
-            slopes = np.einsum("se,efp->sfp", own, _REGRESSOR[:, :, self.columns] * self.unit[self.columns])
-            lines = np.einsum("rf,sfp->srp", triangle[:, :_FEATURES], slopes)
-            sides = np.einsum("rf,sf->sr", triangle[:, _FEATURES:], own)
-            blocks.append(
-                np.concatenate([lines, sides[..., None]], axis=2).reshape(-1, len(self.columns) + 1)
-            )
+        for triangle, own, slope in zip(self._triangles(), whiten, slopes, strict=True):
+            lines = (triangle[:, :_FEATURES] @ slope).reshape(-1, columns)
+            sides = (own @ triangle[:, _FEATURES:].T).reshape(-1, 1)
+            blocks.append(np.hstack([lines, sides]))
         if self.prior is not None:
             blocks.append(self._prior_rows())
         stacked = np.vstack(blocks)
@@ -502,18 +582,21 @@ class _Fit:
         unknown = np.isnan(self.given)
         if not unknown.any():
             return sigmas
-        spin = [np.diag(one) for one in self.covariances(x, np.zeros(6))]
-        total = np.zeros(6)
-        both = zip(self.residuals(x, self._triangles()), spin, self.weights, strict=True)
-        for one, noise, w in both:
-            total += np.maximum(np.sum(one**2, axis=0) - len(w) * noise, 0.0)
-        total = total / max(self.rows - len(self.columns) / 6.0, 1.0)
+        noise = np.diagonal(self.covariances(x, np.zeros(6)), axis1=1, axis2=2)
+        groups = list(zip(self.residuals(x, self._triangles()), noise, self.weights, strict=True))
+        # Where an acceleration has no noise the level is told best.
+        quiet = [one for one, (_, spin) in zip(groups, self.sums.shares, strict=True) if spin == 0.0]
+        total, rows = np.zeros(6), 0
+        for one, own, w in quiet:
+            total += np.maximum(np.sum(one**2, axis=0) - len(w) * own, 0.0)
+            rows += len(w)
+        total = total / max(rows * (1.0 - len(self.columns) / (6.0 * self.rows)), 1.0)
         # One level for the three components of a kind, and never below rounding.
         total = np.repeat([total[:3].mean(), total[3:].mean()], 3)
         least = (1e-13 * np.repeat([self.unit[10], self.unit[13]], 3)) ** 2
         return np.where(unknown, np.sqrt(np.maximum(total, least)), sigmas)
 
-    def reweigh(self, x: Floats, whiten: list[Floats]) -> None:
+    def reweigh(self, x: Floats, whiten: Floats) -> None:
         """Set the weights of Student's distribution with six components."""
         both = zip(self.residuals(x, self.sums.features), whiten, strict=True)
         squares = [np.sum((one @ own.T) ** 2, axis=1) for one, own in both]
