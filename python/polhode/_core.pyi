@@ -26,6 +26,7 @@ from polhode.results import (
     PrincipalAxes,
     Provenance,
     Sigma,
+    State,
 )
 from polhode.uncertainty.motion import FromPeriods, PeriodsSigma
 
@@ -41,6 +42,7 @@ __all__ = [
     "RigidBody",
     "RuledSurface",
     "Slabs",
+    "Stepper",
     "Surface",
     "Uncertain",
     "Wheel",
@@ -604,6 +606,23 @@ class RigidBody:
         states: dict[str, Any] | None = None,
         max_steps: int | None = None,
     ) -> Trajectory: ...
+    def stepper(
+        self,
+        omega: _Numbers,
+        attitude: _Attitude | Uncertain | None = None,
+        *,
+        load: Load | None = None,
+        start: float = 0.0,
+        position: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
+        about: _Reference = "center_of_mass",
+        method: Literal["auto", "exact", "taylor", "dop853", "radau", "splitting"] = "auto",
+        rtol: float = 1e-10,
+        atol: float | None = None,
+        events: Callable[..., float] | Iterable[Callable[..., float]] | None = None,
+        states: dict[str, Any] | None = None,
+        max_steps: int | None = None,
+    ) -> Stepper: ...
     @property
     def shape(self) -> tuple[int, ...]: ...
     def _of_atoms(self, masses: Literal["most_common", "average", "own"], rounding: float) -> RigidBody: ...
@@ -620,6 +639,16 @@ class RigidBody:
     def __copy__(self) -> RigidBody: ...
     def __deepcopy__(self, memo: object, /) -> RigidBody: ...
     def __hash__(self) -> int: ...
+
+@final
+class Stepper:
+    @property
+    def t(self) -> float: ...
+    @property
+    def status(self) -> Literal["complete", "event"]: ...
+    def step(self, dt: float, load: Load | None = None) -> State: ...
+    def state(self) -> State: ...
+    def trajectory(self) -> Trajectory: ...
 
 @final
 class Region: ...

@@ -89,6 +89,12 @@ pub enum MotionFault {
         /// What was asked for.
         what: &'static str,
     },
+    /// What a motor is to follow does more than a torque.
+    #[error(
+        "torque: a motor exerts a torque alone, and carries nothing along; what it follows has a force, a wheel or a slug: \
+         give it the controller alone, such as loads.feedback(...), and add the other loads to the wheel"
+    )]
+    NoController,
     /// The centre of mass is not on the symmetry axis through the pivot.
     #[error(
         "the pivot, the origin of the body frame, must lie on the symmetry axis: the axis passes it at {distance:?}, \
@@ -444,6 +450,7 @@ impl MotionFault {
             | Self::PivotedInOrbit
             | Self::OutsideTimes { .. }
             | Self::StatesStay { .. }
+            | Self::NoController
             | Self::OrbitBeyondReach { .. }
             | Self::RollingBeyondReach { .. }
             | Self::BeyondReach { .. } => Kind::Argument,

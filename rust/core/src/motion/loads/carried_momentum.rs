@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::body_at_point::BodyAtPoint;
+use super::laws::Term;
 use crate::motion::state::Phase;
 
 /// What a law carries along in the body: an angular momentum beside I ω, and internal states that go on with the motion.
@@ -42,6 +43,12 @@ pub trait CarriedMomentum {
         None
     }
 
+    /// The unit axis, the moment J and the largest |Ω| of a wheel with such a limit, whose first state is its momentum. At the limit its motor
+    /// exerts what keeps it there, as long as it is asked for more.
+    fn rate_limit(&self) -> Option<(Vector3<f64>, f64, f64)> {
+        None
+    }
+
     /// Whether its motor has a limit.
     fn has_limit(&self) -> bool {
         false
@@ -51,6 +58,11 @@ pub trait CarriedMomentum {
     fn over_limit(&self, now: &LawContext<'_>) -> f64 {
         let _ = now;
         -1.0
+    }
+
+    /// The terms of the controller that its motor follows, of a [`Drive::Controller`](super::Drive::Controller).
+    fn controller(&self) -> &[Term] {
+        &[]
     }
 
     /// The torque about the reference point that stands beside that tensor.
@@ -79,4 +91,6 @@ pub struct LawContext<'a> {
     pub phase: &'a Phase,
     /// The sign that a law with one is taken for.
     pub side: f64,
+    /// The torque on the body that the controller of a motor asks for.
+    pub command: Vector3<f64>,
 }
