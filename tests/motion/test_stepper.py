@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import polhode
 import pytest
-from polhode import Event, IntegrationError, RigidBody, Trajectory, loads, orbits, solids
+from polhode import Event, RigidBody, Trajectory, loads, orbits, solids
+from polhode.errors import IntegrationError
 
 BODY = RigidBody.from_principal(3.0, (1.0, 2.0, 2.5))
 OMEGA = (0.3, 0.5, -0.2)
@@ -214,7 +215,7 @@ class TestEvents:
         assert len(run.trajectory().events.t) == len(times)
 
     def test_wheels_that_stop_and_break_away(self) -> None:
-        # Closed forms: the wheel stops at Ω₀ J (1 − J/I)/c₀; a motor that rises as k t breaks it loose at c₀/k.
+        # The wheel stops at Ω₀ J (1 − J/I)/c₀; then Ω̇ is (τ − c₀) (1/J + 1/(I − J)).
         def wheel(**options: Any) -> loads.Load:
             return loads.wheel((0, 0, 1), inertia=0.5, dry_friction=0.25, **options)
 
@@ -230,7 +231,6 @@ class TestEvents:
         assert (run.status, run.t) == ("event", start)  # it breaks away at once
         run.step(2.0)
         assert (run.status, run.t) == ("complete", start + 2.0)
-        # (1/J − 1/(I − J)) ... of h and ω: Ω = (τ − c₀) t (1/J + 1/(I − J))
         omega, momentum = run.state().omega[2], run.state().states["wheel"][0]
         rate = momentum / 0.5 - omega
         assert rate == pytest.approx(0.15 * 2.0 * (1 / 0.5 + 1 / 2.5), rel=1e-12)
@@ -243,7 +243,7 @@ class TestEvents:
         assert (third.status, third.omega[-1][2]) == ("complete", omega)
 
     def test_a_motor_at_its_limit(self) -> None:
-        wheel = loads.wheel((0, 0, 1), inertia=0.5, torque=loads.feedback(K=1.0, D=2.0), limit=0.05)
+        wheel = loads.wheel((0, 0, 1), inertia=0.5, torque=loads.feedback(K=1.0, D=2.0), max_torque=0.05)
         event = Event.limit("wheel", terminal=True)
         start = {"omega": (0, 0, 0), "attitude": (0, 0, np.sin(0.4), np.cos(0.4))}
         times = BODY.simulate([0, 60], **start, load=wheel, events=Event.limit("wheel")).events.t
@@ -318,8 +318,8 @@ class TestRefused:
             self.RUN.step(1.0, load="wheel")  # type: ignore[arg-type]
         with pytest.raises(ValueError, match="start: expected a finite time"):
             BODY.stepper(OMEGA, start=np.nan)
-        with pytest.raises(ValueError, match="'law' are 2 numbers until now and 1 under this load|\"law\" are 2"):
-            run = BODY.stepper(OMEGA, load=sampled())
+        run = BODY.stepper(OMEGA, load=sampled())
+        with pytest.raises(ValueError, match='the states "law" are 2 numbers until now and 1 under this'):
             run.step(1.0, load=loads.wheel((0, 0, 1), inertia=0.1, name="law"))
 
     def test_a_step_that_fails_is_not_made(self) -> None:

@@ -157,7 +157,7 @@ class Event:
 
 
 def passed(events: Any, last: Any) -> Any:
-    """Return the events of a run that begins where the event `last` ended another one: it has passed there."""
+    """Return the events of a run that begins where the event `last` ended another one."""
     if last is None:
         return events
     last = last.function if getattr(last, "_has_passed", False) else last

@@ -731,11 +731,11 @@ class Trajectory(metaclass=ClassWithHints):
         Parameters
         ----------
         t : array_like, shape (T,)
-            Times as in `simulate`; the first must be the last of this motion, or with `from_event` the time of
-            its last event.
+            Times as in `simulate`; the first must be the last of this motion, or with `from_event` the time
+            of its last event.
         from_event : bool
-            Go on from the terminal event that ended the motion of one body. If the same event is passed again in
-            `events`, this passage does not count again. The default is to go on from the last of the times.
+            Go on from the terminal event that ended the motion of one body. If the same event is passed again
+            in `events`, this passage does not count again. The default is to go on from the last time.
         **options
             Further arguments of :meth:`polhode.RigidBody.simulate`, such as `method` and `rtol`. States of
             another `load` go on from those of the same name and number, so that wheels keep their momentum;

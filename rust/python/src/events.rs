@@ -15,7 +15,7 @@ use crate::stack::Stack;
 /// The functions of an argument `events`.
 #[derive(Default)]
 pub(crate) struct Functions {
-    functions: Vec<Py<PyAny>>,
+    callables: Vec<Py<PyAny>>,
     rules: Vec<Rule>,
     /// After how many passages of each a run ends; 0 for never.
     terminal: Vec<u64>,
@@ -56,7 +56,7 @@ impl Functions {
         load: &PyLoad,
         terms: &[&[Term]],
     ) -> PyResult<()> {
-        let number = self.functions.len();
+        let number = self.callables.len();
         if !function.is_callable() {
             return Err(PyTypeError::new_err(format!(
                 "events: event {number} is no function but {}",
@@ -90,7 +90,7 @@ impl Functions {
             reason = "checked above to be a count"
         )]
         let last = terminal as u64;
-        self.functions.push(function.clone().unbind());
+        self.callables.push(function.clone().unbind());
         self.terminal.push(last);
         self.rules.push(Rule {
             direction: if direction > 0.0 {
@@ -109,25 +109,25 @@ impl Functions {
     }
 
     pub(crate) fn len(&self) -> usize {
-        self.functions.len()
+        self.callables.len()
     }
 
     pub(crate) fn is_empty(&self) -> bool {
-        self.functions.is_empty()
+        self.callables.is_empty()
     }
 
     /// The function of number `event`; that of what happens to a contact has none.
     pub(crate) fn function(&self, event: usize) -> Option<&Py<PyAny>> {
-        self.functions.get(event)
+        self.callables.get(event)
     }
 
     pub(crate) fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
-        (self.functions.iter()).try_for_each(|function| visit.call(function))
+        (self.callables.iter()).try_for_each(|function| visit.call(function))
     }
 
     pub(crate) fn clone_ref(&self, py: Python<'_>) -> Self {
         Self {
-            functions: self.functions.iter().map(|one| one.clone_ref(py)).collect(),
+            callables: self.callables.iter().map(|one| one.clone_ref(py)).collect(),
             rules: self.rules.clone(),
             terminal: self.terminal.clone(),
         }
@@ -135,7 +135,7 @@ impl Functions {
 
     /// Look for the same events under another load.
     pub(crate) fn aim(&mut self, py: Python<'_>, load: &PyLoad, terms: &[Term]) -> PyResult<()> {
-        for (function, rule) in self.functions.iter().zip(&mut self.rules) {
+        for (function, rule) in self.callables.iter().zip(&mut self.rules) {
             rule.trigger = read_event(function.bind(py), load, &[terms])?;
         }
         Ok(())
@@ -269,7 +269,7 @@ impl Events for EventCalls<'_, '_> {
             array(phase.velocity.as_slice()),
         );
         let value = || -> PyResult<f64> {
-            let function = self.functions.functions[event].bind(self.py);
+            let function = self.functions.callables[event].bind(self.py);
             let returned = if self.states.slots.is_empty() {
                 function.call1(arguments)?
             } else {

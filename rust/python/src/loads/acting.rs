@@ -161,7 +161,11 @@ impl<'a, 'py> ActingLoad<'a, 'py> {
             for compiled in &one.compiled {
                 let own = first..first + compiled.initial.len();
                 first = own.end;
-                let into = if asked { &mut rates[own.clone()] } else { &mut [] };
+                let into = if asked {
+                    &mut rates[own.clone()]
+                } else {
+                    &mut []
+                };
                 sum += compiled.call(t, phase, &phase.internal_state[own], into);
             }
             if sum.force != Vector3::zeros() {
@@ -233,7 +237,10 @@ impl Load for ActingLoad<'_, '_> {
         breaks.extend(self.with_states.iter().flat_map(|one| one.times(from, to)));
         for one in &self.controllers {
             let called = one.load.callbacks().map(|callback| &callback.windows);
-            let compiled = one.load.compiled_functions().map(|compiled| &compiled.windows);
+            let compiled = one
+                .load
+                .compiled_functions()
+                .map(|compiled| &compiled.windows);
             let windows = called.chain(compiled).flatten();
             breaks.extend(windows.flat_map(Windows::switches));
             breaks.extend(one.load.with_states().flat_map(|law| law.times(from, to)));
@@ -364,13 +371,15 @@ impl Load for ActingLoad<'_, '_> {
             of_controllers += one.load.scales_of_functions().len();
             (first, one.load)
         });
-        let laws = std::iter::once(own).chain(controllers).flat_map(|(mut first, load)| {
-            load.with_states().map(move |law| {
-                let own = first..first + law.initial.len();
-                first = own.end;
-                (own, law)
-            })
-        });
+        let laws = std::iter::once(own)
+            .chain(controllers)
+            .flat_map(|(mut first, load)| {
+                load.with_states().map(move |law| {
+                    let own = first..first + law.initial.len();
+                    first = own.end;
+                    (own, law)
+                })
+            });
         for (own, one) in laws {
             let updated = one.update(py, now, phase, &states);
             if let Some(new) = updated.map_err(Fault::Python)? {

@@ -184,7 +184,9 @@ impl PyLoad {
             }
             drop(known);
             let new = Py::new(py, controller.get().copy_with_epoch(py, t)?)?;
-            begun.borrow_mut().push((controller.clone_ref(py), new.clone_ref(py)));
+            begun
+                .borrow_mut()
+                .push((controller.clone_ref(py), new.clone_ref(py)));
             Ok(new)
         };
         self.map(|part| {

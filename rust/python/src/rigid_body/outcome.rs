@@ -236,7 +236,13 @@ impl Ensemble<'_> {
             });
             fields.set_item(intern!(py, "_contact_states"), (phases?, work?))?;
         }
-        let ended = matches!(runs[..], [Some(Run { end: End::Event, .. })]);
+        let ended = matches!(
+            runs[..],
+            [Some(Run {
+                end: End::Event,
+                ..
+            })]
+        );
         let mut efforts = memory::vector("result", &self.grid.shape, 0)?;
         let (mut crossings, mut samples) = (Vec::new(), Vec::new());
         for (row, run) in runs.into_iter().enumerate() {
@@ -248,7 +254,11 @@ impl Ensemble<'_> {
                 samples.push(states);
             }
         }
-        if let ([], [(_, last)], true) = (&self.grid.shape[..], &crossings[crossings.len().saturating_sub(1)..], ended) {
+        if let ([], [(_, last)], true) = (
+            &self.grid.shape[..],
+            &crossings[crossings.len().saturating_sub(1)..],
+            ended,
+        ) {
             fields.set_item(intern!(py, "_ended_by"), self.events.function(last.event))?;
         }
         let outcome = Outcome {

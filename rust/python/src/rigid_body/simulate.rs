@@ -267,8 +267,7 @@ impl PyRigidBody {
 /// The load that an argument is.
 pub(super) fn cast_load<'a>(load: &'a Bound<'_, PyAny>) -> PyResult<&'a PyLoad> {
     let cast = load.cast::<PyLoad>();
-    cast.map(Bound::get)
-        .map_err(|_| hints::not_a_load(load))
+    cast.map(Bound::get).map_err(|_| hints::not_a_load(load))
 }
 
 impl<'a> Start<'a> {

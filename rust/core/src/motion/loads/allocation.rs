@@ -39,7 +39,10 @@ pub fn allocation(axes: &[Vector3<f64>]) -> Result<Vec<Vector3<f64>>, Error> {
         units.push(unit(axis).ok_or(Error::NoDirection { what: "axes" })?);
     }
     let sum: Matrix3<f64> = units.iter().map(|a| a * a.transpose()).sum();
-    let SymmetricEigen { eigenvectors, eigenvalues } = sum.symmetric_eigen();
+    let SymmetricEigen {
+        eigenvectors,
+        eigenvalues,
+    } = sum.symmetric_eigen();
     let least = NO_AXIS * eigenvalues.max();
     let inverse = eigenvalues.map(|value| if value > least { value.recip() } else { 0.0 });
     let inverse = eigenvectors * Matrix3::from_diagonal(&inverse) * eigenvectors.transpose();
@@ -72,5 +75,8 @@ pub fn allocation_error(axes: &[Vector3<f64>], rows: &[Vector3<f64>]) -> f64 {
     let units: Vec<_> = axes.iter().filter_map(unit).collect();
     let exerted: Matrix3<f64> = units.iter().zip(rows).map(|(a, m)| a * m.transpose()).sum();
     let off = units.iter().map(|a| (exerted * a - a).amax());
-    off.fold(0.0, |most: f64, off| if off.is_nan() { off } else { most.max(off) })
+    off.fold(
+        0.0,
+        |most: f64, off| if off.is_nan() { off } else { most.max(off) },
+    )
 }

@@ -83,10 +83,20 @@ impl<'a> Analytic<'a> {
 
     /// What is asked of the motor of the wheel that is the term of this number; its law changes with the state unless it is settled by
     /// `switches`.
-    fn commanded(&self, term: usize, t: f64, phase: &Phase, switches: &mut slice::Iter<'_, Switch>) -> Vector3<f64> {
+    fn commanded(
+        &self,
+        term: usize,
+        t: f64,
+        phase: &Phase,
+        switches: &mut slice::Iter<'_, Switch>,
+    ) -> Vector3<f64> {
         let mut sum = self.commands.get(term).copied().unwrap_or_default();
         for (_, law) in self.controllers.iter().filter(|(of, _)| *of == term) {
-            let switch = if law.may_switch() { switches.next() } else { None };
+            let switch = if law.may_switch() {
+                switches.next()
+            } else {
+                None
+            };
             sum += match switch {
                 Some(switch) => law.settled_wrench(switch.side, &self.body, t, phase).torque,
                 None => law.wrench(&self.body, t, phase).torque,
@@ -164,8 +174,12 @@ impl Load for Analytic<'_> {
     fn settle(&mut self, t: f64, phase: &Phase) {
         self.switches.clear();
         let body = &self.body;
-        let laws = self.active.iter().chain(self.controllers.iter().map(|(_, law)| law));
-        self.switches.extend(laws.filter_map(|law| law.switch(body, t, phase)));
+        let laws = self
+            .active
+            .iter()
+            .chain(self.controllers.iter().map(|(_, law)| law));
+        self.switches
+            .extend(laws.filter_map(|law| law.switch(body, t, phase)));
         self.bearings = Some(self.bearings_at(phase));
     }
 

@@ -110,8 +110,16 @@ impl Chain {
             self.reference_point.body_at_point.pivoted,
         );
         let go_on = &|_| ControlFlow::Continue(());
-        let plan = Plan::new(bodies, pivoted, &[0.0], method, self.tolerance, terms, go_on)
-            .map_err(|refusal| refusal.error)?;
+        let plan = Plan::new(
+            bodies,
+            pivoted,
+            &[0.0],
+            method,
+            self.tolerance,
+            terms,
+            go_on,
+        )
+        .map_err(|refusal| refusal.error)?;
         let method = plan.method();
         let turning: Vec<_> = carried.filter_map(CarriedMomentum::turning).collect();
         let known = self.without_wheels.as_ref();

@@ -176,7 +176,9 @@ impl<'a, E: From<Error>> EventDetector<'a, E> {
         for event in 0..self.rules.len() {
             let (events, rule) = (&mut *self.events, self.rules[event]);
             let trigger = rule.trigger;
-            if let EventTrigger::Stop(_) | EventTrigger::Slip(_) | EventTrigger::RateLimit(_) = trigger {
+            if let EventTrigger::Stop(_) | EventTrigger::Slip(_) | EventTrigger::RateLimit(_) =
+                trigger
+            {
                 continue; // told by the load
             }
             if self.signs[event] > 0.0
@@ -277,12 +279,14 @@ impl<'a, E: From<Error>> EventDetector<'a, E> {
     /// A change of the law of the load, at this time and state; whether the run is to end there.
     pub(super) fn note(&mut self, change: &LawSwitch, time: f64, phase: &Phase) -> bool {
         let (trigger, other) = match change {
-            LawSwitch::Stop(limit) if limit.is_limit() => {
-                (EventTrigger::RateLimit(limit.index()), Some(Direction::Falling))
-            }
-            LawSwitch::Slip(limit) if limit.is_limit() => {
-                (EventTrigger::RateLimit(limit.index()), Some(Direction::Rising))
-            }
+            LawSwitch::Stop(limit) if limit.is_limit() => (
+                EventTrigger::RateLimit(limit.index()),
+                Some(Direction::Falling),
+            ),
+            LawSwitch::Slip(limit) if limit.is_limit() => (
+                EventTrigger::RateLimit(limit.index()),
+                Some(Direction::Rising),
+            ),
             LawSwitch::Stop(bearing) => (EventTrigger::Stop(bearing.index()), None),
             LawSwitch::Slip(bearing) => (EventTrigger::Slip(bearing.index()), None),
             LawSwitch::Sign(_) => return false,
