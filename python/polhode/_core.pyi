@@ -157,6 +157,7 @@ __all__ = [
     "uniform_gravity",
     "wedge",
     "wheel",
+    "wheels",
     "white_noise",
     "with_states",
     "within_box",
@@ -816,7 +817,13 @@ class Wheel(Load):
     @property
     def dry_friction(self) -> Any: ...
     @property
-    def limit(self) -> Any: ...
+    def max_torque(self) -> Any: ...
+    @property
+    def max_momentum(self) -> Any: ...
+    @property
+    def max_rate(self) -> Any: ...
+    @property
+    def allocation(self) -> Any: ...
     @staticmethod
     def _of(
         axis: ArrayLike, inertia: ArrayLike, rate: ArrayLike, momentum: ArrayLike, mode: str, name: str
@@ -917,9 +924,26 @@ def wheel(
     times: ArrayLike | None = None,
     friction: ArrayLike | None = None,
     dry_friction: ArrayLike | None = None,
-    limit: float | None = None,
+    max_torque: ArrayLike | None = None,
+    max_momentum: ArrayLike | None = None,
+    max_rate: ArrayLike | None = None,
+    allocation: ArrayLike | None = None,
     name: str = "wheel",
 ) -> Wheel: ...
+def wheels(
+    axes: ArrayLike,
+    inertias: ArrayLike,
+    *,
+    torque: Load,
+    allocation: str | ArrayLike = "pseudo-inverse",
+    rate: ArrayLike | None = None,
+    friction: ArrayLike | None = None,
+    dry_friction: ArrayLike | None = None,
+    max_torque: ArrayLike | None = None,
+    max_momentum: ArrayLike | None = None,
+    max_rate: ArrayLike | None = None,
+    name: str = "wheel",
+) -> Load: ...
 
 # end of loads
 # solids: written by rust/python/declared.py

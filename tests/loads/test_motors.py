@@ -202,6 +202,8 @@ class TestLimits:
         table = one(torque=[1.0, -0.2, -3.0], times=[0.0, 1.0, 2.5], max_torque=0.5)
         run = PLAIN.simulate([0, 1, 2.5, 4], (0, 0, 0), load=table)
         assert run.states["wheel"][:, 0] == pytest.approx([0.0, 0.5, 0.2, -0.55], abs=1e-14)
+        found = PLAIN.simulate([0, 4], (0, 0, 0), load=table, events=Event.limit()).events
+        assert found.t == pytest.approx([1.0, 2.5], abs=1e-12)
         constant = PLAIN.simulate([0, 4], (0, 0, 0), load=one(torque=-3.0, max_torque=0.5))
         assert constant.states["wheel"][-1, 0] == pytest.approx(-2.0, abs=1e-14)
         # Both sides of the threshold.
@@ -244,11 +246,12 @@ class TestLimits:
     def test_a_demand_that_falls(self) -> None:
         """τ = 0.5 cos t: at the limit from where 0.5 sin t (1/J + 1/(I − J)) is the limit, until t = π/2."""
         load = one(torque=loads.torque_callback(lambda t, *_: (0, 0, -0.5 * np.cos(t))), max_rate=0.5)
-        run = PLAIN.simulate([0, 3.0], (0, 0, 0), load=load, events=Event.rate_limit(), rtol=1e-13)
+        run = PLAIN.simulate([0, 2.5, 3.0], (0, 0, 0), load=load, events=Event.rate_limit(), rtol=1e-13)
         reach = np.arcsin(0.5 / (0.5 * self.RATE))
-        assert run.events.t[:2] == pytest.approx([reach, np.pi / 2], abs=1e-12)
-        rate = run.states["wheel"][-1, 0] / J3 - run.omega[-1, 2]
-        assert rate == pytest.approx(0.5 + 0.5 * (np.sin(3.0) - 1) * self.RATE, abs=1e-12)
+        other = np.pi - np.arcsin(1 - 1 / (0.5 * self.RATE))
+        assert run.events.t == pytest.approx([reach, np.pi / 2, other], abs=1e-12)
+        rate = run.states["wheel"][:, 0] / J3 - run.omega[:, 2]
+        assert rate == pytest.approx([0, 0.5 + 0.5 * (np.sin(2.5) - 1) * self.RATE, -0.5], abs=1e-12)
 
     def test_a_torque_on_the_body_turns_both(self) -> None:
         """At its limit the wheel turns with the body: ω̇ = N/I."""

@@ -774,6 +774,7 @@ class Trajectory(metaclass=ClassWithHints):
 
         An event ends a motion, which goes on from there:
 
+        >>> import numpy as np
         >>> from polhode import Event
         >>> half = Event(lambda t, omega, quaternion, *_: quaternion[3], terminal=True)
         >>> first = body.simulate([0, 10], omega=(0, 0, 1), events=half)

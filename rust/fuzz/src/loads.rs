@@ -122,7 +122,7 @@ fn drive(draw: &mut Draw<'_>) -> Result<core::result::Result<Drive, Error>> {
     Ok(match draw.up_to(3)? {
         0 => PiecewiseSignal::constant("torque", draw.number()?).map(Drive::Torque),
         1 => feedback(draw)?.map(Drive::Feedback),
-        2 => feedback(draw)?.map(|law| Drive::Controller(vec![law.into()])),
+        2 => Ok(Drive::Controller),
         _ => {
             let (times, values) = samples(draw)?;
             let values: Vec<f64> = values.iter().map(|v| v.x).collect();

@@ -91,8 +91,7 @@ pub enum MotionFault {
     },
     /// What a motor is to follow does more than a torque.
     #[error(
-        "torque: a motor exerts a torque alone, and carries nothing along; what it follows has a force, a wheel or a slug: \
-         give it the controller alone, such as loads.feedback(...), and add the other loads to the wheel"
+        "a motor exerts a torque alone, and carries nothing along: what this one is to follow has a force, a wheel or a slug"
     )]
     NoController,
     /// The centre of mass is not on the symmetry axis through the pivot.

@@ -593,17 +593,18 @@ pub(crate) fn wheel(
     }
     let drive = match (torque, speed) {
         (_, Some(speed)) if times.is_some() => {
-            Stack::one(Drive::Speed(read_drive("speed", speed, times)?))
+            Stack::one((Drive::Speed(read_drive("speed", speed, times)?), None))
         }
         (_, Some(speed)) => {
-            let constant =
-                |speed: &f64| PiecewiseSignal::constant("speed", *speed).map(Drive::Speed);
+            let constant = |speed: &f64| {
+                PiecewiseSignal::constant("speed", *speed).map(|held| (Drive::Speed(held), None))
+            };
             try_rows(py, &read::<f64>(speed, "speed")?, constant)?
         }
-        (None, None) => Stack::one(Drive::Torque(no_drive(py, times)?)),
+        (None, None) => Stack::one((Drive::Torque(no_drive(py, times)?), None)),
         (Some(torque), None) => match torque.cast::<PyLoad>() {
             Ok(load) => read_controller(py, load.get(), times)?,
-            Err(_) => Stack::one(Drive::Torque(read_drive("torque", torque, times)?)),
+            Err(_) => Stack::one((Drive::Torque(read_drive("torque", torque, times)?), None)),
         },
     };
     let axis: Stack<Vector3<f64>> = read(axis, "axis")?;
@@ -650,7 +651,7 @@ pub(crate) fn wheel(
         &rows.shape,
     ];
     let terms = Broadcast::of(names, shapes)?.try_map(py, |[a, j, w, c, c0, d, t, h, r, m]| {
-        let drive = drive[d].clone();
+        let (drive, controller) = drive[d].clone();
         let mut wheel = Wheel::new(&axis[a], inertia[j], rates[w], frictions[c], drive)?
             .with_dry_friction(dry_frictions[c0])?;
         if let Some(torque) = max_torques[t] {
@@ -665,7 +666,10 @@ pub(crate) fn wheel(
         if let Some(row) = &rows[m] {
             wheel = wheel.with_allocation(row)?;
         }
-        Ok(Term::Wheel(wheel))
+        match controller {
+            Some(controller) => Term::controlled(wheel, controller),
+            None => Ok(Term::Wheel(wheel)),
+        }
     })?;
     let number = |given: Option<_>, numbers: &Stack<f64>| {
         (given.map(|_: &Bound<'_, PyAny>| write_of(py, numbers, |x| *x))).transpose()
@@ -766,12 +770,15 @@ fn read_drive(
     made.map_err(|error| to_py(py, &error))
 }
 
+/// What a motor does, and the terms of the controller that it follows.
+type Motor = (Drive, Option<Vec<Term>>);
+
 /// What a controller asks of a motor: a feedback alone has a series, the terms of others are asked one by one.
 fn read_controller(
     py: Python<'_>,
     load: &PyLoad,
     times: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Stack<Drive>> {
+) -> PyResult<Stack<Motor>> {
     if times.is_some() {
         return Err(PyTypeError::new_err(
             "times: not beside a controller; loads.schedule(...) makes one that acts at times",
@@ -780,16 +787,16 @@ fn read_controller(
     let terms = load.terms(py)?;
     let is_feedback =
         load.is_analytic() && (terms.rows.iter()).all(|row| matches!(row[..], [Term::Feedback(_)]));
-    let drives = terms.rows.into_iter().map(|mut row| match row.pop() {
-        Some(Term::Feedback(law)) if is_feedback => Drive::Feedback(law),
+    let motors = terms.rows.into_iter().map(|mut row| match row.pop() {
+        Some(Term::Feedback(law)) if is_feedback => (Drive::Feedback(law), None),
         last => {
             row.extend(last);
-            Drive::Controller(row)
+            (Drive::Controller, Some(row))
         }
     });
     Ok(Stack {
         shape: terms.shape,
-        rows: drives.collect(),
+        rows: motors.collect(),
     })
 }
 

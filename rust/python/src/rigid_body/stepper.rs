@@ -574,7 +574,7 @@ impl PyRigidBody {
     /// >>> run = body.stepper(omega=(0.1, 1.0, 0.2))
     /// >>> one, two = run.step(0.5), run.step(0.5)
     /// >>> run.t, two.omega.round(6)
-    /// (1.0, array([0.195862, 0.972888, 0.231842]))
+    /// (1.0, array([0.006364, 1.007442, 0.178976]))
     #[pyo3(
         signature = (
             omega=None, attitude=None, *, load=None, start=0.0, position=None, velocity=None,

@@ -40,8 +40,7 @@ impl<'a> Analytic<'a> {
     #[must_use]
     pub fn new(terms: &'a [Term], body: BodyAtPoint) -> Self {
         let asks = |(number, term): (usize, &'a Term)| {
-            let controller = term.carried().map_or(&[][..], CarriedMomentum::controller);
-            controller.iter().map(move |law| (number, law))
+            term.controller().iter().map(move |law| (number, law))
         };
         Self {
             body,
@@ -75,7 +74,32 @@ impl<'a> Analytic<'a> {
     }
 
     /// From now on a controller outside asks the motor of the wheel that is the term of this number for this torque on the body (in B), in
-    /// addition to the terms of its own [controller](super::Drive::Controller).
+    /// addition to the terms of its own [controller](Term::controller).
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::mass::{Amount, solids};
+    /// use polhode::motion::loads::{Analytic, BodyAtPoint, Drive, Load, Term, Wheel};
+    /// use polhode::motion::simulate::{Phase, State};
+    /// use polhode::nalgebra::{UnitQuaternion, Vector3};
+    ///
+    /// // A program asks for 0.2 N m; the motor can do half of that.
+    /// let ball = solids::sphere(1.0, Amount::Mass(5.0))?;
+    /// let wheel = Wheel::new(&Vector3::z(), 0.1, 0.0, 0.0, Drive::Controller)?
+    ///     .with_max_torque(0.1)?
+    ///     .with_max_momentum(4.0)?
+    ///     .with_max_rate(50.0)?
+    ///     .with_allocation(&Vector3::z())?;
+    /// let terms = [Term::controlled(wheel, vec![])?];
+    /// assert!(terms[0].controller().is_empty());
+    /// let mut load = Analytic::new(&terms, BodyAtPoint::free(&ball, 0.0));
+    /// load.command(0, Vector3::z() * 0.2);
+    /// let rest = State { attitude: UnitQuaternion::identity(), omega: Vector3::zeros() };
+    /// let phase = Phase { internal_state: [0.0].into(), ..Phase::in_place(&rest) };
+    /// assert_eq!(load.wrench(0.0, &phase)?.torque, Vector3::z() * 0.1);
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
     pub fn command(&mut self, term: usize, torque: Vector3<f64>) {
         self.commands.resize(self.terms.len(), Vector3::zeros());
         self.commands[term] = torque;
@@ -164,8 +188,7 @@ impl Load for Analytic<'_> {
             term.check(&self.body, from, to)?;
             self.active.push(term);
             self.numbers.push(number);
-            let controller = term.carried().map_or(&[][..], CarriedMomentum::controller);
-            let asks = controller.iter().filter_map(|law| law.active(middle));
+            let asks = (term.controller().iter()).filter_map(|law| law.active(middle));
             self.controllers.extend(asks.map(|law| (number, law)));
         }
         Ok(())

@@ -3,7 +3,6 @@
 use nalgebra::Vector3;
 
 use super::body_at_point::BodyAtPoint;
-use super::laws::Term;
 use crate::motion::state::Phase;
 
 /// What a law carries along in the body: an angular momentum beside I ω, and internal states that go on with the motion.
@@ -60,9 +59,24 @@ pub trait CarriedMomentum {
         -1.0
     }
 
-    /// The terms of the controller that its motor follows, of a [`Drive::Controller`](super::Drive::Controller).
-    fn controller(&self) -> &[Term] {
-        &[]
+    /// The torque on the body, beside what stands in [`Self::torque`], of a motor at the start of a motion whose controller asks for `command`.
+    fn answer(
+        &self,
+        body: &BodyAtPoint,
+        t: f64,
+        phase: &Phase,
+        command: Vector3<f64>,
+    ) -> Vector3<f64> {
+        let state = self.begin(t, &phase.omega);
+        let idle = LawContext {
+            body,
+            t,
+            middle: t,
+            phase,
+            side: 1.0,
+            command: Vector3::zeros(),
+        };
+        self.torque(&LawContext { command, ..idle }, &state) - self.torque(&idle, &state)
     }
 
     /// The torque about the reference point that stands beside that tensor.

@@ -24,7 +24,7 @@
 //! use polhode::motion::loads::{Callback, CarriedMomentum, BodyAtPoint, Term};
 //! use polhode::motion::simulate::{
 //!     Crossing, Direction, End, Events, ReferencePoint, MOST_STEPS, Method, Phase, Rule, Run, State, TIGHTEST, TIGHTEST_TWOFOLD, Task,
-//!     Tolerance, check_scales, simulate,
+//!     Tolerance, EventTrigger, check_scales, simulate,
 //! };
 //! use polhode::nalgebra::{UnitQuaternion, Vector3};
 //!
@@ -35,7 +35,7 @@
 //!     type Error = polhode::Error;
 //!
 //!     fn rules(&self) -> &[Rule] {
-//!         &[Rule { direction: Direction::Rising, last: 2, ..Rule::default() }]
+//!         &[Rule { direction: Direction::Rising, last: 2, trigger: EventTrigger::Function, ..Rule::default() }]
 //!     }
 //!
 //!     fn value(&mut self, _: usize, _: f64, phase: &Phase) -> Result<f64, Self::Error> {

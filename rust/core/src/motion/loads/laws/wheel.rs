@@ -8,7 +8,6 @@ use crate::error::{Error, MotionFault, finite};
 use crate::motion::loads::body_at_point::BodyAtPoint;
 use crate::motion::loads::carried_momentum::{CarriedMomentum, LawContext};
 use crate::motion::loads::law::{ConservedMomentum, Law, Traits};
-use crate::motion::loads::laws::Term;
 use crate::motion::loads::piecewise_signal::PiecewiseSignal;
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame, exact};
 use crate::motion::loads::series_terms::{InternalState, SeriesTerms};
@@ -75,12 +74,6 @@ impl Wheel {
         positive("inertia", inertia)?;
         finite("rate", rate)?;
         not_negative("friction", friction)?;
-        if let Drive::Controller(terms) = &drive {
-            let pushes = |term: &Term| term.exerts_force() || term.carried().is_some();
-            if terms.iter().any(pushes) {
-                return Err(MotionFault::NoController.into());
-            }
-        }
         Ok(Self {
             axis: *axis,
             unit,
@@ -195,7 +188,7 @@ impl Wheel {
         match &self.drive {
             Drive::Torque(torque) => torque.value(now.middle),
             Drive::Feedback(law) => -along.dot(&law.torque_on(now)),
-            Drive::Controller(_) => -along.dot(&now.command),
+            Drive::Controller => -along.dot(&now.command),
             Drive::Speed(_) => 0.0,
         }
     }
@@ -219,12 +212,11 @@ impl Law for Wheel {
             exerts_force: false,
             depends_on_rates: true,
             needs_body: !self.has_speed(),
-            needs_epoch: self.feedback().is_some_and(|law| law.target.needs_epoch())
-                || self.controller().iter().any(Term::needs_epoch),
+            needs_epoch: self.feedback().is_some_and(|law| law.target.needs_epoch()),
             keeps: ConservedMomentum::All,
             has_series: !self.has_limit()
                 && self.allocation.is_none()
-                && !matches!(self.drive, Drive::Controller(_))
+                && !matches!(self.drive, Drive::Controller)
                 && self.bearing().is_none()
                 && self.rate_limit().is_none()
                 && (self.feedback()).is_none_or(|law| law.target.as_fixed().is_some()),
@@ -244,7 +236,7 @@ impl Law for Wheel {
         match &self.drive {
             Drive::Torque(torque) => all.push(torque.parameter("torque")),
             Drive::Feedback(law) => all.extend(law.parameters()),
-            Drive::Controller(_) | Drive::Speed(_) => {}
+            Drive::Controller | Drive::Speed(_) => {}
         }
         all
     }
@@ -254,13 +246,8 @@ impl Law for Wheel {
     }
 
     fn with_epoch(mut self, t: f64) -> Self {
-        match &mut self.drive {
-            Drive::Feedback(law) => *law = law.clone().with_epoch(t),
-            Drive::Controller(terms) => {
-                let begun = terms.drain(..).map(|term| term.with_epoch(t));
-                *terms = begun.collect();
-            }
-            Drive::Torque(_) | Drive::Speed(_) => {}
+        if let Drive::Feedback(law) = &mut self.drive {
+            *law = law.clone().with_epoch(t);
         }
         self
     }
@@ -283,14 +270,13 @@ impl Law for Wheel {
     /// At a start; of a wheel at rest without what its bearing holds, which follows from all loads on the body.
     fn wrench(&self, body: &BodyAtPoint, t: f64, phase: &Phase) -> Wrench {
         let state = self.begin(t, &phase.omega);
-        let asked = |term: &Term| term.wrench(body, t, phase).torque;
         let now = LawContext {
             body,
             t,
             middle: t,
             phase,
             side: (self.switch(body, t, phase)).map_or(1.0, |switch| switch.side),
-            command: self.controller().iter().map(asked).sum(),
+            command: Vector3::zeros(),
         };
         let mut torque = self.torque(&now, &state);
         if self.bearing().is_some() && self.rate != 0.0 {
@@ -303,7 +289,7 @@ impl Law for Wheel {
     fn potential(&self, _: &BodyAtPoint, _: &Phase) -> Option<f64> {
         let is_free = match &self.drive {
             Drive::Torque(torque) => torque.times().is_empty() && torque.value(0.0) == 0.0,
-            Drive::Feedback(_) | Drive::Controller(_) | Drive::Speed(_) => false,
+            Drive::Feedback(_) | Drive::Controller | Drive::Speed(_) => false,
         };
         (is_free && self.friction == 0.0 && self.dry_friction == 0.0).then_some(0.0)
     }
@@ -332,7 +318,7 @@ impl Law for Wheel {
                 state.reported_on_omega = a * inertia;
             }
             Drive::Torque(torque) => state.constant = torque.number(axes.middle, axes, "torque"),
-            Drive::Controller(_) => {} // has no series
+            Drive::Controller => {} // has no series
             // With a limit it has no series, nor with dry friction: the law without them.
             Drive::Feedback(law) => {
                 let mut asked = SeriesTerms::default();
@@ -383,7 +369,7 @@ impl CarriedMomentum for Wheel {
     fn begin(&self, t: f64, omega: &Vector3<f64>) -> Vec<f64> {
         vec![match &self.drive {
             Drive::Speed(speed) => self.inertia * speed.line(t)[0],
-            Drive::Torque(_) | Drive::Feedback(_) | Drive::Controller(_) => {
+            Drive::Torque(_) | Drive::Feedback(_) | Drive::Controller => {
                 self.inertia * (self.rate + self.unit.dot(omega))
             }
         }]
@@ -458,13 +444,6 @@ impl CarriedMomentum for Wheel {
         (share - 1.0) * (share + 1.0)
     }
 
-    fn controller(&self) -> &[Term] {
-        match &self.drive {
-            Drive::Controller(terms) => terms,
-            Drive::Torque(_) | Drive::Feedback(_) | Drive::Speed(_) => &[],
-        }
-    }
-
     fn torque(&self, now: &LawContext<'_>, state: &[f64]) -> Vector3<f64> {
         let rate = self.rate_of_state(now, state);
         self.unit.cross(&now.phase.omega) * state[0] - self.unit * rate
@@ -522,9 +501,9 @@ pub enum Drive {
     Torque(PiecewiseSignal),
     /// A motor that exerts on the body, about the wheel's axis, what a feedback asks for: `τ = −a·N`.
     Feedback(Feedback),
-    /// A motor that exerts on the body, about the wheel's axis, what a controller asks for: the sum of these terms, and what a program adds
-    /// outside the core ([`Analytic::command`](super::super::Analytic::command)).
-    Controller(Vec<Term>),
+    /// A motor that exerts on the body, about the wheel's axis, what a controller asks for: see
+    /// [`Term::controlled`](super::super::Term::controlled).
+    Controller,
     /// A motor that gives the wheel a speed Ω relative to the body that is known: straight lines between times.
     Speed(PiecewiseSignal),
 }
@@ -534,7 +513,7 @@ impl Drive {
     pub(super) fn feedback(&self) -> Option<&Feedback> {
         match self {
             Self::Feedback(law) => Some(law),
-            Self::Torque(_) | Self::Controller(_) | Self::Speed(_) => None,
+            Self::Torque(_) | Self::Controller | Self::Speed(_) => None,
         }
     }
 
@@ -543,7 +522,7 @@ impl Drive {
         match self {
             Self::Torque(held) | Self::Speed(held) => held.times().to_vec(),
             Self::Feedback(law) => law.breaks(),
-            Self::Controller(terms) => terms.iter().flat_map(Term::breaks).collect(),
+            Self::Controller => Vec::new(),
         }
     }
 
@@ -553,9 +532,7 @@ impl Drive {
             Self::Torque(held) => held.covers("torque", from, to, false),
             Self::Speed(held) => held.covers("speed", from, to, true),
             Self::Feedback(law) => law.check(body, from, to),
-            Self::Controller(terms) => (terms.iter())
-                .filter_map(|term| term.active(from + 0.5 * (to - from)))
-                .try_for_each(|term| term.check(body, from, to)),
+            Self::Controller => Ok(()),
         }
     }
 }
