@@ -250,7 +250,7 @@ impl PyWheel {
             };
             let made = wheel(
                 py, axis, inertia, rate, None, speed, None, None, None, None, None, None, None,
-                name, None,
+                name,
             )?;
             let (load, made) = (made.bind(py).as_super().get(), made.get());
             let numbers = Self {
@@ -529,8 +529,7 @@ fn option(wheel: &Bound<'_, PyWheel>, name: &str) -> PyResult<Option<Py<PyAny>>>
 #[pyo3(
     signature = (axis, inertia, rate=None, *, torque=None, speed=None, times=None, friction=None,
                  dry_friction=None, max_torque=None, max_momentum=None, max_rate=None, allocation=None,
-                 name="wheel", limit=None),
-    text_signature = "(axis, inertia, rate=None, *, torque=None, speed=None, times=None, friction=None, dry_friction=None, max_torque=None, max_momentum=None, max_rate=None, allocation=None, name=\"wheel\")"
+                 name="wheel")
 )]
 #[expect(
     clippy::too_many_arguments,
@@ -552,14 +551,8 @@ pub(crate) fn wheel(
     max_rate: Option<&Bound<'_, PyAny>>,
     allocation: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = read_scalar)] name: &str,
-    limit: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Py<PyWheel>> {
     check_name(name)?;
-    if limit.is_some() {
-        return Err(PyTypeError::new_err(
-            "limit: this argument is called max_torque=",
-        ));
-    }
     let limits = [
         ("max_torque", max_torque),
         ("max_momentum", max_momentum),
@@ -921,7 +914,6 @@ pub(crate) fn wheels(
             of(6).as_ref(),
             Some(&row),
             name,
-            None,
         )?;
         all = all.plus(py, made.bind(py).as_super().get())?;
     }
