@@ -26,6 +26,7 @@ from polhode.results import (
     PrincipalAxes,
     Provenance,
     Sigma,
+    State,
 )
 from polhode.uncertainty.motion import FromPeriods, PeriodsSigma
 
@@ -41,6 +42,7 @@ __all__ = [
     "RigidBody",
     "RuledSurface",
     "Slabs",
+    "Stepper",
     "Surface",
     "Uncertain",
     "Wheel",
@@ -157,6 +159,7 @@ __all__ = [
     "uniform_gravity",
     "wedge",
     "wheel",
+    "wheels",
     "white_noise",
     "with_states",
     "within_box",
@@ -606,6 +609,23 @@ class RigidBody:
         states: dict[str, Any] | None = None,
         max_steps: int | None = None,
     ) -> Trajectory: ...
+    def stepper(
+        self,
+        omega: _Numbers,
+        attitude: _Attitude | Uncertain | None = None,
+        *,
+        load: Load | None = None,
+        start: float = 0.0,
+        position: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
+        about: _Reference = "center_of_mass",
+        method: Literal["auto", "exact", "taylor", "dop853", "radau", "splitting"] = "auto",
+        rtol: float = 1e-10,
+        atol: float | None = None,
+        events: Callable[..., float] | Iterable[Callable[..., float]] | None = None,
+        states: dict[str, Any] | None = None,
+        max_steps: int | None = None,
+    ) -> Stepper: ...
     @property
     def shape(self) -> tuple[int, ...]: ...
     def _of_atoms(self, masses: Literal["most_common", "average", "own"], rounding: float) -> RigidBody: ...
@@ -622,6 +642,16 @@ class RigidBody:
     def __copy__(self) -> RigidBody: ...
     def __deepcopy__(self, memo: object, /) -> RigidBody: ...
     def __hash__(self) -> int: ...
+
+@final
+class Stepper:
+    @property
+    def t(self) -> float: ...
+    @property
+    def status(self) -> Literal["complete", "event"]: ...
+    def step(self, dt: float, load: Load | None = None) -> State: ...
+    def state(self) -> State: ...
+    def trajectory(self) -> Trajectory: ...
 
 @final
 class Region: ...
@@ -789,7 +819,13 @@ class Wheel(Load):
     @property
     def dry_friction(self) -> Any: ...
     @property
-    def limit(self) -> Any: ...
+    def max_torque(self) -> Any: ...
+    @property
+    def max_momentum(self) -> Any: ...
+    @property
+    def max_rate(self) -> Any: ...
+    @property
+    def allocation(self) -> Any: ...
     @staticmethod
     def _of(
         axis: ArrayLike, inertia: ArrayLike, rate: ArrayLike, momentum: ArrayLike, mode: str, name: str
@@ -890,9 +926,26 @@ def wheel(
     times: ArrayLike | None = None,
     friction: ArrayLike | None = None,
     dry_friction: ArrayLike | None = None,
-    limit: float | None = None,
+    max_torque: ArrayLike | None = None,
+    max_momentum: ArrayLike | None = None,
+    max_rate: ArrayLike | None = None,
+    allocation: ArrayLike | None = None,
     name: str = "wheel",
 ) -> Wheel: ...
+def wheels(
+    axes: ArrayLike,
+    inertias: ArrayLike,
+    *,
+    torque: Load,
+    allocation: str | ArrayLike = "pseudo-inverse",
+    rate: ArrayLike | None = None,
+    friction: ArrayLike | None = None,
+    dry_friction: ArrayLike | None = None,
+    max_torque: ArrayLike | None = None,
+    max_momentum: ArrayLike | None = None,
+    max_rate: ArrayLike | None = None,
+    name: str = "wheel",
+) -> Load: ...
 
 # end of loads
 # solids: written by rust/python/declared.py

@@ -30,6 +30,7 @@ from polhode._core import (
     torque_callback,
     uniform_gravity,
     wheel,
+    wheels,
     with_states,
 )
 
@@ -50,6 +51,7 @@ __all__ = [
     "torque_callback",
     "uniform_gravity",
     "wheel",
+    "wheels",
     "with_states",
 ]
 

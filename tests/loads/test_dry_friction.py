@@ -346,7 +346,7 @@ def test_stops_and_slips_are_those_of_the_model(seed: int) -> None:
 def test_saturation_is_told() -> None:
     """About one axis from rest at the target: the motor saturates while K sin(φ/2) is beyond its limit."""
     feedback = loads.feedback(K=1.0, D=0.0)
-    wheel = loads.wheel(ALONG, J, torque=feedback, limit=0.3)
+    wheel = loads.wheel(ALONG, J, torque=feedback, max_torque=0.3)
     less, speed_at_zero = I3 - J, 0.4
     run = PLAIN.simulate(
         [0.0, 30.0], (0, 0, speed_at_zero), load=wheel, events=[Event.limit()], rtol=1e-12, method="dop853"

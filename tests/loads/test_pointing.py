@@ -115,7 +115,7 @@ def test_motors_follow_it_too(name: str) -> None:
     total = inside.angular_momentum().spin
     np.testing.assert_allclose(total, np.broadcast_to(total[0], total.shape), atol=1e-9)
     assert np.abs(inside.omega[0] - outside.omega[0]).max() == 0.0
-    spread = loads.wheel((0, 0, 1), 1e-9, torque=control, limit=0.5, dry_friction=0.01)
+    spread = loads.wheel((0, 0, 1), 1e-9, torque=control, max_torque=0.5, dry_friction=0.01)
     assert np.isfinite(BODY.simulate(T, OMEGA, load=spread).omega).all()
 
 

@@ -135,7 +135,7 @@ class TestLimits:
 
         exact = by_scipy(of_wheels(UNIT, J, FRICTION, torque), list(RATES), [0.0, 15.0])
         load: Any = sum(
-            loads.wheel(axis, inertia, rate, torque=self.CONTROL, friction=friction, limit=0.4)
+            loads.wheel(axis, inertia, rate, torque=self.CONTROL, friction=friction, max_torque=0.4)
             for axis, inertia, rate, friction in zip(AXES, J, RATES, FRICTION, strict=True)
         )
         run = BODY.simulate(T, OMEGA, ATTITUDE, load=load, method=method, rtol=rtol)
@@ -144,7 +144,9 @@ class TestLimits:
         assert np.abs(run.omega - without.omega).max() > 0.1
 
     def test_a_limit_that_is_not_reached(self) -> None:
-        wide, free = (loads.wheel(AXES[0], 0.2, torque=self.CONTROL, limit=limit) for limit in (1e9, None))
+        wide, free = (
+            loads.wheel(AXES[0], 0.2, torque=self.CONTROL, max_torque=limit) for limit in (1e9, None)
+        )
         runs = [BODY.simulate(T, OMEGA, ATTITUDE, load=load, rtol=1e-12).omega for load in (wide, free)]
         assert np.abs(runs[0] - runs[1]).max() < 1e-9
         again = pickle.loads(pickle.dumps(wide))
@@ -233,17 +235,26 @@ REFUSED: list[tuple[Callable[[], Any], type[Exception], str]] = [
     (lambda: loads.wheel((0, 0, 1), 1, times=[0]), TypeError, "times: give torque= or speed= too"),
     (lambda: loads.wheel((0, 0, 1), 1, torque=[1, 2]), TypeError, "give the times= from which each holds"),
     (lambda: loads.wheel((0, 0, 1), 1, torque=[1, 2], times=[1]), ValueError, "one for each of the 1 times"),
-    (lambda: loads.wheel((0, 0, 1), 1, torque=loads.rotor((0, 0, 1))), TypeError, "one loads.feedback"),
-    (lambda: loads.wheel((0, 0, 1), 1, name=""), ValueError, "name: must not be empty"),
-    (lambda: loads.wheel((0, 0, 1), 1, torque=0.1, limit=1), TypeError, "a motor that follows a feedback"),
-    (lambda: loads.wheel((0, 0, 1), 1, limit=1), TypeError, "limit: it is that of a motor"),
     (
-        lambda: loads.wheel((0, 0, 1), 1, torque=loads.feedback(1, 1), limit=0),
+        lambda: loads.wheel((0, 0, 1), 1, torque=loads.rotor((0, 0, 1))),
         PolhodeError,
-        "limit must be positive, got 0.0",
+        "a motor exerts a torque",
+    ),
+    (lambda: loads.wheel((0, 0, 1), 1, name=""), ValueError, "name: must not be empty"),
+    (
+        lambda: loads.wheel((0, 0, 1), 1, torque=0.1, limit=ANY),
+        TypeError,
+        "unexpected keyword argument 'limit'; it takes .*max_torque",
+    ),
+    (lambda: loads.wheel((0, 0, 1), 1, max_torque=1), TypeError, "max_torque: it is a limit of a motor"),
+    (lambda: loads.wheel((0, 0, 1), 1, speed=1, max_rate=2), TypeError, "max_rate: it is a limit of a motor"),
+    (
+        lambda: loads.wheel((0, 0, 1), 1, torque=loads.feedback(1, 1), max_torque=0),
+        PolhodeError,
+        "max_torque must be positive, got 0.0",
     ),
     (
-        lambda: run(loads.wheel((0, 0, 1), 1, torque=loads.feedback(1, 1), limit=1), method="taylor"),
+        lambda: run(loads.wheel((0, 0, 1), 1, torque=loads.feedback(1, 1), max_torque=1), method="taylor"),
         PolhodeError,
         "no motor with a limit",
     ),
@@ -445,10 +456,18 @@ class TestOneWheel:
 
     def test_rows_of_a_stack_have_their_own_numbers(self) -> None:
         control = loads.feedback([1.0 * np.eye(3), 2.0 * np.eye(3)], 0.5)
-        stack = loads.wheel((0, 0, 1), 0.1, [1.0, 2.0], friction=[[0.1], [0.2]], torque=control, limit=0.3)
+        stack = loads.wheel(
+            (0, 0, 1), 0.1, [1.0, 2.0], friction=[[0.1], [0.2]], torque=control, max_torque=0.3
+        )
         assert stack.shape == (2, 2)
         for one in (stack[1, 0], pickle.loads(pickle.dumps(stack[1, 0])), stack[1][0]):
-            assert (one.shape, one.rate, one.momentum, one.friction, one.limit) == ((), 1.0, 0.1, 0.2, 0.3)
+            assert (one.shape, one.rate, one.momentum, one.friction, one.max_torque) == (
+                (),
+                1.0,
+                0.1,
+                0.2,
+                0.3,
+            )
             assert one.motor.shape == ()
             assert one.motor.potential(BODY, ATTITUDE) == control[0].potential(BODY, ATTITUDE)
         table = loads.wheel((0, 0, 1), [0.1, 0.2], torque=[0.1, 0.2, 0.3], times=[0, 1, 2])[1]
@@ -500,7 +519,7 @@ class TestOneWheel:
         ("options", "words"),
         [
             ({"torque": 0.1}, r"a motor \(torque=\)"),
-            ({"torque": loads.feedback(1.0, 1.0), "limit": 0.1}, r"a motor \(torque=\)"),
+            ({"torque": loads.feedback(1.0, 1.0), "max_torque": 0.1}, r"a motor \(torque=\)"),
             ({"friction": 0.1}, r"friction in its bearing \(friction=\)"),
             ({"dry_friction": 0.1}, r"friction in its bearing \(dry_friction=\)"),
             ({"speed": [1.0, 2.0], "times": [0.0, 1.0]}, r"a speed that changes \(times=\)"),

@@ -129,7 +129,7 @@ def test_through_the_stop_of_a_wheel() -> None:
 def test_through_saturation() -> None:
     """While the motor is at its limit, ω̇ is limit/(I − J): from where it saturates, by energy."""
     speed, limit = 0.4, 0.3
-    load = loads.wheel(ALONG, J, torque=loads.feedback(1.0, 0.0), limit=limit)
+    load = loads.wheel(ALONG, J, torque=loads.feedback(1.0, 0.0), max_torque=limit)
     run = PLAIN.simulate([0.0, 3.0], (0, 0, speed), load=load)
     found = run.sensitivity("differences")
     phi, omega = 2 * np.arctan2(run.quaternion[-1, 2], run.quaternion[-1, 3]), run.omega[-1, 2]
@@ -140,7 +140,7 @@ def test_through_saturation() -> None:
     left = LESS * (omega * by_speed[5] - speed) + limit * by_speed[2]
     assert abs(left) < 1e-8
     # By the limit the potential changes too: V = V(edge) + limit (φ − edge).
-    by_limit = found.load[0]["limit"][-1]
+    by_limit = found.load[0]["max_torque"][-1]
     left = LESS * omega * by_limit[5] + limit * by_limit[2] + (phi - edge)
     assert abs(left) < 1e-8
 

@@ -284,7 +284,7 @@ def test_stacks() -> None:
 def test_without_series_there_are_none() -> None:
     for load in (
         loads.wheel((0, 0, 1), 0.1, 1.0, dry_friction=0.1),
-        loads.wheel((0, 0, 1), 0.1, torque=loads.feedback(1.0, 1.0), limit=0.1),
+        loads.wheel((0, 0, 1), 0.1, torque=loads.feedback(1.0, 1.0), max_torque=0.1),
     ):
         with pytest.raises(PolhodeError, match="a motor with a limit and dry friction"):
             BODY.simulate([0, 1], OMEGA, load=load).sensitivity()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
@@ -81,6 +82,8 @@ def parts_of(load: _core.Load) -> list[Part]:
             if made_by == "_picked":
                 picks.insert(0, arguments[1:3])
             made_by, arguments = arguments[0]
-        states = tuple(next(names) for _ in one.states)
+        # The states of what a motor follows stand behind those of all parts.
+        own = 1 if made_by == "wheel" else len(one.states)
+        states = tuple(itertools.islice(names, own))
         parts.append(Part(made_by, one, states, arguments, tuple(picks)))
     return parts

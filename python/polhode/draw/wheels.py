@@ -185,8 +185,10 @@ def _driven(trajectory: Trajectory, wheel: Part) -> Spin:
     """Return a wheel of a load; its momentum in the body is J Ω a. Between the times Ω follows cubics."""
     axis, inertia = wheel.number(0, axes=1), float(wheel.number(1))
     axis = axis / np.linalg.norm(axis)
-    (state,), (own,), t = wheel.states, wheel.load.states, trajectory.t
-    momentum, _ = wheel.load.carried(t, trajectory.omega, {own: trajectory.states[state]})
+    (state,), t = wheel.states, trajectory.t
+    own, *asked = wheel.load.states  # those of a controller say nothing of the momentum
+    states = {name: np.zeros((*t.shape, wheel.load.states[name])) for name in asked}
+    momentum, _ = wheel.load.carried(t, trajectory.omega, states | {own: trajectory.states[state]})
     rate = momentum @ axis / inertia
     turned = 0.5 * np.diff(t) * (rate[1:] + rate[:-1])
     if len(t) > 2:

@@ -54,6 +54,7 @@ class Event:
     direction: float = 0.0
     terminal: bool | int = False
     _of_wheel: tuple[str, str] | None = field(default=None, init=False, repr=False)
+    _has_passed: bool = field(default=False, init=False, repr=False)
 
     @classmethod
     def stop(cls, wheel: str = "wheel", *, terminal: bool | int = False) -> Event:
@@ -102,6 +103,41 @@ class Event:
         return cls._of_kind("limit", wheel, direction, terminal)
 
     @classmethod
+    def rate_limit(
+        cls, wheel: str = "wheel", *, direction: float = 0.0, terminal: bool | int = False
+    ) -> Event:
+        """Make the event that a wheel comes to its `max_rate`, or leaves it.
+
+        The integration itself needs these times, and finds them to the last digits.
+
+        Parameters
+        ----------
+        wheel : str
+            Name of the state of the wheel in ``states`` of the trajectory.
+        direction : float
+            Positive: only when the wheel comes to its limit; negative: only when it leaves it; zero: both.
+        terminal : bool or int
+            As for the class.
+
+        Examples
+        --------
+        >>> from polhode import Event, RigidBody, loads
+        >>> body = RigidBody.from_principal(1.0, (1.0, 2.0, 3.0))
+        >>> wheel = loads.wheel((0, 0, 1), inertia=0.5, torque=0.1, max_rate=2.0)
+        >>> motion = body.simulate([0, 20], (0, 0, 0), load=wheel, events=Event.rate_limit())
+        >>> motion.events.t.round(9), motion.states["wheel"][-1].round(9)
+        (array([8.33333333]), array([0.83333333]))
+        """
+        return cls._of_kind("rate limit", wheel, direction, terminal)
+
+    @classmethod
+    def momentum_limit(
+        cls, wheel: str = "wheel", *, direction: float = 0.0, terminal: bool | int = False
+    ) -> Event:
+        """Make the event that a wheel comes to its `max_momentum`, or leaves it; see :meth:`rate_limit`."""
+        return cls._of_kind("momentum limit", wheel, direction, terminal)
+
+    @classmethod
     def _of_kind(cls, kind: str, wheel: str, direction: float, terminal: bool | int) -> Event:
         event = cls(_never_called, direction, terminal)
         object.__setattr__(event, "_of_wheel", (kind, str(wheel)))
@@ -118,6 +154,24 @@ class Event:
     ) -> float:
         """Evaluate the function."""
         return self.function(t, omega, quaternion, position, velocity, *states)
+
+
+def passed(events: Any, last: Any) -> Any:
+    """Return the events of a run that begins where the event `last` ended another one."""
+    if last is None:
+        return events
+    last = last.function if getattr(last, "_has_passed", False) else last
+
+    def begun(event: Any) -> Any:
+        if event is not last:
+            return event
+        of_wheel = getattr(event, "_of_wheel", None)
+        again = Event(event, getattr(event, "direction", 0.0), getattr(event, "terminal", False))
+        object.__setattr__(again, "_of_wheel", of_wheel)
+        object.__setattr__(again, "_has_passed", True)
+        return again
+
+    return begun(events) if callable(events) else [begun(event) for event in events]
 
 
 def _never_called(*_: Any) -> float:

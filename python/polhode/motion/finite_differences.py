@@ -73,9 +73,13 @@ def numbers(recipe: Recipe) -> Iterator[tuple[str, Floats, RecipeMaker]]:
     named = dict(zip(inspect.signature(function).parameters, plain, strict=False)) | keywords
     for name, value in named.items():
         if isinstance(value, _core.Load):
-            (inner,) = recipes(value)
-            for deeper, values, changed in numbers(inner):
-                yield deeper, values, _with_load(made_by, named, name, changed)
+            if value.states:  # one controller of several wheels, which would not be the same any more
+                continue
+            inner = recipes(value)
+            for place, part in enumerate(inner):
+                for deeper, values, changed in numbers(part):
+                    rest = (inner[:place], inner[place + 1 :])
+                    yield deeper, values, _with_load(made_by, named, name, changed, rest)
         elif is_dataclass(value):
             for deeper, values, placed in _fields_of(value):
                 yield deeper, values, _with(made_by, named, name, placed)
@@ -125,8 +129,20 @@ def _with(made_by: str, named: dict[str, Any], name: str, placed: Callable[[Floa
     return lambda values: (made_by, (named | {name: placed(values)},))
 
 
-def _with_load(made_by: str, named: dict[str, Any], name: str, changed: RecipeMaker) -> RecipeMaker:
-    return lambda values: (made_by, (named | {name: _core.Load._from_parts([changed(values)])},))
+def _with_load(
+    made_by: str,
+    named: dict[str, Any],
+    name: str,
+    changed: RecipeMaker,
+    rest: tuple[list[Recipe], list[Recipe]],
+) -> RecipeMaker:
+    before, after = rest
+
+    def nest(values: Floats) -> Recipe:
+        load = _core.Load._from_parts([*before, changed(values), *after])
+        return made_by, (named | {name: load},)
+
+    return nest
 
 
 STEP: Final = 2e-3

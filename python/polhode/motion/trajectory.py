@@ -12,7 +12,7 @@ import numpy as np
 from polhode import _core
 from polhode._hints import ClassWithHints, no_attribute
 from polhode.motion.contact import ContactHistory, Extreme
-from polhode.motion.events import Events
+from polhode.motion.events import Events, passed
 from polhode.motion.gyrostat import Wheel, wheel
 from polhode.motion.invariants import drift, lengths
 from polhode.results import AngularMomentum, Invariants, KineticEnergy, State
@@ -152,6 +152,7 @@ class Trajectory(metaclass=ClassWithHints):
     states: dict[str, Floats] = field(default_factory=dict)
     carried: tuple[Floats, Floats] | None = field(default_factory=lambda: None)
     _origin: Origin = field(default=Origin(), init=False)
+    _ended_by: Any = field(default=None, init=False)
     _contact: _core.Contact | None = field(default=None, init=False)
     _contact_extremes: tuple[Floats, Floats] | None = field(default=None, init=False)
     _contact_states: tuple[Floats, Floats] | None = field(default=None, init=False)
@@ -771,7 +772,7 @@ class Trajectory(metaclass=ClassWithHints):
             self._origin.states,
         )
 
-    def resume(self, t: ArrayLike, **options: Any) -> Trajectory:
+    def resume(self, t: ArrayLike, *, from_event: bool = False, **options: Any) -> Trajectory:
         """Continue the simulation from the last state, under the same load or under another one.
 
         The clock of the motion goes on too: orbits without an epoch and controllers with a period count from
@@ -780,7 +781,11 @@ class Trajectory(metaclass=ClassWithHints):
         Parameters
         ----------
         t : array_like, shape (T,)
-            Times as in `simulate`; the first must be the last of this motion.
+            Times as in `simulate`; the first must be the last of this motion, or with `from_event` the time
+            of its last event.
+        from_event : bool
+            Go on from the terminal event that ended the motion of one body. If the same event is passed again
+            in `events`, this passage does not count again. The default is to go on from the last time.
         **options
             Further arguments of :meth:`polhode.RigidBody.simulate`, such as `method` and `rtol`. States of
             another `load` go on from those of the same name and number, so that wheels keep their momentum;
@@ -795,7 +800,11 @@ class Trajectory(metaclass=ClassWithHints):
         ------
         ValueError
             If another load, or `states`, makes the total angular momentum jump: the wheels of the motion are
-            missing in it, or it has others that turn.
+            missing in it, or it has others that turn. With `from_event`, if no event ended the motion.
+
+        See Also
+        --------
+        RigidBody.stepper : many short steps, with the same bits in less time.
 
         Examples
         --------
@@ -812,14 +821,25 @@ class Trajectory(metaclass=ClassWithHints):
         >>> fires = first.resume([1, 2], load=wheel + loads.constant_torque((0, 0, 0.3)))
         >>> fires.states["wheel"][-1].round(9), fires.angular_momentum().spin[-1].round(9)
         (array([0.2]), array([0. , 0. , 0.3]))
+
+        An event ends a motion, which goes on from there:
+
+        >>> import numpy as np
+        >>> from polhode import Event
+        >>> half = Event(lambda t, omega, quaternion, *_: quaternion[3], terminal=True)
+        >>> first = body.simulate([0, 10], omega=(0, 0, 1), events=half)
+        >>> second = first.resume([first.events.t[-1], 10], from_event=True, events=half)
+        >>> (first.events.t / np.pi).round(9), (second.events.t / np.pi).round(9)
+        (array([1.]), array([3.]))
         """
         start = _core.real_numbers(t, "t").reshape(-1)[:1]
-        state, last = self.state(), self.t.reshape(-1)[-1:]
+        state, last = self._event_state() if from_event else (self.state(), self.t.reshape(-1)[-1:])
         if not np.array_equal(start, last):
             raise ValueError(f"t: the motion goes on from t = {float(last[0])!r}, got {start.tolist()}")
         if np.isnan(state.omega).any():
+            instead = "; to go on from the event: from_event=True" if np.any(self.status == "event") else ""
             raise ValueError(
-                "resume: the last state is not known, since the run did not come to the last time"
+                "resume: the last state is not known, since the run did not come to the last time" + instead
             )
         about = self._about_word()
         for name in _OF_THE_MOTION:
@@ -846,7 +866,9 @@ class Trajectory(metaclass=ClassWithHints):
         own = options.pop("states", None)
         given |= {"load": load, "states": (states | dict(own) if own is not None else states) or None}
         if is_another:
-            self._check_momentum(start, given)
+            self._check_momentum(start, state, given)
+        if from_event and options.get("events") is not None:
+            given["events"] = passed(options.pop("events"), self._ended_by)
         run = self.body.simulate(t, **given | options)
         run.__dict__["_origin"] = replace(run._origin, start=first)
         if self.uncertain_start != (None, None) or self.body._doubts() is not None:
@@ -1132,23 +1154,39 @@ class Trajectory(metaclass=ClassWithHints):
             return None if self._is_loaded() else True
         return self.load.keeps_momentum(self._about_word())
 
-    def _check_momentum(self, start: Floats, given: dict[str, Any]) -> None:
+    def _event_state(self) -> tuple[State, Floats]:
+        """Return the state at the terminal event that ended the motion of one body, and its time."""
+        if np.ndim(self.status):
+            raise ValueError(
+                "from_event: the bodies of a stack end at different times; go on with one of them: simulate "
+                "it alone"
+            )
+        if self.status != "event":
+            raise ValueError(
+                f"from_event: no terminal event ended this motion, its status is {self.status!r}; go on from "
+                "its last time without from_event"
+            )
+        found = self.events
+        states = {name: values[-1] for name, values in found.states.items()}
+        state = State(
+            found.omega[-1], found.quaternion[-1], found.position[-1], found.velocity[-1], states or None
+        )
+        return state, found.t[-1:]
+
+    def _check_momentum(self, start: Floats, state: State, given: dict[str, Any]) -> None:
         """Refuse a start under another load at which the total angular momentum would jump."""
         first = self.body.simulate(start, **given)
         nothing = np.zeros_like(first.omega[..., 0, :])
         was = nothing if self.carried is None else self.carried[0][..., -1, :]
+        if self.load is not None and self.carried is not None and np.isnan(was).any():  # at an event
+            was = self.load.carried(start[0], state.omega, state.states)[0]
         now = nothing if first.carried is None else first.carried[0][..., 0, :]
         body = lengths(first.angular_momentum("body").spin[..., 0, :] - now)
         off = now - was
         jumps = lengths(off) > _EQUAL_MOMENTA * (lengths(now) + lengths(was) + body)
         if np.any(jumps):
             into, of = (np.broadcast_to(one, off.shape)[jumps][0].tolist() for one in (now, was))
-            raise ValueError(
-                f"load: the total angular momentum would jump at t = {float(start[0])!r}: what the body "
-                f"carries along, wheels, rotors and slugs, has {of} now and {into} under this load. Wheels "
-                "of the same name keep their state: add to the load of the motion, load=motion.load + other, "
-                "name wheels as before, and give new ones no rate; or begin another motion with simulate"
-            )
+            raise momentum_jump(float(start[0]), of, into)
 
     def _rotor_inside(self) -> tuple[Floats, Floats]:
         """Return the momentum h inside a gyrostat, and Σ J a aᵀ of its free wheels."""
@@ -1176,13 +1214,17 @@ class Trajectory(metaclass=ClassWithHints):
                 "of its RollingMotion give the force"
             )
         if self.load is None and self._is_loaded() and self.carried is None:
-            raise ValueError(f"{what}: a load acted on this motion, which its file does not hold")
+            raise ValueError(
+                f"{what}: a load acted on this motion, which its file does not hold; of a stepper it is not "
+                "known either once it has changed"
+            )
         if self.load is not None or self.carried is None:
             return self.load
         if self._origin.motion is None:
             raise ValueError(
                 f"{what}: the load of this motion is unknown: its file holds only the angular momentum of "
-                "wheels and dampers; simulate the motion anew with its load"
+                "wheels and dampers, as does a stepper whose load has changed; simulate the motion anew with "
+                "its load"
             )
         momentum, free = self._rotor_inside()
         return self._wheels_inside(what, index) if np.any(free) else _core.rotor(momentum)
@@ -1246,6 +1288,16 @@ def _continuous(quaternion: Floats) -> Floats:
     near = np.sum(quaternion[..., 1:, :] * quaternion[..., :-1, :], axis=-1)
     signs = np.cumprod(np.where(near < 0.0, -1.0, 1.0), axis=-1)[..., np.newaxis]
     return np.concatenate([quaternion[..., :1, :], quaternion[..., 1:, :] * signs], axis=-2)
+
+
+def momentum_jump(t: float, of: list[float], into: list[float]) -> ValueError:
+    """Return the error of a motion that goes on with another momentum of what the body carries along."""
+    return ValueError(
+        f"load: the total angular momentum would jump at t = {t!r}: what the body "
+        f"carries along, wheels, rotors and slugs, has {of} now and {into} under this load. Wheels "
+        "of the same name keep their state: add to the load of the motion, load=motion.load + other, "
+        "name wheels as before, and give new ones no rate; or begin another motion with simulate"
+    )
 
 
 def _unwrap(angles: Floats) -> Floats:

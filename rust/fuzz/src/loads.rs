@@ -75,9 +75,14 @@ pub fn term(draw: &mut Draw<'_>) -> Result<Made> {
             let (axis, inertia) = (draw.vector()?, draw.positive()?);
             let (rate, friction, drive) = (draw.number()?, draw.positive()?, drive(draw)?);
             let dry = if draw.coin()? { draw.positive()? } else { 0.0 };
+            let most = if draw.coin()? { Some(rate.abs() + draw.positive()?) } else { None };
             drive
                 .and_then(|drive| Wheel::new(&axis, inertia, rate, friction, drive))
                 .and_then(|wheel| wheel.with_dry_friction(dry))
+                .and_then(|wheel| match most {
+                    Some(most) => wheel.with_max_rate(most)?.with_max_torque(most),
+                    None => Ok(wheel),
+                })
                 .map(Term::Wheel)
         }
         _ => {
@@ -117,10 +122,7 @@ fn drive(draw: &mut Draw<'_>) -> Result<core::result::Result<Drive, Error>> {
     Ok(match draw.up_to(3)? {
         0 => PiecewiseSignal::constant("torque", draw.number()?).map(Drive::Torque),
         1 => feedback(draw)?.map(Drive::Feedback),
-        2 => {
-            let limit = draw.number()?;
-            feedback(draw)?.map(|law| Drive::Limited(law, limit))
-        }
+        2 => Ok(Drive::Controller),
         _ => {
             let (times, values) = samples(draw)?;
             let values: Vec<f64> = values.iter().map(|v| v.x).collect();

@@ -144,6 +144,9 @@ fn of_motion(fault: &MotionFault) -> &'static str {
             ": body.simulate(times, omega, load=polhode.loads.rotor(momentum)), or polhode.loads.wheel for wheels that are free"
         }
         MotionFault::TooManySteps { .. } | MotionFault::UnresolvedFunction { .. } => " with resume",
+        MotionFault::NoController => {
+            "; give torque= the controller alone, such as loads.feedback(...), and add the other loads to the wheel"
+        }
         MotionFault::NoSeries => ": sensitivity(method=\"differences\")",
         _ => "",
     }

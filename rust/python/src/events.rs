@@ -3,10 +3,11 @@
 use numpy::PyArray1;
 use polhode::motion::attitude::components;
 use polhode::motion::loads::{CarriedMomentum, Term};
-use polhode::motion::simulate::{Direction, EventTrigger, Events, Rule};
+use polhode::motion::simulate::{Crossing, Direction, EventTrigger, Events, Rule};
 use polhode::motion::state::Phase;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::{PyTraverseError, PyVisit};
 
 use crate::loads::{Fault, Named, PyLoad, Slot};
 use crate::stack::Stack;
@@ -14,8 +15,10 @@ use crate::stack::Stack;
 /// The functions of an argument `events`.
 #[derive(Default)]
 pub(crate) struct Functions {
-    functions: Vec<Py<PyAny>>,
+    callables: Vec<Py<PyAny>>,
     rules: Vec<Rule>,
+    /// After how many passages of each a run ends; 0 for never.
+    terminal: Vec<u64>,
 }
 
 impl Functions {
@@ -25,6 +28,8 @@ impl Functions {
         load: &PyLoad,
         terms: &Stack<Vec<Term>>,
     ) -> PyResult<Self> {
+        let terms: Vec<_> = terms.rows.iter().map(Vec::as_slice).collect();
+        let terms = &terms[..];
         let mut all = Self::default();
         let Some(events) = events.filter(|events| !events.is_none()) else {
             return Ok(all);
@@ -49,9 +54,9 @@ impl Functions {
         &mut self,
         function: &Bound<'_, PyAny>,
         load: &PyLoad,
-        terms: &Stack<Vec<Term>>,
+        terms: &[&[Term]],
     ) -> PyResult<()> {
-        let number = self.functions.len();
+        let number = self.callables.len();
         if !function.is_callable() {
             return Err(PyTypeError::new_err(format!(
                 "events: event {number} is no function but {}",
@@ -79,7 +84,14 @@ impl Functions {
                 "events: direction of event {number} must be positive, negative or zero, got nan"
             )));
         }
-        self.functions.push(function.clone().unbind());
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "checked above to be a count"
+        )]
+        let last = terminal as u64;
+        self.callables.push(function.clone().unbind());
+        self.terminal.push(last);
         self.rules.push(Rule {
             direction: if direction > 0.0 {
                 Direction::Rising
@@ -88,23 +100,59 @@ impl Functions {
             } else {
                 Direction::Any
             },
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "checked above to be a count"
-            )]
-            last: terminal as u64,
+            last,
             trigger: read_event(function, load, terms)?,
+            has_passed: (function.getattr_opt("_has_passed")?)
+                .is_some_and(|given| given.is_truthy().unwrap_or(false)),
         });
         Ok(())
     }
 
     pub(crate) fn len(&self) -> usize {
-        self.functions.len()
+        self.callables.len()
     }
 
     pub(crate) fn is_empty(&self) -> bool {
-        self.functions.is_empty()
+        self.callables.is_empty()
+    }
+
+    /// The function of number `event`; that of what happens to a contact has none.
+    pub(crate) fn function(&self, event: usize) -> Option<&Py<PyAny>> {
+        self.callables.get(event)
+    }
+
+    pub(crate) fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
+        (self.callables.iter()).try_for_each(|function| visit.call(function))
+    }
+
+    pub(crate) fn clone_ref(&self, py: Python<'_>) -> Self {
+        Self {
+            callables: self.callables.iter().map(|one| one.clone_ref(py)).collect(),
+            rules: self.rules.clone(),
+            terminal: self.terminal.clone(),
+        }
+    }
+
+    /// Look for the same events under another load.
+    pub(crate) fn aim(&mut self, py: Python<'_>, load: &PyLoad, terms: &[Term]) -> PyResult<()> {
+        for (function, rule) in self.callables.iter().zip(&mut self.rules) {
+            rule.trigger = read_event(function.bind(py), load, &[terms])?;
+        }
+        Ok(())
+    }
+
+    /// Look on in a run that goes on from the end of the last one, which has `found` these passages, the last of which has ended it if
+    /// `is_over`. Passages are counted on; those of a function that has ended a run begin anew.
+    pub(crate) fn go_on(&mut self, found: &[Crossing], is_over: bool) {
+        let last = found.last().filter(|_| is_over).map(|last| last.event);
+        for (event, rule) in self.rules.iter_mut().enumerate() {
+            let passed = found.iter().filter(|one| one.event == event).count() as u64;
+            rule.has_passed = last == Some(event);
+            rule.last = match rule.last.checked_sub(passed) {
+                Some(left) if left > 0 => left,
+                _ => self.terminal[event],
+            };
+        }
     }
 
     /// The functions with the GIL to call them.
@@ -125,7 +173,7 @@ impl Functions {
 fn read_event(
     event: &Bound<'_, PyAny>,
     load: &PyLoad,
-    terms: &Stack<Vec<Term>>,
+    terms: &[&[Term]],
 ) -> PyResult<EventTrigger> {
     let Some(of) = event
         .getattr_opt("_of_wheel")?
@@ -146,19 +194,30 @@ fn read_event(
             known.join(", ")
         };
         return Err(PyValueError::new_err(format!(
-            "events: Event.{kind} asks for the wheel {name:?}; the load carries {known}"
+            "events: Event.{} asks for the wheel {name:?}; the load carries {known}",
+            kind.replace(' ', "_")
         )));
     };
     let (trigger, has, lack): (_, fn(&dyn CarriedMomentum) -> bool, _) = match kind.as_str() {
         "stop" => (EventTrigger::Stop(slot.first), has_bearing, "dry friction"),
         "breakaway" => (EventTrigger::Slip(slot.first), has_bearing, "dry friction"),
+        "rate limit" => (
+            EventTrigger::RateLimit(slot.first),
+            |carried| carried.rate_limit().is_some(),
+            "a largest rate, max_rate= or max_momentum=",
+        ),
+        "momentum limit" => (
+            EventTrigger::RateLimit(slot.first),
+            |carried| carried.rate_limit().is_some(),
+            "a largest momentum, max_momentum= or max_rate=",
+        ),
         _ => (
             EventTrigger::Limit(slot.first),
             |carried| carried.has_limit(),
             "a motor with a limit",
         ),
     };
-    let is_able = |row: &Vec<Term>| {
+    let is_able = |row: &&[Term]| {
         let mut index = 0;
         let mut all = row.iter().filter_map(Term::carried);
         all.any(|carried| {
@@ -167,9 +226,10 @@ fn read_event(
             is_it && has(carried)
         })
     };
-    if !terms.rows.iter().any(is_able) {
+    if !terms.iter().any(is_able) {
         return Err(PyValueError::new_err(format!(
-            "events: Event.{kind} asks for a wheel with {lack}, which {name:?} is not"
+            "events: Event.{} asks for a wheel with {lack}, which {name:?} is not",
+            kind.replace(' ', "_")
         )));
     }
     Ok(trigger)
@@ -209,7 +269,7 @@ impl Events for EventCalls<'_, '_> {
             array(phase.velocity.as_slice()),
         );
         let value = || -> PyResult<f64> {
-            let function = self.functions.functions[event].bind(self.py);
+            let function = self.functions.callables[event].bind(self.py);
             let returned = if self.states.slots.is_empty() {
                 function.call1(arguments)?
             } else {

@@ -119,7 +119,7 @@ mod _core {
     use crate::laminae::{annulus, disk, ellipse, polygon, rectangle, triangle};
     #[pymodule_export]
     use crate::loads::{
-        PyLoad, PyWheel, callback, compiled, schedule, torque_callback, with_states,
+        PyLoad, PyWheel, callback, compiled, schedule, torque_callback, wheels, with_states,
     };
     #[pymodule_export]
     use crate::orbits::{
@@ -142,6 +142,8 @@ mod _core {
     use crate::regions::{PyRegion, ball, cuboid as box_region, cylinder as cylinder_region};
     #[pymodule_export]
     use crate::regions::{ellipsoid as ellipsoid_region, mesh};
+    #[pymodule_export]
+    use crate::rigid_body::PyStepper;
     #[pymodule_export]
     use crate::rods::{arc, ring, rod};
     #[pymodule_export]

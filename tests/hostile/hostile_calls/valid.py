@@ -46,6 +46,7 @@ NO_TEST = {
     *(f"Identified.{name}" for name in ("from_file", "save", "plot")),
     *("read_stl", "read_plates", "stream_solid", "compiled", "labelled_voxels"),
     "machine",  # takes nothing
+    "Stepper.step",  # goes on from where the call before has left it; tests/motion/test_stepper.py
     # Objects of other libraries, which have to be there.
     *("RigidBody.from_mesh_object", "RigidBody.from_atoms"),
 }
@@ -124,7 +125,8 @@ VALUES: dict[str, Any] = {
     "times": None, "friction": 0.25, "dry_friction": 0.125,
     "initial": [0.5, 0.0], "wrench": None, "update": None, "period": None,
     "scale": None, "wheels": None, "dipole": [0.5, 0.25, 0.0], "field": [0.0, 0.5, 0.25], "gain": 0.125,
-    "elapsed": 0.5, "limit": None, "strength": [0.0, 0.5, 0.25],
+    "elapsed": 0.5, "max_torque": 0.75, "max_momentum": 0.5, "max_rate": 2.5, "allocation": None,
+    "from_event": False, "strength": [0.0, 0.5, 0.25],
     "law": "normal", "seed": 7, "stream": 9, "first": 3, "count": 5, "width": 4,
     "value": [1.0, 2.0], "sigma": [0.125, 0.25], "covariance": None, "source": None,
     "contact": None, "normal": [0.25, 0.0, 1.0], "apex": 0.5, "turntable": 0.25, "lift": "hold",
@@ -160,6 +162,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "RigidBody.__getitem__": {"self": [STACK], "key": 1},
     "RigidBody.__len__": {"self": [STACK]},
     "RigidBody.simulate": {"rtol": 1e-8, "max_steps": 100_000},
+    "RigidBody.stepper": {"start": 0.5, "rtol": 1e-8, "max_steps": 100_000},
     "RigidBody.pivot_reaction": {"about": "origin"},
     "RigidBody.free_motion_from_periods": {
         "self": [TUMBLER],
@@ -190,6 +193,13 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "polygon": {"vertices": [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]},
     "sampled": {"t": [-1.0, 0.5, 2.0], "torque": [[0.5, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.5]]},
     "wheel": {"axis": [0.0, 0.5, 1.0], "inertia": 0.25, "torque": 0.5, "name": "mine"},
+    "wheels": {
+        "axes": [[1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [-1.0, 0.0, 1.0], [0.0, -1.0, 1.0]],
+        "inertias": 0.125,
+        "torque": loads.feedback(1.0, 0.5),
+        "allocation": "pseudo-inverse",
+        "name": "mine",
+    },
     "slug": {"inertia": 0.25, "damping": 0.5, "name": "mine"},
     "nutation_damping": {"body": TOP, "momentum": 2.0, "inertia": 0.25, "damping": 0.5},
     "with_states": {"rates": None, "name": "mine"},
@@ -345,6 +355,7 @@ def receivers() -> dict[str, tuple[Any, ...]]:
             solids.sphere(0.5, mass=2.0).rolling_motion(rolling.sphere(0.5), OMEGA, gravity=(1.0, 0.0, -8.0)),
         ),
         "RuledSurface": (rolling.cylinder(0.5, 2.0), rolling.cone(0.5, 2.0)),
+        "Stepper": (TUMBLER.stepper(OMEGA),),
         "Surface": (rolling.sphere(0.5), rolling.paraboloid((1.0, 0.5), 0.5)),
         "Trajectory": (motion, TUMBLER.free_motion(OMEGA).at([0.0, 0.5])),
         "Wheel": (polhode.wheel(axis=[0.0, 0.5, 1.0], inertia=[0.25, 0.125], rate=2.0),),

@@ -89,6 +89,11 @@ pub enum MotionFault {
         /// What was asked for.
         what: &'static str,
     },
+    /// What a motor is to follow does more than a torque.
+    #[error(
+        "a motor exerts a torque alone, and carries nothing along: what this one is to follow has a force, a wheel or a slug"
+    )]
+    NoController,
     /// The centre of mass is not on the symmetry axis through the pivot.
     #[error(
         "the pivot, the origin of the body frame, must lie on the symmetry axis: the axis passes it at {distance:?}, \
@@ -444,6 +449,7 @@ impl MotionFault {
             | Self::PivotedInOrbit
             | Self::OutsideTimes { .. }
             | Self::StatesStay { .. }
+            | Self::NoController
             | Self::OrbitBeyondReach { .. }
             | Self::RollingBeyondReach { .. }
             | Self::BeyondReach { .. } => Kind::Argument,

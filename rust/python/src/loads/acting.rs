@@ -8,6 +8,7 @@ use polhode::motion::loads::{
     Analytic, Bearing, BodyAtPoint, CarriedMomentum, LawSwitch, Load, Term, Windows, Wrench,
 };
 use polhode::motion::state::Phase;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -52,6 +53,33 @@ impl Fault {
     }
 }
 
+/// The functions of a load that motors follow.
+struct ActingController<'a> {
+    load: &'a PyLoad,
+    /// Those that are switched on.
+    callbacks: Vec<&'a Callback>,
+    compiled: Vec<&'a Compiled>,
+}
+
+impl<'a> ActingController<'a> {
+    fn new(load: &'a PyLoad) -> Self {
+        Self {
+            load,
+            callbacks: load.callbacks().collect(),
+            compiled: load.compiled_functions().collect(),
+        }
+    }
+
+    /// From now on what is on at the time `middle` acts.
+    fn enter(&mut self, middle: f64) {
+        let is_on =
+            |windows: &Option<Windows>| windows.as_ref().is_none_or(|open| open.contains(middle));
+        self.callbacks = (self.load.callbacks().filter(|one| is_on(&one.windows))).collect();
+        let compiled = self.load.compiled_functions();
+        self.compiled = compiled.filter(|one| is_on(&one.windows)).collect();
+    }
+}
+
 /// A load at work on a body.
 pub(crate) struct ActingLoad<'a, 'py> {
     analytic: Analytic<'a>,
@@ -62,6 +90,10 @@ pub(crate) struct ActingLoad<'a, 'py> {
     callbacks: Vec<&'a Callback>,
     compiled: Vec<&'a Compiled>,
     with_states: Vec<&'a WithStates>,
+    /// What motors follow, if it is functions.
+    controllers: Vec<ActingController<'a>>,
+    /// For each of the analytic terms the number of the controller that its motor follows.
+    follows: Vec<Option<usize>>,
     /// The states by name, where Python is called with them.
     slots: Vec<Slot>,
     /// Where the run begins, as far as it has been told.
@@ -76,19 +108,91 @@ impl<'a, 'py> ActingLoad<'a, 'py> {
         subject: BodyAtPoint,
         py: Option<Python<'py>>,
     ) -> Self {
+        let (controllers, follows) = load.controllers();
+        let has_states = |load: &PyLoad| load.with_states().next().is_some();
+        let names_states = has_states(load) || controllers.iter().any(|one| has_states(one));
         Self {
+            controllers: controllers.into_iter().map(ActingController::new).collect(),
+            follows,
             analytic: Analytic::new(terms, subject),
             load,
             py,
             callbacks: load.callbacks().collect(),
             compiled: load.compiled_functions().collect(),
             with_states: load.with_states().collect(),
-            slots: if load.with_states().next().is_some() {
+            slots: if names_states {
                 load.slots()
             } else {
                 Vec::new()
             },
             start: subject.start,
+        }
+    }
+
+    /// What the controllers ask of the motors, as torques on the body; the rates of their states into `rates`, where there is room.
+    fn commands(
+        &self,
+        t: f64,
+        phase: &Phase,
+        mut first: usize,
+        rates: &mut [f64],
+    ) -> Result<Vec<Vector3<f64>>, Fault> {
+        let asked = !rates.is_empty();
+        let mut all = Vec::with_capacity(self.controllers.len());
+        for one in &self.controllers {
+            let mut sum = Wrench::default();
+            if let Some(py) = self.py
+                && one.load.calls_python()
+            {
+                let states = Named::of(&self.slots, self.analytic.terms(), phase);
+                for law in one.load.with_states() {
+                    let own = first..first + law.initial.len();
+                    first = own.end;
+                    if asked {
+                        law.rates(py, t, phase, &states, &mut rates[own])
+                            .map_err(Fault::Python)?;
+                    }
+                    sum += law.call(py, t, phase, &states).map_err(Fault::Python)?;
+                }
+                for callback in &one.callbacks {
+                    sum += callback.call(py, t, phase).map_err(Fault::Python)?;
+                }
+            }
+            for compiled in &one.compiled {
+                let own = first..first + compiled.initial.len();
+                first = own.end;
+                let into = if asked {
+                    &mut rates[own.clone()]
+                } else {
+                    &mut []
+                };
+                sum += compiled.call(t, phase, &phase.internal_state[own], into);
+            }
+            if sum.force != Vector3::zeros() {
+                let [x, y, z] = sum.force.into();
+                return Err(Fault::Python(PyValueError::new_err(format!(
+                    "torque: a motor exerts a torque alone; its controller asks for the force [{x:?}, {y:?}, {z:?}] at t = {t:?}. Return \
+                     a force of zero there, and add a load with the force to the wheel"
+                ))));
+            }
+            all.push(sum.torque);
+        }
+        Ok(all)
+    }
+
+    /// The number of the first state of the controllers.
+    fn first_of_controllers(&self) -> usize {
+        let called = self.with_states.iter().map(|one| one.initial.len());
+        let compiled = self.load.compiled_functions().map(|one| one.initial.len());
+        self.first_of_functions() + called.chain(compiled).sum::<usize>()
+    }
+
+    /// Tells the motors what the controllers ask for.
+    fn command(&mut self, torques: &[Vector3<f64>]) {
+        for (term, follows) in self.follows.iter().enumerate() {
+            if let Some(number) = follows {
+                self.analytic.command(term, torques[*number]);
+            }
         }
     }
 
@@ -131,6 +235,16 @@ impl Load for ActingLoad<'_, '_> {
         let mut breaks: Vec<f64> = windows.flatten().flat_map(Windows::switches).collect();
         breaks.extend(self.analytic.breaks(from, to));
         breaks.extend(self.with_states.iter().flat_map(|one| one.times(from, to)));
+        for one in &self.controllers {
+            let called = one.load.callbacks().map(|callback| &callback.windows);
+            let compiled = one
+                .load
+                .compiled_functions()
+                .map(|compiled| &compiled.windows);
+            let windows = called.chain(compiled).flatten();
+            breaks.extend(windows.flat_map(Windows::switches));
+            breaks.extend(one.load.with_states().flat_map(|law| law.times(from, to)));
+        }
         breaks
     }
 
@@ -146,6 +260,9 @@ impl Load for ActingLoad<'_, '_> {
                 .compiled_functions()
                 .filter(|one| is_on(&one.windows)),
         );
+        for one in &mut self.controllers {
+            one.enter(middle);
+        }
         Ok(self.analytic.enter(from, to)?)
     }
 
@@ -166,7 +283,20 @@ impl Load for ActingLoad<'_, '_> {
     }
 
     fn over_limit(&self, state: usize, t: f64, phase: &Phase) -> f64 {
-        self.analytic.over_limit(state, t, phase)
+        if self.controllers.is_empty() {
+            return self.analytic.over_limit(state, t, phase);
+        }
+        // What fails here fails in the equations too, which say so.
+        let Ok(torques) = self.commands(t, phase, self.first_of_controllers(), &mut []) else {
+            return f64::NAN;
+        };
+        let mut analytic = self.analytic.clone();
+        for (term, follows) in self.follows.iter().enumerate() {
+            if let Some(number) = follows {
+                analytic.command(term, torques[*number]);
+            }
+        }
+        analytic.over_limit(state, t, phase)
     }
 
     #[inline]
@@ -177,6 +307,10 @@ impl Load for ActingLoad<'_, '_> {
     /// Without room for the rates none are asked for.
     #[inline]
     fn act(&mut self, t: f64, phase: &Phase, rates: &mut [f64]) -> Result<Wrench, Fault> {
+        if !self.controllers.is_empty() {
+            let torques = self.commands(t, phase, self.first_of_controllers(), rates)?;
+            self.command(&torques);
+        }
         let mut sum = self.analytic.act(t, phase, rates)?;
         let mut first = self.first_of_functions();
         let asked = !rates.is_empty();
@@ -217,24 +351,36 @@ impl Load for ActingLoad<'_, '_> {
     }
 
     fn sizes(&self) -> Vec<[f64; 2]> {
-        let scales = (self.with_states.iter().map(|one| &one.scale))
-            .chain(self.load.compiled_functions().map(|one| &one.scale));
         let mut sizes = self.analytic.sizes();
-        sizes.extend(scales.flatten().map(|&scale| [0.0, scale]));
+        let scales = self.load.scales_of_functions().into_iter();
+        sizes.extend(scales.map(|scale| [0.0, scale]));
         sizes
     }
 
     fn jump(&mut self, t: f64, phase: &mut Phase) -> Result<(), Fault> {
-        let Some(py) = self.py.filter(|_| !self.with_states.is_empty()) else {
+        let Some(py) = self.py.filter(|_| !self.slots.is_empty()) else {
             return Ok(());
         };
         let now = (t, self.start);
         let states = Named::of(&self.slots, self.analytic.terms(), phase);
-        let mut first = self.first_of_functions();
         let mut after = phase.internal_state.clone();
-        for one in &self.with_states {
-            let own = first..first + one.initial.len();
-            first = own.end;
+        let own = (self.first_of_functions(), self.load);
+        let mut of_controllers = self.first_of_controllers();
+        let controllers = self.controllers.iter().map(|one| {
+            let first = of_controllers;
+            of_controllers += one.load.scales_of_functions().len();
+            (first, one.load)
+        });
+        let laws = std::iter::once(own)
+            .chain(controllers)
+            .flat_map(|(mut first, load)| {
+                load.with_states().map(move |law| {
+                    let own = first..first + law.initial.len();
+                    first = own.end;
+                    (own, law)
+                })
+            });
+        for (own, one) in laws {
             let updated = one.update(py, now, phase, &states);
             if let Some(new) = updated.map_err(Fault::Python)? {
                 after[own].copy_from_slice(&new);
@@ -311,7 +457,7 @@ impl PyLoad {
 }
 
 /// What the terms carry along at a time: momentum beside I ω and energy beside ½ ω·I ω, from the states as they are reported.
-fn carried_along(
+pub(crate) fn carried_along(
     terms: &[Term],
     t: f64,
     omega: &Vector3<f64>,

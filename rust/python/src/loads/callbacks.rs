@@ -469,7 +469,7 @@ pub(super) fn check_name(name: &str) -> PyResult<()> {
 // States by name, as functions of Python get them.
 
 /// The states of one part of a load among those of all.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Slot {
     pub(crate) name: String,
     pub(crate) first: usize,

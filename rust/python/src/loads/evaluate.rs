@@ -12,7 +12,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use super::acting::{ActingLoad, Fault};
-use super::load::PyLoad;
+use super::load::{LoadPart, PyLoad};
 use crate::about::is_pivot;
 use crate::arrays::{Numbers, read, read_scalar, write_of};
 use crate::attitudes::read_quaternion;
@@ -310,7 +310,8 @@ impl PyLoad {
         #[pyo3(from_py_with = read_scalar)] about: &str,
     ) -> PyResult<Option<Bound<'py, PyAny>>> {
         let pivoted = is_pivot(about)?;
-        if !self.is_analytic() {
+        // A controller moves momentum between a wheel and the body, and no more.
+        if !(self.parts.iter()).all(|part| matches!(part.acts, LoadPart::Term(_))) {
             return Ok(None);
         }
         let kept = (self.terms(py)?).map(py, |terms| {

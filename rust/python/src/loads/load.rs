@@ -1,5 +1,6 @@
 //! The class `Load`: a sum of terms, and what Python's operators do with it.
 
+use std::cell::RefCell;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
@@ -45,6 +46,7 @@ impl PyLoad {
                 acts,
                 recipe,
                 name: None,
+                controller: None,
             }],
         }
     }
@@ -87,6 +89,11 @@ impl PyLoad {
         self.parts.iter().try_fold(Vec::new(), |shape, part| {
             Ok(Broadcast::of(["load", "load"], [&shape, part.shape()])?.shape)
         })
+    }
+
+    /// The objects of Python that it holds.
+    pub(crate) fn visit_parts(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
+        self.parts.iter().try_for_each(|part| part.traverse(visit))
     }
 
     /// The analytic terms of each row.
@@ -134,21 +141,61 @@ impl PyLoad {
         })
     }
 
+    /// The loads that motors of its wheels follow, if they have functions: each once, and the number of it for each of the terms.
+    ///
+    /// Wheels that were given the same load follow the same controller, which is asked once for all of them.
+    pub(super) fn controllers(&self) -> (Vec<&Self>, Vec<Option<usize>>) {
+        let mut found: Vec<&Py<Self>> = Vec::new();
+        let terms = (self.parts.iter()).filter(|part| matches!(part.acts, LoadPart::Term(_)));
+        let numbers = terms.map(|part| {
+            let controller = part.controller.as_ref()?;
+            let known = found.iter().position(|one| one.is(controller));
+            Some(known.unwrap_or_else(|| {
+                found.push(controller);
+                found.len() - 1
+            }))
+        });
+        let numbers = numbers.collect();
+        (found.into_iter().map(Py::get).collect(), numbers)
+    }
+
     /// Whether it has analytic terms alone.
     pub(crate) fn is_analytic(&self) -> bool {
-        (self.parts.iter()).all(|part| matches!(part.acts, LoadPart::Term(_)))
+        (self.parts.iter())
+            .all(|part| matches!(part.acts, LoadPart::Term(_)) && part.controller.is_none())
     }
 
     /// Whether it calls Python.
     pub(crate) fn calls_python(&self) -> bool {
-        self.callbacks().next().is_some() || self.with_states().next().is_some()
+        self.callbacks().next().is_some()
+            || self.with_states().next().is_some()
+            || self.controllers().0.into_iter().any(Self::calls_python)
     }
 
     /// The load with `t` as the epoch of those orbits that have none. It serves to continue a motion that
     /// started at `t`.
-    pub(super) fn copy_with_epoch(&self, py: Python<'_>, t: f64) -> PyResult<Self> {
+    pub(crate) fn copy_with_epoch(&self, py: Python<'_>, t: f64) -> PyResult<Self> {
+        // The same controller for the wheels that had the same one.
+        let begun: RefCell<Vec<(Py<Self>, Py<Self>)>> = RefCell::default();
+        let begin = |controller: &Py<Self>| -> PyResult<Py<Self>> {
+            let known = begun.borrow();
+            if let Some((_, new)) = known.iter().find(|(old, _)| old.is(controller)) {
+                return Ok(new.clone_ref(py));
+            }
+            drop(known);
+            let new = Py::new(py, controller.get().copy_with_epoch(py, t)?)?;
+            begun
+                .borrow_mut()
+                .push((controller.clone_ref(py), new.clone_ref(py)));
+            Ok(new)
+        };
         self.map(|part| {
             let mut part = part.clone_ref(py)?;
+            let starts = |one: &Py<Self>| one.get().with_states().any(WithStates::needs_epoch);
+            if let Some(controller) = part.controller.take_if(|one| starts(one)) {
+                part.recipe = recipe(py, "_with_epoch", (&part.recipe, t))?;
+                part.controller = Some(begin(&controller)?);
+            }
             if let LoadPart::Term(terms) = &part.acts
                 && terms.rows.iter().any(Term::needs_epoch)
             {
@@ -221,6 +268,8 @@ pub(super) struct Part {
     pub(super) recipe: Py<PyTuple>,
     /// The name of its states.
     pub(super) name: Option<Arc<str>>,
+    /// Of a wheel whose motor follows functions: the load that has them. Its analytic terms stand in the wheel.
+    pub(super) controller: Option<Py<PyLoad>>,
 }
 
 pub(super) enum LoadPart {
@@ -234,6 +283,7 @@ impl Part {
     /// The objects of Python that it holds.
     pub(super) fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
         visit.call(&self.recipe)?;
+        visit.call(&self.controller)?;
         match &self.acts {
             LoadPart::Term(_) => Ok(()),
             LoadPart::Callback(callback) => visit.call(callback.function()),
@@ -252,6 +302,7 @@ impl Part {
             },
             recipe: self.recipe.clone_ref(py),
             name: self.name.clone(),
+            controller: self.controller.as_ref().map(|one| one.clone_ref(py)),
         })
     }
 
@@ -369,7 +420,7 @@ impl PyLoad {
     ///
     /// Nothing is cleared here: a load never changes, so that every cycle passes through something else that does.
     fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
-        self.parts.iter().try_for_each(|part| part.traverse(&visit))
+        self.visit_parts(&visit)
     }
 
     fn __getitem__(&self, py: Python<'_>, key: &Bound<'_, PyAny>) -> PyResult<Self> {
@@ -537,6 +588,13 @@ impl PyLoad {
                 first += count;
             }
         }
+        for controller in self.controllers().0 {
+            for slot in controller.slots() {
+                let (name, count) = (unused_name(&slot.name, &slots), slot.count);
+                slots.push(Slot { name, first, count });
+                first += count;
+            }
+        }
         slots
     }
 
@@ -592,6 +650,21 @@ impl PyLoad {
                 )));
             }
         }
+        let mut first = 0;
+        for carried in terms.iter().filter_map(Term::carried) {
+            if let (Some((axis, inertia, most)), Some(momentum)) =
+                (carried.rate_limit(), phase.internal_state.get(first))
+            {
+                let rate = momentum / inertia - axis.dot(omega);
+                if rate.abs() > most * (1.0 + SAME) {
+                    return Err(PyValueError::new_err(format!(
+                        "states: a wheel has the rate {rate:?} at t = {t:?}, beyond its limit {most:?} (max_rate, or max_momentum divided \
+                         by its inertia); give it a larger limit, or another state"
+                    )));
+                }
+            }
+            first += carried.count();
+        }
         Ok(())
     }
 
@@ -603,12 +676,29 @@ impl PyLoad {
                 "load: {count} states of its own, more than the {MOST_STATES} of a load that calls functions"
             )));
         }
-        self.with_states().try_for_each(|one| one.check(from, to))
+        self.with_states().try_for_each(|one| one.check(from, to))?;
+        let mut controllers = self.controllers().0.into_iter();
+        controllers.try_for_each(|one| one.check_run(from, to))
     }
 
-    fn initial_of_functions(&self) -> impl Iterator<Item = &[f64]> {
+    /// The initial states of functions, those of controllers last.
+    fn initial_of_functions(&self) -> Vec<&[f64]> {
         let called = self.with_states().map(|one| &one.initial[..]);
-        called.chain(self.compiled_functions().map(|one| &one.initial[..]))
+        let compiled = self.compiled_functions().map(|one| &one.initial[..]);
+        let asked = self.controllers().0.into_iter();
+        (called.chain(compiled))
+            .chain(asked.flat_map(Self::initial_of_functions))
+            .collect()
+    }
+
+    /// What counts as large of each of these states.
+    pub(super) fn scales_of_functions(&self) -> Vec<f64> {
+        let called = self.with_states().flat_map(|one| one.scale.iter().copied());
+        let compiled = (self.compiled_functions()).flat_map(|one| one.scale.iter().copied());
+        let asked = self.controllers().0.into_iter();
+        (called.chain(compiled))
+            .chain(asked.flat_map(Self::scales_of_functions))
+            .collect()
     }
 
     /// The states given under their names, each of shape (..., k); what is not given is not a number.

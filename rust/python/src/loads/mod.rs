@@ -22,9 +22,9 @@ mod pickle_recipe;
 mod registry;
 mod wheel;
 
-pub(crate) use acting::{ActingLoad, Fault};
+pub(crate) use acting::{ActingLoad, Fault, carried_along};
 pub(crate) use callbacks::{Named, Slot, report_states};
 pub(crate) use laws::{callback, compiled, schedule, torque_callback, with_states};
 pub(crate) use load::PyLoad;
 pub(crate) use registry::declare_laws;
-pub(crate) use wheel::{PyWheel, Turns};
+pub(crate) use wheel::{PyWheel, Turns, wheels};

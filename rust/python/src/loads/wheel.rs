@@ -4,17 +4,20 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 use nalgebra::Vector3;
 use numpy::PyUntypedArrayMethods;
-use polhode::motion::loads::{Drive, PiecewiseSignal, Rotor, Term, Wheel};
+use polhode::motion::loads::{
+    Drive, PiecewiseSignal, Rotor, Term, Wheel, allocation, allocation_error,
+};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString, PyTuple};
+use pyo3::types::{PyDict, PyFloat, PyString, PyTuple};
 
 use super::callbacks::check_name;
 use super::load::{LoadPart, PyLoad};
 use super::pickle_recipe::{recipe, unfold};
 use super::registry::register;
 use crate::arrays::{
-    floats, list_floats, numpy, read, read_scalar, try_rows, write, write_numbers, write_of,
+    floats, list_floats, numpy, read, read_list, read_scalar, try_rows, write, write_numbers,
+    write_of,
 };
 use crate::errors::to_py;
 use crate::indexing::{picked_by, to_index};
@@ -66,7 +69,7 @@ impl Turns {
 ///     rate Ω relative to the body is constant. ``"driven"``: a motor, friction or a speed that changes acts.
 /// motor : float, numpy.ndarray, Load or None
 ///     Torque τ of the motor, the argument `torque` of :func:`polhode.loads.wheel`.
-/// speed, times, friction, dry_friction, limit : float, numpy.ndarray or None
+/// speed, times, friction, dry_friction, max_torque, max_momentum, max_rate, allocation : float, numpy.ndarray or None
 ///     As :func:`polhode.loads.wheel` takes them; each None where it is not given.
 /// name : str
 ///     Name of its state in ``states`` of a trajectory.
@@ -198,10 +201,28 @@ impl PyWheel {
         option(slf, "dry_friction")
     }
 
-    /// Largest possible torque of a motor that follows a feedback; None where none was given.
+    /// Largest torque of the motor; None where none was given.
     #[getter]
-    fn limit(slf: &Bound<'_, Self>) -> PyResult<Option<Py<PyAny>>> {
-        option(slf, "limit")
+    fn max_torque(slf: &Bound<'_, Self>) -> PyResult<Option<Py<PyAny>>> {
+        option(slf, "max_torque")
+    }
+
+    /// Largest ``J Ω``; None where none was given.
+    #[getter]
+    fn max_momentum(slf: &Bound<'_, Self>) -> PyResult<Option<Py<PyAny>>> {
+        option(slf, "max_momentum")
+    }
+
+    /// Largest rate Ω; None where none was given.
+    #[getter]
+    fn max_rate(slf: &Bound<'_, Self>) -> PyResult<Option<Py<PyAny>>> {
+        option(slf, "max_rate")
+    }
+
+    /// Row of the allocation that the motor follows; None where none was given.
+    #[getter]
+    fn allocation(slf: &Bound<'_, Self>) -> PyResult<Option<Py<PyAny>>> {
+        option(slf, "allocation")
     }
 
     /// A wheel without motor and friction, of numbers that `polhode.wheel` has checked.
@@ -228,7 +249,8 @@ impl PyWheel {
                 (Some(rate), None)
             };
             let made = wheel(
-                py, axis, inertia, rate, None, speed, None, None, None, None, name,
+                py, axis, inertia, rate, None, speed, None, None, None, None, None, None, None,
+                name,
             )?;
             let (load, made) = (made.bind(py).as_super().get(), made.get());
             let numbers = Self {
@@ -443,8 +465,11 @@ fn option(wheel: &Bound<'_, PyWheel>, name: &str) -> PyResult<Option<Py<PyAny>>>
 ///     Ω at the start; zero by default.
 /// torque : float, array_like of shape (n,), or Load, optional
 ///     Torque τ of the motor on the wheel: a constant; values at `times`, each of which is held until the
-///     next; or a :func:`feedback`. The motor then exerts on the body the component along a of the torque of that
-///     feedback.
+///     next; or a load as a controller. The motor then exerts on the body the component along a of the torque of
+///     that load, ``τ = -a·N``. A controller is a :func:`feedback`, or any load that exerts a torque alone: a
+///     function (:func:`torque_callback`), a sampled controller (:func:`with_states` with `update`), and sums and
+///     schedules of these. Its states stand behind those of the wheels. Wheels that are given the same object
+///     follow one controller, which is asked once for all of them.
 /// speed : array_like, shape (...) or (n,), optional
 ///     Rate Ω, in radians per unit of time: a constant, or values at `times` with straight lines in between.
 /// times : array_like, shape (n,), optional
@@ -457,8 +482,17 @@ fn option(wheel: &Bound<'_, PyWheel>, name: &str) -> PyResult<Option<Py<PyAny>>>
 ///     together with `speed`. While the wheel is at rest, friction exerts the torque that keeps it at rest;
 ///     if that were larger than c₀, the wheel begins to slip. The method "auto" is then "dop853", which finds
 ///     the times of stop and slip. The run must go forward in time.
-/// limit : float, optional
-///     Largest possible ``|τ|``, for a motor that follows a feedback. The method "auto" is then "dop853".
+/// max_torque : array_like, shape (...), optional
+///     Largest ``|τ|`` of the motor: a larger torque, given or asked for, is clipped.
+///     :meth:`polhode.Event.limit` is where that begins and ends.
+/// max_momentum, max_rate : array_like, shape (...), optional
+///     Largest ``|J Ω|`` and largest ``|Ω|`` of the wheel; the smaller limit holds if both are given. A wheel that
+///     comes to its limit stays there as long as the motor is asked for more: the motor exerts what keeps the rate.
+///     The run goes on, and must go forward in time. :meth:`polhode.Event.rate_limit` and
+///     :meth:`polhode.Event.momentum_limit` are the times at which a wheel comes to its limit and leaves it.
+/// allocation : array_like, shape (..., 3), optional
+///     Vector m of a motor that follows a controller: ``τ = -m·N`` in place of ``-a·N``. :func:`wheels` finds it
+///     for a set of wheels.
 /// name : str, optional
 ///     Name of its state in ``states`` of the trajectory. If several have the same name, the second becomes
 ///     ``wheel_2``, and so on.
@@ -469,8 +503,14 @@ fn option(wheel: &Bound<'_, PyWheel>, name: &str) -> PyResult<Option<Py<PyAny>>>
 ///     A load, and a record of its numbers. :meth:`polhode.RigidBody.gyrostat` takes it too, if it has no
 ///     motor, no friction and no speed that changes.
 ///
+/// Notes
+/// -----
+/// With a limit, dry friction, an allocation, or a controller other than a feedback, the method "auto" is "dop853".
+/// The friction of Stribeck, which falls with the rate, is not modelled.
+///
 /// See Also
 /// --------
+/// wheels : a set of wheels that share the torque of a controller.
 /// rotor : a momentum that stays constant.
 /// polhode.wheel : a wheel that turns freely or at a constant rate.
 ///
@@ -486,9 +526,16 @@ fn option(wheel: &Bound<'_, PyWheel>, name: &str) -> PyResult<Option<Py<PyAny>>>
 /// >>> motion.omega[-1].round(9), momentum[-1].round(9)
 /// (array([ 0. ,  0. , -0.5]), array([1.]))
 #[pyfunction]
-#[pyo3(signature = (axis, inertia, rate=None, *, torque=None, speed=None, times=None, friction=None,
-                   dry_friction=None, limit=None, name="wheel"))]
-#[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
+#[pyo3(
+    signature = (axis, inertia, rate=None, *, torque=None, speed=None, times=None, friction=None,
+                 dry_friction=None, max_torque=None, max_momentum=None, max_rate=None, allocation=None,
+                 name="wheel")
+)]
+#[expect(
+    clippy::too_many_arguments,
+    clippy::too_many_lines,
+    reason = "keyword arguments in Python"
+)]
 pub(crate) fn wheel(
     py: Python<'_>,
     axis: &Bound<'_, PyAny>,
@@ -499,13 +546,28 @@ pub(crate) fn wheel(
     times: Option<&Bound<'_, PyAny>>,
     friction: Option<&Bound<'_, PyAny>>,
     dry_friction: Option<&Bound<'_, PyAny>>,
-    #[pyo3(from_py_with = read_scalar)] limit: Option<f64>,
+    max_torque: Option<&Bound<'_, PyAny>>,
+    max_momentum: Option<&Bound<'_, PyAny>>,
+    max_rate: Option<&Bound<'_, PyAny>>,
+    allocation: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = read_scalar)] name: &str,
 ) -> PyResult<Py<PyWheel>> {
     check_name(name)?;
-    if limit.is_some() && !torque.is_some_and(PyAnyMethods::is_instance_of::<PyLoad>) {
+    let limits = [
+        ("max_torque", max_torque),
+        ("max_momentum", max_momentum),
+        ("max_rate", max_rate),
+    ];
+    for (what, given) in limits {
+        if given.is_some() && torque.is_none() {
+            return Err(PyTypeError::new_err(format!(
+                "{what}: it is a limit of a motor; give the motor a torque= too"
+            )));
+        }
+    }
+    if allocation.is_some() && !torque.is_some_and(PyAnyMethods::is_instance_of::<PyLoad>) {
         return Err(PyTypeError::new_err(
-            "limit: it is that of a motor that follows a feedback: torque=loads.feedback(...)",
+            "allocation: it is that of a motor that follows a controller: torque=loads.feedback(...)",
         ));
     }
     if speed.is_some() {
@@ -524,17 +586,18 @@ pub(crate) fn wheel(
     }
     let drive = match (torque, speed) {
         (_, Some(speed)) if times.is_some() => {
-            Stack::one(Drive::Speed(read_drive("speed", speed, times)?))
+            Stack::one((Drive::Speed(read_drive("speed", speed, times)?), None))
         }
         (_, Some(speed)) => {
-            let constant =
-                |speed: &f64| PiecewiseSignal::constant("speed", *speed).map(Drive::Speed);
+            let constant = |speed: &f64| {
+                PiecewiseSignal::constant("speed", *speed).map(|held| (Drive::Speed(held), None))
+            };
             try_rows(py, &read::<f64>(speed, "speed")?, constant)?
         }
-        (None, None) => Stack::one(Drive::Torque(no_drive(py, times)?)),
+        (None, None) => Stack::one((Drive::Torque(no_drive(py, times)?), None)),
         (Some(torque), None) => match torque.cast::<PyLoad>() {
-            Ok(load) => read_feedback(py, load.get(), times, limit)?,
-            Err(_) => Stack::one(Drive::Torque(read_drive("torque", torque, times)?)),
+            Ok(load) => read_controller(py, load.get(), times)?,
+            Err(_) => Stack::one((Drive::Torque(read_drive("torque", torque, times)?), None)),
         },
     };
     let axis: Stack<Vector3<f64>> = read(axis, "axis")?;
@@ -544,6 +607,18 @@ pub(crate) fn wheel(
     };
     let (rates, frictions) = (or_zero(rate, "rate")?, or_zero(friction, "friction")?);
     let dry_frictions = or_zero(dry_friction, "dry_friction")?;
+    let or_none = |given: Option<&Bound<'_, PyAny>>, name| {
+        given.map_or_else(
+            || Ok(Stack::one(None)),
+            |given| read::<f64>(given, name)?.map(py, |x| Some(*x)),
+        )
+    };
+    let [max_torques, max_momenta, max_rates] = limits.map(|(what, given)| or_none(given, what));
+    let (max_torques, max_momenta, max_rates) = (max_torques?, max_momenta?, max_rates?);
+    let rows: Stack<Option<Vector3<f64>>> = match allocation {
+        None => Stack::one(None),
+        Some(given) => read::<Vector3<f64>>(given, "allocation")?.map(py, |row| Some(*row))?,
+    };
     let names = [
         "axis",
         "inertia",
@@ -551,6 +626,10 @@ pub(crate) fn wheel(
         "friction",
         "dry_friction",
         "torque",
+        "max_torque",
+        "max_momentum",
+        "max_rate",
+        "allocation",
     ];
     let shapes = [
         &axis.shape[..],
@@ -559,17 +638,31 @@ pub(crate) fn wheel(
         &frictions.shape,
         &dry_frictions.shape,
         &drive.shape,
+        &max_torques.shape,
+        &max_momenta.shape,
+        &max_rates.shape,
+        &rows.shape,
     ];
-    let terms = Broadcast::of(names, shapes)?.try_map(py, |[a, j, w, c, c0, d]| {
-        Wheel::new(
-            &axis[a],
-            inertia[j],
-            rates[w],
-            frictions[c],
-            drive[d].clone(),
-        )
-        .and_then(|wheel| wheel.with_dry_friction(dry_frictions[c0]))
-        .map(Term::Wheel)
+    let terms = Broadcast::of(names, shapes)?.try_map(py, |[a, j, w, c, c0, d, t, h, r, m]| {
+        let (drive, controller) = drive[d].clone();
+        let mut wheel = Wheel::new(&axis[a], inertia[j], rates[w], frictions[c], drive)?
+            .with_dry_friction(dry_frictions[c0])?;
+        if let Some(torque) = max_torques[t] {
+            wheel = wheel.with_max_torque(torque)?;
+        }
+        if let Some(momentum) = max_momenta[h] {
+            wheel = wheel.with_max_momentum(momentum)?;
+        }
+        if let Some(rate) = max_rates[r] {
+            wheel = wheel.with_max_rate(rate)?;
+        }
+        if let Some(row) = &rows[m] {
+            wheel = wheel.with_allocation(row)?;
+        }
+        match controller {
+            Some(controller) => Term::controlled(wheel, controller),
+            None => Ok(Term::Wheel(wheel)),
+        }
     })?;
     let number = |given: Option<_>, numbers: &Stack<f64>| {
         (given.map(|_: &Bound<'_, PyAny>| write_of(py, numbers, |x| *x))).transpose()
@@ -580,12 +673,25 @@ pub(crate) fn wheel(
     options.set_item("times", keep(times)?)?;
     options.set_item("friction", number(friction, &frictions)?)?;
     options.set_item("dry_friction", number(dry_friction, &dry_frictions)?)?;
-    options.set_item("limit", limit)?;
+    for (what, given) in limits {
+        let numbers = given.map(|given| read::<f64>(given, what)).transpose()?;
+        let kept = numbers
+            .map(|numbers| write_of(py, &numbers, |x| *x))
+            .transpose()?;
+        options.set_item(what, kept)?;
+    }
+    options.set_item("allocation", keep(allocation)?)?;
     options.set_item("name", name)?;
     let moment = write_of(py, &inertia, |x| *x)?;
     let arguments = (write(py, &axis)?, moment, number(rate, &rates)?, options);
     let recipe = recipe(py, "wheel", arguments)?;
-    let load = PyLoad::one(LoadPart::Term(terms), recipe).with_name(name);
+    let mut load = PyLoad::one(LoadPart::Term(terms), recipe).with_name(name);
+    if let Some(Ok(controller)) = torque.map(|torque| torque.cast::<PyLoad>())
+        && !controller.get().is_analytic()
+        && let Some(part) = load.parts.first_mut()
+    {
+        part.controller = Some(controller.clone().unbind());
+    }
     let acts = |numbers: &Stack<f64>| numbers.rows.iter().any(|x| *x != 0.0);
     let turns = match speed {
         _ if torque.is_some() => Turns::Driven("torque"),
@@ -657,35 +763,202 @@ fn read_drive(
     made.map_err(|error| to_py(py, &error))
 }
 
-/// What a feedback asks of a motor.
-fn read_feedback(
+/// What a motor does, and the terms of the controller that it follows.
+type Motor = (Drive, Option<Vec<Term>>);
+
+/// What a controller asks of a motor: a feedback alone has a series, the terms of others are asked one by one.
+fn read_controller(
     py: Python<'_>,
     load: &PyLoad,
     times: Option<&Bound<'_, PyAny>>,
-    limit: Option<f64>,
-) -> PyResult<Stack<Drive>> {
-    let refused = || {
-        PyTypeError::new_err(
-            "torque: expected a number, numbers with times=, or one loads.feedback(...) alone, not a sum, a scaled or scheduled one",
-        )
-    };
+) -> PyResult<Stack<Motor>> {
     if times.is_some() {
-        return Err(PyTypeError::new_err("times: not beside a feedback"));
+        return Err(PyTypeError::new_err(
+            "times: not beside a controller; loads.schedule(...) makes one that acts at times",
+        ));
     }
     let terms = load.terms(py)?;
-    if !load.is_analytic() || terms.rows.iter().any(|row| row.len() != 1) {
-        return Err(refused());
-    }
-    let shape = terms.shape;
-    let drives = terms.rows.into_iter().map(|mut row| match row.pop() {
-        Some(Term::Feedback(law)) => Ok(match limit {
-            Some(limit) => Drive::Limited(law, limit),
-            None => Drive::Feedback(law),
-        }),
-        _ => Err(refused()),
+    let is_feedback =
+        load.is_analytic() && (terms.rows.iter()).all(|row| matches!(row[..], [Term::Feedback(_)]));
+    let motors = terms.rows.into_iter().map(|mut row| match row.pop() {
+        Some(Term::Feedback(law)) if is_feedback => (Drive::Feedback(law), None),
+        last => {
+            row.extend(last);
+            (Drive::Controller, Some(row))
+        }
     });
     Ok(Stack {
-        shape,
-        rows: drives.collect::<PyResult<_>>()?,
+        shape: terms.shape,
+        rows: motors.collect(),
     })
+}
+
+/// A set of wheels whose motors share the torque that a controller asks for.
+///
+/// The motors exert ``τ = -M N``, where N is the torque of the controller on the body and M, with a row for each wheel,
+/// is the allocation. On the body they exert ``-A τ``, with the axes, of unit length, as the columns of A. Three
+/// wheels at right angles need no allocation; wheels that each take the component of N along their own axis exert
+/// ``A Aᵀ N``, which for four wheels is not N.
+///
+/// Parameters
+/// ----------
+/// axes : array_like, shape (n, 3)
+///     Axes of the wheels, in the body frame; only the directions count.
+/// inertias : array_like, shape () or (n,)
+///     Moments of inertia J about the axes.
+/// torque : Load
+///     A controller, as :func:`wheel` takes it. It is asked once for all wheels.
+/// allocation : str or array_like, shape (n, 3)
+///     M. ``"pseudo-inverse"`` is the one with the least sum of the squares of the torques of the motors. A given one must
+///     obey ``A M A = A``, so that the body gets the torque N, or its part within the span of the axes.
+/// rate, friction, dry_friction, max_torque, max_momentum, max_rate : array_like, shape () or (n,), optional
+///     As of :func:`wheel`, for all wheels or for each.
+/// name : str, optional
+///     Name of the states. That of the first wheel is the name, the second one has ``wheel_2``, and so on.
+///
+/// Returns
+/// -------
+/// Load
+///     The sum of the wheels.
+///
+/// Examples
+/// --------
+/// A pyramid of four wheels turns a satellite; the body feels the torque of the controller alone:
+///
+/// >>> import numpy as np
+/// >>> from polhode import RigidBody, loads
+/// >>> body = RigidBody.from_principal(90.0, (8.0, 9.0, 10.0))
+/// >>> axes = [(1, 0, 1), (0, 1, 1), (-1, 0, 1), (0, -1, 1)]
+/// >>> control = loads.feedback(K=0.5, D=3.0)
+/// >>> wheels = loads.wheels(axes, 0.02, torque=control, max_torque=0.5)
+/// >>> motion = body.simulate([0, 60], (0, 0, 0), (0, 0, 0.1, 0.995), load=wheels)
+/// >>> print(*motion.states, bool(motion.rotation[-1].magnitude() < 1e-3))
+/// wheel wheel_2 wheel_3 wheel_4 True
+#[pyfunction]
+#[pyo3(signature = (axes, inertias, *, torque, allocation=None, rate=None, friction=None, dry_friction=None,
+                   max_torque=None, max_momentum=None, max_rate=None, name="wheel"),
+       text_signature = "(axes, inertias, *, torque, allocation=\"pseudo-inverse\", rate=None, friction=None, dry_friction=None, max_torque=None, max_momentum=None, max_rate=None, name=\"wheel\")")]
+#[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
+pub(crate) fn wheels(
+    py: Python<'_>,
+    axes: &Bound<'_, PyAny>,
+    inertias: &Bound<'_, PyAny>,
+    torque: &Bound<'_, PyAny>,
+    allocation: Option<&Bound<'_, PyAny>>,
+    rate: Option<&Bound<'_, PyAny>>,
+    friction: Option<&Bound<'_, PyAny>>,
+    dry_friction: Option<&Bound<'_, PyAny>>,
+    max_torque: Option<&Bound<'_, PyAny>>,
+    max_momentum: Option<&Bound<'_, PyAny>>,
+    max_rate: Option<&Bound<'_, PyAny>>,
+    #[pyo3(from_py_with = read_scalar)] name: &str,
+) -> PyResult<PyLoad> {
+    if !torque.is_instance_of::<PyLoad>() {
+        return Err(PyTypeError::new_err(format!(
+            "torque: expected a controller, such as loads.feedback(...), got {}; a wheel with a torque of its own is made by \
+             loads.wheel(axis, inertia, torque=...)",
+            torque.get_type()
+        )));
+    }
+    let axes: Stack<Vector3<f64>> = read_list(axes, "axes", "n")?;
+    let count = axes.rows.len();
+    let each = |given: Option<&Bound<'_, PyAny>>, what: &str| -> PyResult<Option<Vec<f64>>> {
+        let Some(given) = given else {
+            return Ok(None);
+        };
+        let numbers: Stack<f64> = read(given, what)?;
+        match numbers.shape[..] {
+            [] => Ok(Some(vec![numbers[0]; count])),
+            [found] if found == count => Ok(Some(numbers.rows)),
+            _ => Err(PyValueError::new_err(format!(
+                "{what}: expected one number, or one for each of the {count} wheels, got the shape {}",
+                tuple(&numbers.shape)
+            ))),
+        }
+    };
+    let rows = read_allocation(py, &axes.rows, allocation)?;
+    let named = [
+        ("inertias", Some(inertias)),
+        ("rate", rate),
+        ("friction", friction),
+        ("dry_friction", dry_friction),
+        ("max_torque", max_torque),
+        ("max_momentum", max_momentum),
+        ("max_rate", max_rate),
+    ];
+    let mut numbers = Vec::new();
+    for (what, given) in named {
+        numbers.push(each(given, what)?);
+    }
+    let mut all = PyLoad::default();
+    for (index, (axis, row)) in axes.rows.iter().zip(rows).enumerate() {
+        let of = |which: usize| -> Option<Bound<'_, PyAny>> {
+            let values = numbers[which].as_ref()?;
+            Some(PyFloat::new(py, values[index]).into_any())
+        };
+        let axis = write(py, &Stack::one(*axis))?.into_any();
+        let row = write(py, &Stack::one(row))?.into_any();
+        let inertia = of(0).unwrap_or_else(|| inertias.clone());
+        let made = wheel(
+            py,
+            &axis,
+            &inertia,
+            of(1).as_ref(),
+            Some(torque),
+            None,
+            None,
+            of(2).as_ref(),
+            of(3).as_ref(),
+            of(4).as_ref(),
+            of(5).as_ref(),
+            of(6).as_ref(),
+            Some(&row),
+            name,
+        )?;
+        all = all.plus(py, made.bind(py).as_super().get())?;
+    }
+    Ok(all)
+}
+
+/// How far A M A may be from A, for an allocation of few digits.
+const RIGHT_INVERSE: f64 = 1e-6;
+
+/// The rows of the allocation of wheels about these axes: the pseudo-inverse, or a given one that does what it is for.
+fn read_allocation(
+    py: Python<'_>,
+    axes: &[Vector3<f64>],
+    given: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Vec<Vector3<f64>>> {
+    let best = allocation(axes).map_err(|error| to_py(py, &error))?;
+    let Some(given) = given else {
+        return Ok(best);
+    };
+    if let Ok(word) = given.cast::<PyString>() {
+        return if word.to_cow()? == "pseudo-inverse" {
+            Ok(best)
+        } else {
+            Err(PyValueError::new_err(format!(
+                "allocation: expected \"pseudo-inverse\" or an array of shape (n, 3), got \"{}\"",
+                word.to_cow()?
+            )))
+        };
+    }
+    let rows: Stack<Vector3<f64>> = read_list(given, "allocation", "n")?;
+    if rows.rows.len() != axes.len() {
+        return Err(PyValueError::new_err(format!(
+            "allocation: expected a row for each of the {} wheels, shape ({}, 3), got shape ({}, 3)",
+            axes.len(),
+            axes.len(),
+            rows.rows.len()
+        )));
+    }
+    let off = allocation_error(axes, &rows.rows);
+    if off.is_nan() || off > RIGHT_INVERSE {
+        return Err(PyValueError::new_err(format!(
+            "allocation: with these rows M and the axes A, of unit length, as columns, A M A must be A, so that the body gets the torque that \
+             is asked for; it is off by {off:.3e}. allocation=\"pseudo-inverse\" finds M; a wheel that takes any other share is \
+             loads.wheel(axis, inertia, torque=controller, allocation=row)"
+        )));
+    }
+    Ok(rows.rows)
 }

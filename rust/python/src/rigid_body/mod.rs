@@ -10,6 +10,7 @@
 //! | `interop` | what Python does for a body: files, other libraries' objects, pictures |
 //! | `instant` | a moving body at one instant: its points, what holds it, whether it spins steadily |
 //! | `simulate`, `simulate_stack`, `outcome` | motions under loads |
+//! | `stepper` | a motion step by step |
 //!
 //! Motions in closed form are classes of their own: `crate::free_motion`, `crate::heavy_top`, `crate::gyrostat`.
 
@@ -22,4 +23,7 @@ mod properties;
 mod provenance;
 mod simulate;
 mod simulate_stack;
+mod stepper;
 mod uncertainty;
+
+pub(crate) use stepper::PyStepper;

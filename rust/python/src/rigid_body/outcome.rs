@@ -39,6 +39,26 @@ pub(crate) struct Outcome {
 }
 
 impl Outcome {
+    /// That of one motion with these states, about a point of the body; with its effort, its events and the number of their functions.
+    pub(super) fn of_one(
+        times: Vec<f64>,
+        about: Vector3<f64>,
+        (effort, crossings, functions): (Effort, Vec<Crossing>, usize),
+        slots: Vec<Slot>,
+        samples: Vec<Phase>,
+    ) -> Self {
+        Self {
+            times,
+            shape: Vec::new(),
+            about: Stack::one(about),
+            efforts: vec![effort],
+            crossings: crossings.into_iter().map(|found| (0, found)).collect(),
+            functions,
+            slots,
+            samples: vec![Some(samples)],
+        }
+    }
+
     /// An array of states that are not in arrays yet.
     fn array<'py, T: Item>(
         &self,
@@ -216,6 +236,13 @@ impl Ensemble<'_> {
             });
             fields.set_item(intern!(py, "_contact_states"), (phases?, work?))?;
         }
+        let ended = matches!(
+            runs[..],
+            [Some(Run {
+                end: End::Event,
+                ..
+            })]
+        );
         let mut efforts = memory::vector("result", &self.grid.shape, 0)?;
         let (mut crossings, mut samples) = (Vec::new(), Vec::new());
         for (row, run) in runs.into_iter().enumerate() {
@@ -226,6 +253,13 @@ impl Ensemble<'_> {
             if keeps {
                 samples.push(states);
             }
+        }
+        if let ([], [(_, last)], true) = (
+            &self.grid.shape[..],
+            &crossings[crossings.len().saturating_sub(1)..],
+            ended,
+        ) {
+            fields.set_item(intern!(py, "_ended_by"), self.events.function(last.event))?;
         }
         let outcome = Outcome {
             times: self.plan.times().to_vec(),
@@ -286,16 +320,21 @@ impl Ensemble<'_> {
         fault: &Fault,
     ) -> PyResult<PyErr> {
         let error = at_row(&self.grid.shape, row, &fault.to_exception(py), py);
-        let value = error.value(py);
-        value.setattr("row", row)?;
-        value.setattr("time", run.time)?;
-        let attitude = write(py, &Stack::one(components(&run.phase.attitude)))?;
-        value.setattr(
-            "state",
-            (attitude, write(py, &Stack::one(run.phase.omega))?),
-        )?;
+        tell(&error, row, run, py)?;
         Ok(error)
     }
+}
+
+/// The exception of a run knows its row, and the time and the state that the run came to.
+pub(super) fn tell(error: &PyErr, row: usize, run: &Run<Fault>, py: Python<'_>) -> PyResult<()> {
+    let value = error.value(py);
+    value.setattr("row", row)?;
+    value.setattr("time", run.time)?;
+    let attitude = write(py, &Stack::one(components(&run.phase.attitude)))?;
+    value.setattr(
+        "state",
+        (attitude, write(py, &Stack::one(run.phase.omega))?),
+    )
 }
 
 /// What bodies do, in numbers as `phase_of` reads them, and the work of the plane so far, at all times.
@@ -381,7 +420,7 @@ fn array<'a, 'py, T: Item>(
 }
 
 /// `polhode.motion.trajectory.Trajectory._of_run`.
-fn of_run(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
+pub(super) fn of_run(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
     static FUNCTION: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     let function = FUNCTION.get_or_try_init(py, || {
         let class = py

@@ -1,6 +1,7 @@
 //! The motion under a load.
 
 use nalgebra::Vector3;
+use polhode::RigidBody;
 use polhode::motion::rolling::Law;
 use polhode::motion::simulate::{Method, Plan, Refusal, Tolerance, most_demanding};
 use pyo3::exceptions::PyValueError;
@@ -26,7 +27,7 @@ use crate::times::read_times;
 use crate::uncertain::StartArguments;
 
 /// An optional argument of any array-like kind.
-type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
+pub(super) type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 #[pymethods]
 impl PyRigidBody {
@@ -197,23 +198,10 @@ impl PyRigidBody {
             .within(most_steps(max_steps)?);
         let nothing = PyLoad::default();
         let load = load.filter(|load| !load.is_none());
-        let acts = match load {
-            None => &nothing,
-            Some(load) => load
-                .cast::<PyLoad>()
-                .map_err(|_| hints::not_a_load(load))?
-                .get(),
-        };
+        let acts = load.map_or(Ok(&nothing), cast_load)?;
         let given = StartArguments::read(omega, attitude)?;
-        let start = Start {
-            bodies: &slf.get().bodies,
-            omega: read(&given.omega, "omega")?,
-            attitude: read_attitude_exactly(given.attitude.as_ref(), "attitude")?,
-            position: at_start(position, "position")?,
-            velocity: at_start(velocity, "velocity")?,
-            terms: acts.terms(py)?,
-            states: acts.read_states(states, false)?,
-        };
+        let bodies = &slf.get().bodies;
+        let start = Start::read(py, bodies, &given, [position, velocity], acts, states)?;
         let rolling = (contact.map(|contact| {
             let given =
                 [position, velocity].map(|given| given.is_some_and(|given| !given.is_none()));
@@ -276,6 +264,34 @@ impl PyRigidBody {
     }
 }
 
+/// The load that an argument is.
+pub(super) fn cast_load<'a>(load: &'a Bound<'_, PyAny>) -> PyResult<&'a PyLoad> {
+    let cast = load.cast::<PyLoad>();
+    cast.map(Bound::get).map_err(|_| hints::not_a_load(load))
+}
+
+impl<'a> Start<'a> {
+    /// From the arguments of `simulate`.
+    pub(super) fn read(
+        py: Python<'_>,
+        bodies: &'a Stack<RigidBody>,
+        given: &StartArguments<'_>,
+        [position, velocity]: [Given<'_, '_>; 2],
+        load: &PyLoad,
+        states: Given<'_, '_>,
+    ) -> PyResult<Self> {
+        Ok(Self {
+            bodies,
+            omega: read(&given.omega, "omega")?,
+            attitude: read_attitude_exactly(given.attitude.as_ref(), "attitude")?,
+            position: at_start(position, "position")?,
+            velocity: at_start(velocity, "velocity")?,
+            terms: load.terms(py)?,
+            states: load.read_states(states, false)?,
+        })
+    }
+}
+
 /// The keywords as Python has them.
 fn options_of<'py>(
     py: Python<'py>,
@@ -321,7 +337,7 @@ fn read_rolling<'a, 'py>(
 }
 
 /// A fixed point has no velocity.
-fn check_velocity(pivoted: bool, velocity: Given<'_, '_>) -> PyResult<()> {
+pub(super) fn check_velocity(pivoted: bool, velocity: Given<'_, '_>) -> PyResult<()> {
     if pivoted && velocity.is_some() {
         return Err(PyValueError::new_err(
             "velocity: with about=\"origin\" that point is fixed in space and has no velocity",
@@ -351,7 +367,7 @@ fn raises(on_failure: &str) -> PyResult<bool> {
 }
 
 /// The steps that a run may take.
-fn most_steps(given: Option<i128>) -> PyResult<u64> {
+pub(super) fn most_steps(given: Option<i128>) -> PyResult<u64> {
     match given {
         None => Ok(u64::MAX),
         Some(count) if count > 0 => Ok(u64::try_from(count).unwrap_or(u64::MAX)),
@@ -380,7 +396,7 @@ const KEYWORDS: [&str; 16] = [
     "max_steps",
 ];
 
-fn parse_method(word: &str) -> PyResult<Method> {
+pub(super) fn parse_method(word: &str) -> PyResult<Method> {
     (Method::ALL.iter().copied())
         .find(|method| method.name() == word)
         .ok_or_else(|| {

@@ -49,6 +49,23 @@ impl Start<'_> {
             ],
         )
     }
+
+    /// Every number of the states must be finite.
+    pub(super) fn check_finite(&self, py: Python<'_>) -> PyResult<()> {
+        for (name, stack) in [
+            ("omega", &self.omega),
+            ("position", &self.position),
+            ("velocity", &self.velocity),
+        ] {
+            for (row, vector) in stack.rows.iter().enumerate() {
+                if let Some(&value) = vector.iter().find(|x| !x.is_finite()) {
+                    let error = polhode::Error::NonFinite { what: name, value };
+                    return Err(at_row(&stack.shape, row, &to_py(py, &error), py));
+                }
+            }
+        }
+        Ok(())
+    }
 }
 
 /// All that a run needs.
@@ -110,18 +127,7 @@ pub(super) type Results<'py> = PyResult<(Bound<'py, PyAny>, bool)>;
 impl Ensemble<'_> {
     /// Every state at the start must be finite, and those of the load's own such as it has.
     pub(super) fn check(&self, py: Python<'_>) -> PyResult<()> {
-        for (name, stack) in [
-            ("omega", &self.start.omega),
-            ("position", &self.start.position),
-            ("velocity", &self.start.velocity),
-        ] {
-            for (row, vector) in stack.rows.iter().enumerate() {
-                if let Some(&value) = vector.iter().find(|x| !x.is_finite()) {
-                    let error = polhode::Error::NonFinite { what: name, value };
-                    return Err(at_row(&stack.shape, row, &to_py(py, &error), py));
-                }
-            }
-        }
+        self.start.check_finite(py)?;
         if self.start.states.rows.iter().any(|given| !given.is_empty()) {
             for row in 0..self.grid.len() {
                 let [_, w, _, _, _, l, s] = self.grid.operands(row);

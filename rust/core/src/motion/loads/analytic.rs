@@ -1,5 +1,9 @@
 //! The load `Analytic`: a sum of terms, each of one of the analytic laws.
 
+use std::slice;
+
+use nalgebra::Vector3;
+
 use super::body_at_point::BodyAtPoint;
 use super::carried_momentum::CarriedMomentum;
 use super::carried_momentum::LawContext;
@@ -17,9 +21,15 @@ pub struct Analytic<'a> {
     body: BodyAtPoint,
     terms: &'a [Term],
     active: Vec<&'a Term>,
+    /// The number of each among all terms.
+    numbers: Vec<usize>,
+    /// The terms that act of the controllers of motors, each with the number of the wheel's term.
+    controllers: Vec<(usize, &'a Term)>,
+    /// What controllers outside ask of the motors, by the number of the wheel's term; nothing, where there are none.
+    commands: Vec<Vector3<f64>>,
     /// One for each term among those that act whose law has a sign, once they are settled.
     switches: Vec<Switch>,
-    /// The bearings with dry friction, once they are settled.
+    /// The bearings with dry friction, and the limits of rates, once they are settled.
     bearings: Option<Vec<Bearing>>,
     /// A time within the span last entered.
     middle: f64,
@@ -29,10 +39,16 @@ impl<'a> Analytic<'a> {
     /// The sum of `terms` acting on `body`.
     #[must_use]
     pub fn new(terms: &'a [Term], body: BodyAtPoint) -> Self {
+        let asks = |(number, term): (usize, &'a Term)| {
+            term.controller().iter().map(move |law| (number, law))
+        };
         Self {
             body,
             terms,
             active: terms.iter().collect(),
+            numbers: (0..terms.len()).collect(),
+            controllers: terms.iter().enumerate().flat_map(asks).collect(),
+            commands: Vec::new(),
             switches: Vec::new(),
             bearings: None,
             middle: f64::NAN,
@@ -57,21 +73,80 @@ impl<'a> Analytic<'a> {
         &self.active
     }
 
+    /// From now on a controller outside asks the motor of the wheel that is the term of this number for this torque on the body (in B), in
+    /// addition to the terms of its own [controller](Term::controller).
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::mass::{Amount, solids};
+    /// use polhode::motion::loads::{Analytic, BodyAtPoint, Drive, Load, Term, Wheel};
+    /// use polhode::motion::simulate::{Phase, State};
+    /// use polhode::nalgebra::{UnitQuaternion, Vector3};
+    ///
+    /// // A program asks for 0.2 N m; the motor can do half of that.
+    /// let ball = solids::sphere(1.0, Amount::Mass(5.0))?;
+    /// let wheel = Wheel::new(&Vector3::z(), 0.1, 0.0, 0.0, Drive::Controller)?
+    ///     .with_max_torque(0.1)?
+    ///     .with_max_momentum(4.0)?
+    ///     .with_max_rate(50.0)?
+    ///     .with_allocation(&Vector3::z())?;
+    /// let terms = [Term::controlled(wheel, vec![])?];
+    /// assert!(terms[0].controller().is_empty());
+    /// let mut load = Analytic::new(&terms, BodyAtPoint::free(&ball, 0.0));
+    /// load.command(0, Vector3::z() * 0.2);
+    /// let rest = State { attitude: UnitQuaternion::identity(), omega: Vector3::zeros() };
+    /// let phase = Phase { internal_state: [0.0].into(), ..Phase::in_place(&rest) };
+    /// assert_eq!(load.wrench(0.0, &phase)?.torque, Vector3::z() * 0.1);
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    pub fn command(&mut self, term: usize, torque: Vector3<f64>) {
+        self.commands.resize(self.terms.len(), Vector3::zeros());
+        self.commands[term] = torque;
+    }
+
+    /// What is asked of the motor of the wheel that is the term of this number; its law changes with the state unless it is settled by
+    /// `switches`.
+    fn commanded(
+        &self,
+        term: usize,
+        t: f64,
+        phase: &Phase,
+        switches: &mut slice::Iter<'_, Switch>,
+    ) -> Vector3<f64> {
+        let mut sum = self.commands.get(term).copied().unwrap_or_default();
+        for (_, law) in self.controllers.iter().filter(|(of, _)| *of == term) {
+            let switch = if law.may_switch() {
+                switches.next()
+            } else {
+                None
+            };
+            sum += match switch {
+                Some(switch) => law.settled_wrench(switch.side, &self.body, t, phase).torque,
+                None => law.wrench(&self.body, t, phase).torque,
+            };
+        }
+        sum
+    }
+
     /// The wheel of a bearing turns as that says, from now on.
     fn turn(&mut self, bearing: Bearing) {
         let mine = self.bearings.iter_mut().flatten();
-        for mine in mine.filter(|mine| mine.index == bearing.index) {
+        for mine in mine.filter(|mine| mine.is_same(&bearing)) {
             *mine = bearing;
         }
     }
 
-    /// The bearings with dry friction as they are at `phase`.
+    /// The bearings with dry friction, and the limits of rates, as they are at `phase`.
     fn bearings_at(&self, phase: &Phase) -> Vec<Bearing> {
         let mut found = Vec::new();
         let mut index = 0;
         for carried in self.carried() {
             if let Some((axis, inertia, most)) = carried.bearing() {
                 found.push(Bearing::at(index, axis, inertia, most, phase));
+            }
+            if let Some((axis, inertia, reach)) = carried.rate_limit() {
+                found.push(Bearing::limit(index, axis, inertia, reach, phase));
             }
             index += carried.count();
         }
@@ -102,11 +177,19 @@ impl Load for Analytic<'_> {
         let middle = from + 0.5 * (to - from);
         self.middle = middle;
         self.active.clear();
+        self.numbers.clear();
+        self.controllers.clear();
         self.switches.clear();
         self.bearings = None;
-        for term in self.terms.iter().filter_map(|term| term.active(middle)) {
+        for (number, term) in self.terms.iter().enumerate() {
+            let Some(term) = term.active(middle) else {
+                continue;
+            };
             term.check(&self.body, from, to)?;
             self.active.push(term);
+            self.numbers.push(number);
+            let asks = (term.controller().iter()).filter_map(|law| law.active(middle));
+            self.controllers.extend(asks.map(|law| (number, law)));
         }
         Ok(())
     }
@@ -114,8 +197,12 @@ impl Load for Analytic<'_> {
     fn settle(&mut self, t: f64, phase: &Phase) {
         self.switches.clear();
         let body = &self.body;
-        let switches = (self.active.iter()).filter_map(|term| term.switch(body, t, phase));
-        self.switches.extend(switches);
+        let laws = self
+            .active
+            .iter()
+            .chain(self.controllers.iter().map(|(_, law)| law));
+        self.switches
+            .extend(laws.filter_map(|law| law.switch(body, t, phase)));
         self.bearings = Some(self.bearings_at(phase));
     }
 
@@ -151,7 +238,7 @@ impl Load for Analytic<'_> {
 
     fn over_limit(&self, state: usize, t: f64, phase: &Phase) -> f64 {
         let mut index = 0;
-        for term in self.terms {
+        for (number, term) in self.terms.iter().enumerate() {
             if let Some(carried) = term.carried() {
                 if index == state && carried.count() > 0 {
                     let side = (term.switch(&self.body, t, phase)).map_or(1.0, |it| it.side);
@@ -161,6 +248,7 @@ impl Load for Analytic<'_> {
                         middle: self.middle,
                         phase,
                         side,
+                        command: self.commanded(number, t, phase, &mut [].iter()),
                     };
                     return carried.over_limit(&now);
                 }
@@ -183,8 +271,15 @@ impl Load for Analytic<'_> {
     fn act(&mut self, t: f64, phase: &Phase, rates: &mut [f64]) -> Result<Wrench, Error> {
         let (mut states, mut all_rates) = (&phase.internal_state[..], &mut *rates);
         let mut switches = self.switches.iter();
+        // Those of controllers stand behind those of the terms.
+        let own = if self.controllers.is_empty() {
+            self.switches.len()
+        } else {
+            self.active.iter().filter(|term| term.may_switch()).count()
+        };
+        let mut asked = self.switches.get(own..).unwrap_or_default().iter();
         let mut sum = Wrench::default();
-        for term in &self.active {
+        for (term, &number) in self.active.iter().zip(&self.numbers) {
             let switch = if term.may_switch() {
                 switches.next()
             } else {
@@ -200,6 +295,7 @@ impl Load for Analytic<'_> {
                     middle: self.middle,
                     phase,
                     side: switch.map_or_else(unsettled, |switch| switch.side),
+                    command: self.commanded(number, t, phase, &mut asked),
                 };
                 if let Some(rates) = all_rates.split_off_mut(..carried.count()) {
                     carried.rates(&now, mine, rates);

@@ -42,6 +42,12 @@ pub trait CarriedMomentum {
         None
     }
 
+    /// The unit axis, the moment J and the largest |Ω| of a wheel with such a limit, whose first state is its momentum. At the limit its motor
+    /// exerts what keeps it there, as long as it is asked for more.
+    fn rate_limit(&self) -> Option<(Vector3<f64>, f64, f64)> {
+        None
+    }
+
     /// Whether its motor has a limit.
     fn has_limit(&self) -> bool {
         false
@@ -51,6 +57,26 @@ pub trait CarriedMomentum {
     fn over_limit(&self, now: &LawContext<'_>) -> f64 {
         let _ = now;
         -1.0
+    }
+
+    /// The torque on the body, beside what stands in [`Self::torque`], of a motor at the start of a motion whose controller asks for `command`.
+    fn answer(
+        &self,
+        body: &BodyAtPoint,
+        t: f64,
+        phase: &Phase,
+        command: Vector3<f64>,
+    ) -> Vector3<f64> {
+        let state = self.begin(t, &phase.omega);
+        let idle = LawContext {
+            body,
+            t,
+            middle: t,
+            phase,
+            side: 1.0,
+            command: Vector3::zeros(),
+        };
+        self.torque(&LawContext { command, ..idle }, &state) - self.torque(&idle, &state)
     }
 
     /// The torque about the reference point that stands beside that tensor.
@@ -79,4 +105,6 @@ pub struct LawContext<'a> {
     pub phase: &'a Phase,
     /// The sign that a law with one is taken for.
     pub side: f64,
+    /// The torque on the body that the controller of a motor asks for.
+    pub command: Vector3<f64>,
 }

@@ -54,6 +54,13 @@ macro_rules! laws {
                 /// Which.
                 term: Box<Term>,
             },
+            /// A wheel whose motor follows a controller.
+            Controlled {
+                /// The wheel, with a [`Drive::Controller`].
+                wheel: Box<Term>,
+                /// The terms of the controller; what a program asks for besides is [commanded](super::Analytic::command).
+                controller: Vec<Term>,
+            },
         }
 
         $(impl From<$law> for Term {
@@ -78,6 +85,11 @@ macro_rules! laws {
                 match self {
                     $(Self::$law(law) => law.traits(pivoted),)+
                     Self::Scheduled { term, .. } => term.traits(pivoted),
+                    Self::Controlled { wheel, controller } => {
+                        let own = wheel.traits(pivoted);
+                        let needs_epoch = controller.iter().any(Term::needs_epoch);
+                        Traits { needs_epoch: own.needs_epoch || needs_epoch, ..own }
+                    }
                 }
             }
 
@@ -88,6 +100,7 @@ macro_rules! laws {
                 match self {
                     $(Self::$law(law) => law.parameters(),)+
                     Self::Scheduled { term, .. } => term.parameters(),
+                    Self::Controlled { wheel, .. } => wheel.parameters(),
                 }
             }
 
@@ -103,6 +116,7 @@ macro_rules! laws {
                         windows: windows.clone(),
                         term: Box::new(term.scaled(factor)?),
                     },
+                    Self::Controlled { wheel, .. } => wheel.scaled(factor)?, // refused
                 })
             }
 
@@ -115,6 +129,10 @@ macro_rules! laws {
                         windows,
                         term: Box::new(term.with_epoch(t)),
                     },
+                    Self::Controlled { wheel, controller } => {
+                        let begun = controller.into_iter().map(|term| term.with_epoch(t));
+                        Self::Controlled { wheel, controller: begun.collect() }
+                    }
                 }
             }
 
@@ -128,6 +146,9 @@ macro_rules! laws {
                         breaks.extend(term.breaks());
                         breaks
                     }
+                    Self::Controlled { controller, .. } => {
+                        controller.iter().flat_map(Term::breaks).collect()
+                    }
                 }
             }
 
@@ -140,6 +161,12 @@ macro_rules! laws {
                 match self {
                     $(Self::$law(law) => law.check(body, from, to),)+
                     Self::Scheduled { term, .. } => term.check(body, from, to),
+                    Self::Controlled { wheel, controller } => {
+                        let middle = from + 0.5 * (to - from);
+                        let mut acting = controller.iter().filter_map(|term| term.active(middle));
+                        wheel.check(body, from, to)?;
+                        acting.try_for_each(|term| term.check(body, from, to))
+                    }
                 }
             }
 
@@ -157,6 +184,12 @@ macro_rules! laws {
                             Wrench::default()
                         }
                     }
+                    Self::Controlled { wheel, controller } => {
+                        let asked = |term: &Term| term.wrench(body, t, phase).torque;
+                        let command = controller.iter().map(asked).sum();
+                        let more = wheel.carried().map(|wheel| wheel.answer(body, t, phase, command));
+                        wheel.wrench(body, t, phase) + Wrench::couple(more.unwrap_or_default())
+                    }
                 }
             }
 
@@ -166,7 +199,7 @@ macro_rules! laws {
             pub fn potential(&self, body: &BodyAtPoint, phase: &Phase) -> Option<f64> {
                 match self {
                     $(Self::$law(law) => law.potential(body, phase),)+
-                    Self::Scheduled { .. } => None,
+                    Self::Scheduled { .. } | Self::Controlled { .. } => None,
                 }
             }
 
@@ -179,7 +212,9 @@ macro_rules! laws {
             ) {
                 match self {
                     $(Self::$law(law) => law.add_to(series, axes, side),)+
-                    Self::Scheduled { term, .. } => term.add_to(series, axes, side),
+                    Self::Scheduled { term, .. } | Self::Controlled { wheel: term, .. } => {
+                        term.add_to(series, axes, side);
+                    }
                 }
             }
 
@@ -187,7 +222,9 @@ macro_rules! laws {
             pub(super) fn switch(&self, body: &BodyAtPoint, t: f64, phase: &Phase) -> Option<Switch> {
                 match self {
                     $(Self::$law(law) => law.switch(body, t, phase),)+
-                    Self::Scheduled { term, .. } => term.switch(body, t, phase),
+                    Self::Scheduled { term, .. } | Self::Controlled { wheel: term, .. } => {
+                        term.switch(body, t, phase)
+                    }
                 }
             }
 
@@ -202,7 +239,9 @@ macro_rules! laws {
             ) -> Wrench {
                 match self {
                     $(Self::$law(law) => law.settled_wrench(side, body, t, phase),)+
-                    Self::Scheduled { term, .. } => term.settled_wrench(side, body, t, phase),
+                    Self::Scheduled { term, .. } | Self::Controlled { wheel: term, .. } => {
+                        term.settled_wrench(side, body, t, phase)
+                    }
                 }
             }
 
@@ -213,7 +252,9 @@ macro_rules! laws {
             ) -> Option<Vector4<X>> {
                 match self {
                     $(Self::$law(law) => law.switch_function(axes),)+
-                    Self::Scheduled { term, .. } => term.switch_function(axes),
+                    Self::Scheduled { term, .. } | Self::Controlled { wheel: term, .. } => {
+                        term.switch_function(axes)
+                    }
                 }
             }
 
@@ -223,6 +264,7 @@ macro_rules! laws {
                 match self {
                     $(Self::$law(law) => law.carried(),)+
                     Self::Scheduled { .. } => None, // what is carried along cannot be scheduled
+                    Self::Controlled { wheel, .. } => wheel.carried(),
                 }
             }
 
@@ -232,6 +274,7 @@ macro_rules! laws {
                 match self {
                     $(Self::$law(law) => law.may_switch(),)+
                     Self::Scheduled { term, .. } => term.may_switch(),
+                    Self::Controlled { .. } => false, // its controller does
                 }
             }
         }
@@ -296,6 +339,28 @@ impl Term {
     /// When a component is not finite.
     pub fn uniform_gravity(gravity: &Vector3<f64>) -> Result<Self, Error> {
         UniformGravity::new(gravity).map(Self::from)
+    }
+
+    /// A wheel whose motor follows the sum of these terms, and what a program [commands](super::Analytic::command).
+    ///
+    /// # Errors
+    /// [`MotionFault::NoController`] for terms with a force, and for what the body carries along.
+    pub fn controlled(wheel: Wheel, controller: Vec<Self>) -> Result<Self, Error> {
+        let does_more = |term: &Self| term.exerts_force() || term.carried().is_some();
+        if controller.iter().any(does_more) {
+            return Err(MotionFault::NoController.into());
+        }
+        let wheel = Box::new(Self::Wheel(wheel));
+        Ok(Self::Controlled { wheel, controller })
+    }
+
+    /// The terms of the controller that the motor of a wheel follows; nothing of other terms.
+    #[must_use]
+    pub fn controller(&self) -> &[Self] {
+        match self {
+            Self::Controlled { controller, .. } => controller,
+            _ => &[],
+        }
     }
 
     /// The term in `windows` only; of a scheduled one, where both sets of windows are open.

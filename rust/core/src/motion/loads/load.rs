@@ -175,7 +175,7 @@ pub fn wrench_at<L: Load>(
         let held = |bearing: &Bearing| rates[bearing.index] - motors[bearing.index];
         let slips =
             |bearing: &Bearing| bearing.turns == 0.0 && bearing.until_slip(held(bearing)) < 0.0;
-        let share = |bearing: &Bearing| held(bearing).abs() / bearing.most;
+        let share = |bearing: &Bearing| held(bearing).abs() / bearing.most; // infinite of a limit
         let worst = (bearings.iter_mut())
             .filter(|bearing| slips(bearing))
             .max_by(|a, b| share(a).total_cmp(&share(b)));

@@ -58,6 +58,7 @@
 //! # Ok::<(), polhode::Error>(())
 //! ```
 
+mod allocation;
 mod analytic;
 mod attitude_target;
 mod body_at_point;
@@ -79,6 +80,7 @@ mod switch;
 pub(in crate::motion) mod variables;
 mod wrench;
 
+pub use self::allocation::{allocation, allocation_error};
 pub use self::analytic::Analytic;
 pub use self::attitude_target::{AttitudeTarget, Sampling};
 pub use self::body_at_point::BodyAtPoint;

@@ -8,7 +8,10 @@
 //! (I' + Σ J a aᵀ) ω̇ = N' + Σ a τ − ω × I'ω,   f = J a·ω̇ − τ
 //! ```
 //!
-//! where I' is the tensor without the wheels, N' the torque beside it, which counts `−a τ` of the motors and `−ω × h a` of the
+//! A wheel at the limit of its rate is held in the same way, at the rate Ω of the limit: its motor exerts what that takes, as long as it is
+//! asked for more.
+//!
+//! Here I' is the tensor without the wheels, N' the torque beside it, which counts `−a τ` of the motors and `−ω × h a` of the
 //! wheels, and f the torque of the bearing on the wheel. A wheel rests as long as |f| is at most that of the friction.
 
 use nalgebra::{Matrix3, Vector3};
@@ -21,7 +24,7 @@ const REST: f64 = 16.0 * f64::EPSILON;
 /// A bearing holds that much more than the most of its friction, relative to it, so that what has just been found to hold does.
 const GRIP: f64 = 1e-13;
 
-/// The bearing of a wheel, and how the wheel turns in it.
+/// The bearing of a wheel, and how the wheel turns in it; or the limit of the wheel's rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bearing {
     /// Which of the states of the load is the momentum h of the wheel.
@@ -30,10 +33,14 @@ pub struct Bearing {
     pub(super) axis: Vector3<f64>,
     /// J.
     pub(super) inertia: f64,
-    /// The torque of its dry friction, positive.
+    /// The torque of its dry friction, positive; zero of a limit.
     pub(super) most: f64,
-    /// The sign of Ω; zero at rest.
+    /// The largest |Ω| of a limit; zero of dry friction.
+    pub(super) reach: f64,
+    /// The sign of Ω; zero at rest, and at the limit.
     pub(super) turns: f64,
+    /// At the limit the sign of Ω.
+    pub(super) side: f64,
 }
 
 impl Bearing {
@@ -50,7 +57,9 @@ impl Bearing {
             axis,
             inertia,
             most,
+            reach: 0.0,
             turns: 0.0,
+            side: 0.0,
         };
         let [rate, noise] = bearing.rate(phase);
         Self {
@@ -60,6 +69,51 @@ impl Bearing {
                 rate.signum()
             },
             ..bearing
+        }
+    }
+
+    /// The limit of the rate of the wheel that is state number `index`, as it is at `phase`.
+    pub(super) fn limit(
+        index: usize,
+        axis: Vector3<f64>,
+        inertia: f64,
+        reach: f64,
+        phase: &Phase,
+    ) -> Self {
+        let limit = Self {
+            index,
+            axis,
+            inertia,
+            most: 0.0,
+            reach,
+            turns: 1.0,
+            side: 0.0,
+        };
+        let [rate, noise] = limit.rate(phase);
+        if rate.abs() < reach - noise {
+            return limit;
+        }
+        Self {
+            turns: 0.0,
+            ..limit.on_side(phase)
+        }
+    }
+
+    /// Whether it is the limit of a rate.
+    pub(crate) fn is_limit(&self) -> bool {
+        self.reach > 0.0
+    }
+
+    /// Whether it is the same bearing, or limit, however the wheel turns.
+    pub(super) fn is_same(&self, other: &Self) -> bool {
+        self.index == other.index && self.is_limit() == other.is_limit()
+    }
+
+    /// A limit at the side to which the wheel turns.
+    pub(crate) fn on_side(&self, phase: &Phase) -> Self {
+        Self {
+            side: self.rate(phase)[0].signum(),
+            ..*self
         }
     }
 
@@ -77,14 +131,22 @@ impl Bearing {
         -self.turns * self.most
     }
 
-    /// Of a wheel that turns: negative as soon as it turns the other way.
+    /// Of a wheel that turns: negative as soon as it turns the other way, or beyond its limit.
     pub(crate) fn until_stop(&self, phase: &Phase) -> f64 {
         let [rate, noise] = self.rate(phase);
+        if self.is_limit() {
+            // Smooth where the wheel rests.
+            return (self.reach - rate) * (self.reach + rate) / (2.0 * self.reach) + noise;
+        }
         self.turns * rate + noise
     }
 
-    /// Of a wheel at rest, which takes the torque f: negative as soon as the friction cannot hold it.
+    /// Of a wheel at rest, which takes the torque f: negative as soon as the friction cannot hold it. Of one at its limit, whose motor
+    /// exerts f more than it is asked for: negative as soon as it is asked for less.
     pub(crate) fn until_slip(&self, f: f64) -> f64 {
+        if self.is_limit() {
+            return f64::EPSILON * self.inertia * self.reach * self.reach - f * self.side;
+        }
         // Smooth where f is zero.
         let (most, share) = (1.0 + GRIP, f / self.most);
         (most - share) * (most + share)
@@ -98,15 +160,20 @@ impl Bearing {
         }
     }
 
-    /// The wheel has the momentum that it has at rest.
+    /// The wheel has the momentum that it has at rest, or at its limit.
     pub(super) fn keep(&self, phase: &mut Phase) {
-        phase.internal_state[self.index] = self.inertia * self.axis.dot(&phase.omega);
+        phase.internal_state[self.index] = self.inertia * self.axis.dot(&phase.omega) + self.held();
+    }
+
+    /// J Ω at which it is held.
+    fn held(&self) -> f64 {
+        self.inertia * (self.reach * self.side)
     }
 
     /// Of a wheel at rest, which takes the torque f: as it turns when it slips.
     pub(crate) fn in_slip(&self, f: f64) -> Self {
         Self {
-            turns: -f.signum(),
+            turns: if self.is_limit() { 1.0 } else { -f.signum() },
             ..*self
         }
     }
@@ -158,7 +225,7 @@ impl Stiction {
         let moments = Vector3::from(self.euler.moments());
         let mut momentum = axes * moments.component_mul(&axes.tr_mul(&phase.omega));
         for wheel in &self.wheels {
-            momentum += wheel.axis * phase.internal_state[wheel.index];
+            momentum += wheel.axis * (phase.internal_state[wheel.index] - wheel.held());
         }
         phase.omega = self.inverse * momentum;
         self.keep(phase);

@@ -185,6 +185,8 @@ pub enum EventTrigger {
     Slip(usize),
     /// What its motor is asked for comes to the most that it can, or back from there.
     Limit(usize),
+    /// It comes to the limit of its rate (rising), or leaves it (falling).
+    RateLimit(usize),
 }
 
 /// What to do with the passages of one function.
@@ -196,6 +198,8 @@ pub struct Rule {
     pub last: u64,
     /// Of what.
     pub trigger: EventTrigger,
+    /// Whether the run begins at such a passage, at which the one before ended: it does not count again.
+    pub has_passed: bool,
 }
 
 /// A passage through zero.

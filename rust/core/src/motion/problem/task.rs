@@ -133,7 +133,7 @@ impl<'a> Task<'a> {
     }
 
     /// The task of a body that carries this along: its equations are those of the body without the wheels that turn freely. States of
-    /// the load that are not given are what they begin with.
+    /// the load that are not given are what they begin with. A task that has these equations already keeps them.
     ///
     /// # Errors
     /// [`MotionFault::WheelsTooHeavy`](crate::error::MotionFault::WheelsTooHeavy).
@@ -148,6 +148,9 @@ impl<'a> Task<'a> {
                 .iter()
                 .flat_map(|it| it.begin(self.times[0], &omega));
             self.initial.internal_state = begun.collect();
+        }
+        if self.body_without_wheels.is_some() {
+            return Ok(self);
         }
         let turning: Vec<_> = carried.iter().filter_map(|it| it.turning()).collect();
         if turning.is_empty() {

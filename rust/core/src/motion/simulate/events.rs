@@ -53,6 +53,9 @@ const PART_OF_STEP: f64 = 100.0;
 /// Parts of the run in each of which every function is looked at, however still the body is.
 const PARTS_OF_RUN: f64 = 16.0;
 
+/// A change of the law so near to the start of a run, relative to its length, is the one at which the run before ended.
+const AT_ONCE: f64 = 1e-9;
+
 /// A part of a step that was searched for events.
 pub(super) struct PartOfStep {
     /// Its end: time since the start of the span.
@@ -74,6 +77,8 @@ pub(super) struct EventDetector<'a, E> {
     counts: Vec<u64>,
     /// How many looks at parts that were halved are left for each.
     left: Vec<u64>,
+    /// When the run begins.
+    start: f64,
     /// The length of the run, negative where it goes back in time.
     span: f64,
     pub(super) crossings: Vec<Crossing>,
@@ -92,12 +97,17 @@ impl<'a, E: From<Error>> EventDetector<'a, E> {
             .map(|event| match rules[event].trigger {
                 EventTrigger::Function => events.value(event, t, phase),
                 EventTrigger::Limit(state) => Ok(over_limit(state)),
-                EventTrigger::Stop(_) | EventTrigger::Slip(_) => Ok(f64::NAN),
+                EventTrigger::Stop(_) | EventTrigger::Slip(_) | EventTrigger::RateLimit(_) => {
+                    Ok(f64::NAN)
+                }
             })
             .collect::<Result<Vec<_>, E>>()?;
         Ok(Self {
             events,
-            signs: values.iter().map(|value| sign(*value)).collect(),
+            signs: (values.iter().zip(&rules))
+                .map(|(value, rule)| if rule.has_passed { 0.0 } else { sign(*value) })
+                .collect(),
+            start: t,
             values,
             counts: vec![0; rules.len()],
             left: vec![MOST_LOOKS; rules.len()],
@@ -166,7 +176,9 @@ impl<'a, E: From<Error>> EventDetector<'a, E> {
         for event in 0..self.rules.len() {
             let (events, rule) = (&mut *self.events, self.rules[event]);
             let trigger = rule.trigger;
-            if matches!(trigger, EventTrigger::Stop(_) | EventTrigger::Slip(_)) {
+            if let EventTrigger::Stop(_) | EventTrigger::Slip(_) | EventTrigger::RateLimit(_) =
+                trigger
+            {
                 continue; // told by the load
             }
             if self.signs[event] > 0.0
@@ -266,14 +278,28 @@ impl<'a, E: From<Error>> EventDetector<'a, E> {
 
     /// A change of the law of the load, at this time and state; whether the run is to end there.
     pub(super) fn note(&mut self, change: &LawSwitch, time: f64, phase: &Phase) -> bool {
-        let trigger = match change {
-            LawSwitch::Stop(bearing) => EventTrigger::Stop(bearing.index()),
-            LawSwitch::Slip(bearing) => EventTrigger::Slip(bearing.index()),
+        let (trigger, other) = match change {
+            LawSwitch::Stop(limit) if limit.is_limit() => (
+                EventTrigger::RateLimit(limit.index()),
+                Some(Direction::Falling),
+            ),
+            LawSwitch::Slip(limit) if limit.is_limit() => (
+                EventTrigger::RateLimit(limit.index()),
+                Some(Direction::Rising),
+            ),
+            LawSwitch::Stop(bearing) => (EventTrigger::Stop(bearing.index()), None),
+            LawSwitch::Slip(bearing) => (EventTrigger::Slip(bearing.index()), None),
             LawSwitch::Sign(_) => return false,
         };
         let mut is_last = false;
+        let is_at_once = (time - self.start).abs() <= AT_ONCE * self.span.abs();
         for event in 0..self.rules.len() {
-            if self.rules[event].trigger == trigger {
+            let rule = &mut self.rules[event];
+            if rule.trigger != trigger || Some(rule.direction) == other {
+                continue;
+            }
+            let is_known = std::mem::take(&mut rule.has_passed) && is_at_once;
+            if !is_known {
                 is_last |= self.count(event, time, phase);
             }
         }

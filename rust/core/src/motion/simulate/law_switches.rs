@@ -30,6 +30,13 @@ pub(super) fn find_first<E: From<Error>>(
             first = Some((law_switch.clone(), place));
         }
     }
+    if let Some((LawSwitch::Stop(limit), place)) = &first
+        && limit.is_limit()
+    {
+        let place = *place;
+        let limit = limit.on_side(&phase_at(stepper, from, before, place)?);
+        return Ok(Some((LawSwitch::Stop(limit), place)));
+    }
     if let Some((LawSwitch::Slip(bearing), place)) = &first {
         let place = *place;
         // The way that the wheel turns then is against what held it.

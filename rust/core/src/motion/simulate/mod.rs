@@ -6,6 +6,7 @@
 //! |---|---|
 //! | which method serves; what all motions of a stack have in common | `plan` |
 //! | one motion; many, on as many cores as may take part | `runs` |
+//! | a motion that goes on run by run | `chain` |
 //! | the loop over the steps, through spans of time in which the load is smooth | `run_loop` |
 //! | what a run needs of a method of steps | `stepper` |
 //! | the methods: Runge-Kutta, splitting, Taylor series with events | `runge_kutta_run`, `splitting_run`, `taylor_run_with_events` |
@@ -34,7 +35,7 @@
 //!     type Error = polhode::Error;
 //!
 //!     fn rules(&self) -> &[Rule] {
-//!         &[Rule { direction: Direction::Rising, last: 2, trigger: EventTrigger::Function }]
+//!         &[Rule { direction: Direction::Rising, last: 2, trigger: EventTrigger::Function, ..Rule::default() }]
 //!     }
 //!
 //!     fn value(&mut self, _: usize, _: f64, phase: &Phase) -> Result<f64, Self::Error> {
@@ -75,6 +76,7 @@
 //! # Ok::<(), polhode::Error>(())
 //! ```
 
+mod chain;
 mod closed_form_run;
 pub mod events;
 mod law_switches;
@@ -88,6 +90,7 @@ mod splitting_run;
 mod stepper;
 mod taylor_run_with_events;
 
+pub use self::chain::Chain;
 pub use self::events::{Events, NoEvents};
 pub use self::plan::{Ask, Plan, Refusal, gravity_alone, most_demanding};
 pub use self::runs::{Batch, CallbackPolicy, Member, roll, simulate, simulate_many};

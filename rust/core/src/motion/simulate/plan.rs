@@ -132,6 +132,28 @@ impl<'a> Plan<'a> {
         let method = method
             .choose(pivoted, terms, &tolerance, are_tops)
             .map_err(|error| Refusal { body: None, error })?;
+        Self::settled(bodies, pivoted, times, method, tolerance)
+    }
+
+    /// As [`Self::new`], by a method that is known to serve.
+    ///
+    /// # Errors
+    /// As there, for the times and the bodies.
+    pub(super) fn settled(
+        bodies: &'a [RigidBody],
+        pivoted: bool,
+        times: &'a [f64],
+        method: Method,
+        tolerance: Tolerance,
+    ) -> Result<Self, Refusal> {
+        check_times(times).map_err(|error| Refusal { body: None, error })?;
+        let plan = Self {
+            bodies,
+            pivoted,
+            times,
+            method,
+            tolerance,
+        };
         if method != Method::Exact {
             for (number, body) in bodies.iter().enumerate() {
                 check_scales(body, pivoted, times).map_err(|error| Refusal {
@@ -140,13 +162,7 @@ impl<'a> Plan<'a> {
                 })?;
             }
         }
-        Ok(Self {
-            bodies,
-            pivoted,
-            times,
-            method,
-            tolerance,
-        })
+        Ok(plan)
     }
 
     /// Whether the origins of the bodies are fixed.
@@ -267,7 +283,7 @@ impl Method {
                 "analytic loads, no callbacks and no compiled functions"
             }
             Self::Taylor if !has_series => {
-                "loads whose series is known: no orbit about an oblate attractor or along samples, no magnetic field along an orbit, no B-dot, no motor with a limit, no dry friction, no feedback on a target that moves"
+                "loads whose series is known: no orbit about an oblate attractor or along samples, no magnetic field along an orbit, no B-dot, no motor with a limit or a controller that is no feedback, no allocation, no dry friction, no feedback on a target that moves"
             }
             method if is_beyond_doubles && method != Self::Taylor => {
                 "an rtol of 2.3e-15 or more (ten units of rounding)"

@@ -15,7 +15,7 @@ use crate::error::{Error, MotionFault};
 use crate::motion::integrate::rolling::{Regime, RollingSeries};
 use crate::motion::problem::limits::check_steps;
 use crate::motion::problem::{
-    ContactEvent, ContactExtremes, Crossing, Direction, End, EventTrigger, Rule, Run, Task,
+    ContactEvent, ContactExtremes, Crossing, Direction, End, Rule, Run, Task,
 };
 use crate::motion::rolling::equations::Equations;
 use crate::motion::rolling::force::{Instant, instant_of, speed_of_contact};
@@ -600,7 +600,7 @@ impl<'a, E> Limits<'a, E> {
             Rule {
                 direction,
                 last: u64::from(!holds),
-                trigger: EventTrigger::Function,
+                ..Rule::default()
             }
         });
         Self {

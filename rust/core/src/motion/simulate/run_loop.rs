@@ -33,6 +33,9 @@ impl<E> Run<E> {
         for pair in bounds.windows(2) {
             load.enter(pair[0], pair[1])?; // refused before anything is computed
         }
+        if let [from, to, ..] = bounds[..] {
+            load.enter(from, to)?; // where the functions of events are looked at first
+        }
         let (start, end) = (task.times[0], bounds[bounds.len() - 1]);
         let over_limit = |state| load.over_limit(state, start, &task.initial);
         let mut detector =

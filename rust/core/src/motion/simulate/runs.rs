@@ -122,7 +122,7 @@ fn check_rolling(task: &Task<'_>, contact: &Contact) -> Result<(), Error> {
 }
 
 /// The motion of `task` by its method, which is known to serve.
-fn by_method<L: Load>(
+pub(super) fn by_method<L: Load>(
     task: &Task<'_>,
     load: &mut L,
     events: &mut dyn Events<Error = L::Error>,

@@ -46,6 +46,12 @@ pub struct Wheel {
     /// c₀.
     dry_friction: f64,
     drive: Drive,
+    /// The most that |τ| can be; infinite of a motor without a limit.
+    max_torque: f64,
+    /// The most that |Ω| can be, infinite without a limit.
+    max_rate: f64,
+    /// m of a motor that follows a controller: τ = −m·N.
+    allocation: Option<Vector3<f64>>,
 }
 
 impl Wheel {
@@ -68,9 +74,6 @@ impl Wheel {
         positive("inertia", inertia)?;
         finite("rate", rate)?;
         not_negative("friction", friction)?;
-        if let Drive::Limited(_, limit) = &drive {
-            positive("limit", *limit)?;
-        }
         Ok(Self {
             axis: *axis,
             unit,
@@ -79,6 +82,63 @@ impl Wheel {
             friction,
             dry_friction: 0.0,
             drive,
+            max_torque: f64::INFINITY,
+            max_rate: f64::INFINITY,
+            allocation: None,
+        })
+    }
+
+    /// The wheel with a motor that can exert so much at most: |τ| is clipped.
+    ///
+    /// # Errors
+    /// For a torque that is not positive or not finite.
+    pub fn with_max_torque(self, torque: f64) -> Result<Self, Error> {
+        positive("max_torque", torque)?;
+        Ok(Self {
+            max_torque: torque,
+            ..self
+        })
+    }
+
+    /// The wheel with a rate |Ω| of so much at most. There the motor exerts what keeps this rate, as long as it is asked for more.
+    ///
+    /// # Errors
+    /// For a rate that is not positive or not finite, and less than the one at the start.
+    pub fn with_max_rate(self, rate: f64) -> Result<Self, Error> {
+        positive("max_rate", rate)?;
+        if self.rate.abs() > rate {
+            return Err(Error::OutOfDomain {
+                what: "rate",
+                law: "within the limit of the wheel, max_rate or max_momentum divided by its inertia",
+                value: self.rate,
+            });
+        }
+        Ok(Self {
+            max_rate: rate.min(self.max_rate),
+            ..self
+        })
+    }
+
+    /// The wheel with a momentum |J Ω| of so much at most: see [`Self::with_max_rate`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn with_max_momentum(self, momentum: f64) -> Result<Self, Error> {
+        positive("max_momentum", momentum)?;
+        let inertia = self.inertia;
+        self.with_max_rate(momentum / inertia)
+    }
+
+    /// The wheel whose motor exerts `τ = −m·N` where a controller asks for the torque N on the body: m is a row of the
+    /// [allocation](super::super::allocation()) of a set of wheels. Without one it is the axis, of unit length.
+    ///
+    /// # Errors
+    /// For what is not finite.
+    pub fn with_allocation(self, row: &Vector3<f64>) -> Result<Self, Error> {
+        crate::error::all_finite("allocation", row)?;
+        Ok(Self {
+            allocation: Some(*row),
+            ..self
         })
     }
 
@@ -115,18 +175,22 @@ impl Wheel {
 
     /// The rate of the state: ḣ, or JΩ̇ where the speed is given.
     fn rate_of_state(&self, now: &LawContext<'_>, state: &[f64]) -> f64 {
-        let motor = match &self.drive {
-            Drive::Speed(speed) => return self.inertia * speed.line(now.middle)[1],
-            Drive::Torque(torque) => torque.value(now.middle),
-            Drive::Feedback(law) => self.demanded_torque(law, now),
-            Drive::Limited(law, limit) => self.demanded_torque(law, now).clamp(-limit, *limit),
-        };
+        if let Drive::Speed(speed) = &self.drive {
+            return self.inertia * speed.line(now.middle)[1];
+        }
+        let motor = (self.demanded_torque(now)).clamp(-self.max_torque, self.max_torque);
         motor - self.friction * self.speed(state, &now.phase.omega)
     }
 
-    /// What a feedback asks of the motor.
-    fn demanded_torque(&self, law: &Feedback, now: &LawContext<'_>) -> f64 {
-        -(self.unit).dot(&law.torque_on(now))
+    /// What is asked of the motor.
+    fn demanded_torque(&self, now: &LawContext<'_>) -> f64 {
+        let along = self.allocation.as_ref().unwrap_or(&self.unit);
+        match &self.drive {
+            Drive::Torque(torque) => torque.value(now.middle),
+            Drive::Feedback(law) => -along.dot(&law.torque_on(now)),
+            Drive::Controller => -along.dot(&now.command),
+            Drive::Speed(_) => 0.0,
+        }
     }
 
     /// a of unit length, in principal axes.
@@ -150,13 +214,17 @@ impl Law for Wheel {
             needs_body: !self.has_speed(),
             needs_epoch: self.feedback().is_some_and(|law| law.target.needs_epoch()),
             keeps: ConservedMomentum::All,
-            has_series: !matches!(self.drive, Drive::Limited(..))
+            has_series: !self.has_limit()
+                && self.allocation.is_none()
+                && !matches!(self.drive, Drive::Controller)
                 && self.bearing().is_none()
+                && self.rate_limit().is_none()
                 && (self.feedback()).is_none_or(|law| law.target.as_fixed().is_some()),
         }
     }
 
-    /// Those of a feedback that its motor follows are the last; a limit and dry friction have no series, and are left out.
+    /// Those of a feedback that its motor follows are the last; limits, dry friction, an allocation and other controllers have no series, and
+    /// are left out.
     fn parameters(&self) -> Vec<Parameter> {
         let mut all = vec![Parameter::new("axis", &[3]), Parameter::new("inertia", &[])];
         if let Drive::Speed(speed) = &self.drive {
@@ -167,8 +235,8 @@ impl Law for Wheel {
         all.push(Parameter::new("friction", &[]));
         match &self.drive {
             Drive::Torque(torque) => all.push(torque.parameter("torque")),
-            Drive::Feedback(law) | Drive::Limited(law, _) => all.extend(law.parameters()),
-            Drive::Speed(_) => {}
+            Drive::Feedback(law) => all.extend(law.parameters()),
+            Drive::Controller | Drive::Speed(_) => {}
         }
         all
     }
@@ -178,7 +246,7 @@ impl Law for Wheel {
     }
 
     fn with_epoch(mut self, t: f64) -> Self {
-        if let Drive::Feedback(law) | Drive::Limited(law, _) = &mut self.drive {
+        if let Drive::Feedback(law) = &mut self.drive {
             *law = law.clone().with_epoch(t);
         }
         self
@@ -189,10 +257,10 @@ impl Law for Wheel {
     }
 
     fn check(&self, body: &BodyAtPoint, from: f64, to: f64) -> Result<(), Error> {
-        if to < from && self.bearing().is_some() {
+        if to < from && (self.bearing().is_some() || self.rate_limit().is_some()) {
             return Err(Error::OutOfDomain {
                 what: "t",
-                law: "ascending where a wheel has dry friction: of one at rest nobody knows when it came to rest",
+                law: "ascending where a wheel has dry friction or a largest rate: of one that is held nobody knows since when it is",
                 value: to,
             });
         }
@@ -208,6 +276,7 @@ impl Law for Wheel {
             middle: t,
             phase,
             side: (self.switch(body, t, phase)).map_or(1.0, |switch| switch.side),
+            command: Vector3::zeros(),
         };
         let mut torque = self.torque(&now, &state);
         if self.bearing().is_some() && self.rate != 0.0 {
@@ -220,7 +289,7 @@ impl Law for Wheel {
     fn potential(&self, _: &BodyAtPoint, _: &Phase) -> Option<f64> {
         let is_free = match &self.drive {
             Drive::Torque(torque) => torque.times().is_empty() && torque.value(0.0) == 0.0,
-            Drive::Feedback(_) | Drive::Limited(..) | Drive::Speed(_) => false,
+            Drive::Feedback(_) | Drive::Controller | Drive::Speed(_) => false,
         };
         (is_free && self.friction == 0.0 && self.dry_friction == 0.0).then_some(0.0)
     }
@@ -249,8 +318,9 @@ impl Law for Wheel {
                 state.reported_on_omega = a * inertia;
             }
             Drive::Torque(torque) => state.constant = torque.number(axes.middle, axes, "torque"),
+            Drive::Controller => {} // has no series
             // With a limit it has no series, nor with dry friction: the law without them.
-            Drive::Feedback(law) | Drive::Limited(law, _) => {
+            Drive::Feedback(law) => {
                 let mut asked = SeriesTerms::default();
                 law.add_to(&mut asked, axes, side);
                 state.on_omega = -asked.on_omega().tr_mul(&a);
@@ -299,7 +369,7 @@ impl CarriedMomentum for Wheel {
     fn begin(&self, t: f64, omega: &Vector3<f64>) -> Vec<f64> {
         vec![match &self.drive {
             Drive::Speed(speed) => self.inertia * speed.line(t)[0],
-            Drive::Torque(_) | Drive::Feedback(_) | Drive::Limited(..) => {
+            Drive::Torque(_) | Drive::Feedback(_) | Drive::Controller => {
                 self.inertia * (self.rate + self.unit.dot(omega))
             }
         }]
@@ -356,16 +426,21 @@ impl CarriedMomentum for Wheel {
         ))
     }
 
-    fn has_limit(&self) -> bool {
-        matches!(self.drive, Drive::Limited(..))
+    fn rate_limit(&self) -> Option<(Vector3<f64>, f64, f64)> {
+        (self.max_rate.is_finite() && !self.has_speed()).then_some((
+            self.unit,
+            self.inertia,
+            self.max_rate,
+        ))
     }
 
+    fn has_limit(&self) -> bool {
+        self.max_torque.is_finite()
+    }
+
+    /// Smooth where nothing is asked for.
     fn over_limit(&self, now: &LawContext<'_>) -> f64 {
-        let Drive::Limited(law, limit) = &self.drive else {
-            return -1.0;
-        };
-        // Smooth where nothing is asked for.
-        let share = self.demanded_torque(law, now) / limit;
+        let share = self.demanded_torque(now) / self.max_torque;
         (share - 1.0) * (share + 1.0)
     }
 
@@ -426,8 +501,9 @@ pub enum Drive {
     Torque(PiecewiseSignal),
     /// A motor that exerts on the body, about the wheel's axis, what a feedback asks for: `τ = −a·N`.
     Feedback(Feedback),
-    /// The same, as far as the motor can: `|τ|` is at most the limit.
-    Limited(Feedback, f64),
+    /// A motor that exerts on the body, about the wheel's axis, what a controller asks for: see
+    /// [`Term::controlled`](super::super::Term::controlled).
+    Controller,
     /// A motor that gives the wheel a speed Ω relative to the body that is known: straight lines between times.
     Speed(PiecewiseSignal),
 }
@@ -436,8 +512,8 @@ impl Drive {
     /// The feedback that a motor follows.
     pub(super) fn feedback(&self) -> Option<&Feedback> {
         match self {
-            Self::Feedback(law) | Self::Limited(law, _) => Some(law),
-            Self::Torque(_) | Self::Speed(_) => None,
+            Self::Feedback(law) => Some(law),
+            Self::Torque(_) | Self::Controller | Self::Speed(_) => None,
         }
     }
 
@@ -445,7 +521,8 @@ impl Drive {
     pub(super) fn breaks(&self) -> Vec<f64> {
         match self {
             Self::Torque(held) | Self::Speed(held) => held.times().to_vec(),
-            Self::Feedback(law) | Self::Limited(law, _) => law.breaks(),
+            Self::Feedback(law) => law.breaks(),
+            Self::Controller => Vec::new(),
         }
     }
 
@@ -454,7 +531,8 @@ impl Drive {
         match self {
             Self::Torque(held) => held.covers("torque", from, to, false),
             Self::Speed(held) => held.covers("speed", from, to, true),
-            Self::Feedback(law) | Self::Limited(law, _) => law.check(body, from, to),
+            Self::Feedback(law) => law.check(body, from, to),
+            Self::Controller => Ok(()),
         }
     }
 }
