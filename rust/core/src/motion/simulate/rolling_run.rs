@@ -26,7 +26,7 @@ use crate::motion::state::Phase;
 /// ceased.
 const CEASED: f64 = 64.0 * f64::EPSILON;
 const OF_TOLERANCE: f64 = 0.01;
-/// How often the part of a step in which a slip is looked for is made smaller.
+/// How often the part of a step in which a slip or a height is looked for is made smaller.
 const HALVINGS: usize = 12;
 /// How near to the edge of the cone of friction it is not known whether a body rolls, relative to the force.
 const EDGE: f64 = 1e-12;
@@ -442,9 +442,12 @@ impl Rolling<'_> {
             run.effort = dense.series.effort();
             let steps = run.effort.steps;
             dense.looks_at_limits = true;
-            let end = dense.elapsed();
-            let to = self.end_of_rise(dense, from, end);
-            let place = own.look(dense, start, from, to);
+            let (to, risen) = (dense.elapsed(), self.end_of_rise(dense, from));
+            let mut place = own.look(dense, start, from, risen);
+            if matches!(place, Ok(None)) && risen != to {
+                self.is_fresh.set(false);
+                place = own.look(dense, start, risen, to);
+            }
             dense.looks_at_limits = false;
             let place = place?;
             let mut held = std::mem::take(&mut own.crossings);
@@ -466,8 +469,7 @@ impl Rolling<'_> {
                         && !self.is_fresh.get()
                         && self.has_ceased(*limit, &dense.series, to)
                 });
-                let cut = (to != end).then_some(Reached::Cut(to));
-                (reached, ends) = (to, gone.map(|limit| Reached::Limit(limit, to)).or(cut));
+                (reached, ends) = (to, gone.map(|limit| Reached::Limit(limit, to)));
             }
             let found = detector.search_step(dense, start, [from, reached], |step, part| {
                 let has_ended = part.event.is_some();
@@ -517,19 +519,19 @@ impl Rolling<'_> {
         Ok(Reached::End(End::Complete))
     }
 
-    /// Return where in the first step of a regime a slip or a height that rises from zero is the largest: near zero its sign is unknown,
-    /// so another step has to find where it comes back to zero. The end of the step where it only rises, and of other steps.
-    fn end_of_rise<E>(&self, dense: &RollingStep<'_, E>, from: f64, end: f64) -> f64 {
+    /// Return where in the first step of a regime a slip or a height that rises from zero is the largest: up to there its rounding
+    /// errors do not count, and from there on it may come back to zero. The end of other steps.
+    fn end_of_rise<E>(&self, dense: &RollingStep<'_, E>, from: f64) -> f64 {
         let rises = |limit: &&Limit| matches!(limit, Limit::Slip | Limit::Height);
+        let mut to = dense.series.elapsed();
         let Some(limit) = dense
             .limits
             .iter()
             .find(rises)
             .filter(|_| self.is_fresh.get())
         else {
-            return end;
+            return to;
         };
-        let mut to = end;
         for _ in 0..HALVINGS {
             let place = |part: usize| from + (to - from) * (part as f64 / PARTS as f64);
             let values: [f64; PARTS] =
@@ -541,7 +543,7 @@ impl Rolling<'_> {
                 _ => to = place(1),
             }
         }
-        end
+        to
     }
 
     fn cross<E>(&self, run: &mut Run<E>, event: ContactEvent, time: f64, phase: &Phase) {
