@@ -1,4 +1,7 @@
-"""From a gyro's log to the tensor: efficiency, coverage, what is not told, errors. Logs and bounds are SciPy's."""
+"""From a gyro's log to the tensor: efficiency, coverage, what is not told, errors.
+
+Logs and bounds are SciPy's.
+"""
 
 from __future__ import annotations
 
@@ -19,14 +22,17 @@ ELEMENTS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 SIGMA, BIAS = 0.01, np.array([0.05, -0.02, 0.03])
 
 
-def rate(omega: Floats, inertia: Floats, rotor: Floats) -> Floats:
-    return np.asarray(np.linalg.solve(inertia, -np.cross(omega, inertia @ omega + rotor)))
+def cross(omega: Floats) -> Floats:
+    """The matrix of ω ×."""
+    x, y, z = omega.tolist()
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def motion(inertia: Floats, start: Floats, t: Floats, rotor: Any = (0.0, 0.0, 0.0)) -> Floats:
     """ω at times, by Euler's equations."""
+    inverse, h = np.linalg.inv(inertia), np.asarray(rotor)
     found = solve_ivp(
-        lambda _, omega: rate(omega, inertia, np.asarray(rotor)), (t[0], t[-1]), start, "DOP853", t,
+        lambda _, omega: -inverse @ (cross(omega) @ (inertia @ omega + h)), (t[0], t[-1]), start, "DOP853", t,
         rtol=1e-12, atol=1e-13,
     )  # fmt: skip
     return np.asarray(found.y.T)
@@ -45,21 +51,20 @@ def tensor(numbers: Floats) -> Floats:
 
 def derivatives(inertia: Floats, start: Floats, t: Floats, rotor: Any = (0.0, 0.0, 0.0)) -> Floats:
     """∂ω/∂(ω₀, tensor) at times, shape (n, 3, 9), by the variational equations."""
-    h = np.asarray(rotor)
-    basis = [tensor(one) for one in np.eye(6)]
-    inverse = np.linalg.inv(inertia)
+    h, inverse = np.asarray(rotor), np.linalg.inv(inertia)
+    basis = np.array([tensor(one) for one in np.eye(6)])
 
     def whole(_: float, y: Floats) -> Floats:
-        omega, columns = y[:3], y[3:].reshape(9, 3)
-        turn = rate(omega, inertia, h)
-        change = -np.cross(columns, inertia @ omega + h) - np.cross(omega, columns @ inertia)
-        for k, one in enumerate(basis):
-            change[3 + k] -= one @ turn + np.cross(omega, one @ omega)
-        return np.concatenate([turn, (change @ inverse).ravel()])
+        omega, columns = y[:3], y[3:].reshape(3, 9)
+        momentum, turns = inertia @ omega + h, cross(omega)
+        turn = -inverse @ (turns @ momentum)
+        change = cross(momentum) @ columns - turns @ (inertia @ columns)
+        change[:, 3:] -= (basis @ turn).T + turns @ (basis @ omega).T
+        return np.concatenate([turn, (inverse @ change).ravel()])
 
-    first = np.concatenate([start, np.eye(9, 3).ravel()])
-    found = solve_ivp(whole, (t[0], t[-1]), first, "DOP853", t, rtol=1e-10, atol=1e-10)
-    return np.asarray(found.y[3:].reshape(9, 3, -1).transpose(2, 1, 0))
+    first = np.concatenate([start, np.eye(3, 9).ravel()])
+    found = solve_ivp(whole, (t[0], t[-1]), first, "DOP853", t, rtol=1e-9, atol=1e-9)
+    return np.asarray(found.y[3:].reshape(3, 9, -1).transpose(2, 0, 1))
 
 
 class Throw:
@@ -140,7 +145,9 @@ def throws() -> list[Throw]:
 
 
 class TestEfficiency:
-    def check(self, seeds: int, pooled: tuple[float, float], each: float, covers: tuple[float, float]) -> None:
+    def check(
+        self, seeds: int, pooled: tuple[float, float], each: float, covers: tuple[float, float]
+    ) -> None:
         inside, ratios = [], []
         limit = chi_square.ppf(0.95, 5)
         for number, throw in enumerate(throws()):
@@ -245,9 +252,9 @@ class TestLogs:
         t, rows, there = ASYMMETRIC.log(4)
         rows[there] += np.where(np.random.default_rng(0).random(there.sum()) < 0.03, 3.0, 0.0)[:, None]
         found = identify.from_tumble(t, rows, bias=True, loss="student")
-        off = (found.estimate - np.concatenate([ASYMMETRIC.start, elements(ASYMMETRIC.inertia), BIAS])) / np.sqrt(
-            np.diagonal(found.covariance)
-        )
+        off = (
+            found.estimate - np.concatenate([ASYMMETRIC.start, elements(ASYMMETRIC.inertia), BIAS])
+        ) / np.sqrt(np.diagonal(found.covariance))
         assert np.abs(off).max() < 4.0
         assert found.body.sigma.inertia.max() < 0.005
 

@@ -40,7 +40,9 @@ _SCALE_REMEDY: Final = (
     "no torque acts and no rotor turns: let a rotor of known momentum turn inside, or give what is known "
     "by prior="
 )
-_REMEDY: Final = "throw it so that ω moves about all axes (identify.best_throw), spin it faster, or log longer"
+_REMEDY: Final = (
+    "throw it so that ω moves about all axes (identify.best_throw), spin it faster, or log longer"
+)
 _BASIS: Final = np.array(tensor_of(np.eye(6)))
 _TRACE: Final = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 
@@ -142,9 +144,7 @@ def from_tumble(
             kind="no fit",
         )
     _check_fit(times, rows, known, found[0])
-    fits = [
-        _result(one, known, momentum, own_mass, prior is not None, scale_known, dropped) for one in found
-    ]
+    fits = [_result(one, known, momentum, own_mass, scale_known, dropped) for one in found]
     weak = tuple(one for one in fits[0].observability if one.words != _SCALE)
     if any(one.relative >= _LOST for one in weak) or np.isnan(fits[0].covariance).any():
         raise IdentificationError(
@@ -226,7 +226,7 @@ def design(
     )
     told["residuals"] = np.zeros((0, 3))
     told["chi2"] = 0.0
-    return _result(told, known, momentum, float(body.mass), False, scale_known, {}, rows=len(times))
+    return _result(told, known, momentum, float(body.mass), scale_known, {}, rows=len(times))
 
 
 def best_throw(
@@ -293,7 +293,8 @@ def best_throw(
     moments, axes = np.linalg.eigh(np.asarray(body.inertia))
     if not moments[0] > 1e-9 * moments[2]:
         raise ValueError(
-            f"body: the moment {moments[0]:.3g} is zero beside {moments[2]:.3g}; a spin about this axis has no energy"
+            f"body: the moment {moments[0]:.3g} is zero beside {moments[2]:.3g}; "
+            "a spin about this axis has no energy; give the body some thickness"
         )
     times = np.linspace(0.0, float(end), int(n))
     known, momentum = _known(sigma, bias, rotor, None, "gaussian")
@@ -613,7 +614,6 @@ def _result(
     known: dict[str, Any],
     momentum: Floats,
     mass: float,
-    has_prior: bool,
     scaled: bool,
     dropped: dict[str, int],
     rows: int | None = None,
@@ -625,7 +625,9 @@ def _result(
     bound = _covariance(triangle, _allowed(inertia, scaled, False))
     covariance = _covariance(triangle, _allowed(inertia, scaled, True)) if edge else bound
     nothing = np.full((len(triangle), len(triangle)), np.nan)
-    names = [f"omega_{one}" for one in _AXES] + list(NUMBERS[4:]) + [f"bias_{one}" for one in _AXES] * has_bias
+    names = (
+        [f"omega_{one}" for one in _AXES] + list(NUMBERS[4:]) + [f"bias_{one}" for one in _AXES] * has_bias
+    )
     bare = body = RigidBody(mass=mass, inertia=inertia)
     if covariance is not None:
         whole = np.zeros((10, 10))
