@@ -290,6 +290,18 @@ class TestLogs:
         assert any(edges)
         assert not all(edges)
 
+    def test_a_second_maximum_is_told(self) -> None:
+        # A third of a turn of a body with two moments 0.2 % apart.
+        start = Rotation.random(random_state=27).inv().apply((-4.19388414, -1.95913382, -2.14917511))
+        throw = Throw((0.54446782, 0.76171736, 0.76301112), 27, start, 2.1135036420831605, 200)
+        t, rows, _ = throw.log(27)
+        found = identify.from_tumble(t, rows, sigma=SIGMA, bias=True, starts=8)
+        assert len(found.alternatives) >= 1
+        for other in found.alternatives:
+            assert 0.0 <= other.chi2 - found.chi2 < 6.0
+            assert np.abs(other.body.inertia - found.body.inertia).max() > 1e-4
+        assert identify.from_tumble(t, rows, sigma=SIGMA, bias=True, starts=0).alternatives == ()
+
 
 class TestWhatIsNotTold:
     def told(self, inertia: Any, start: Any, t: Floats, bias: bool = False) -> tuple[Any, ...]:

@@ -33,6 +33,8 @@ const PIECE: f64 = 1.0;
 const NEAR: f64 = 0.15;
 /// Steps of a chain, at most.
 const JOINS: usize = 15;
+/// Those of a further start: what is not near a maximum by then is not near the best one.
+const TRIES: usize = 6;
 /// Rows on which further starts are tried out, and how many of them.
 const HEAD: usize = 2000;
 const TRIED: usize = 300;
@@ -156,7 +158,7 @@ struct Scaled<'a> {
 /// use std::ops::ControlFlow;
 /// use polhode::RigidBody;
 /// use polhode::motion::free::FreeMotion;
-/// use polhode::motion::identification::{Bias, Tumble, fit_tumble};
+/// use polhode::motion::identification::{Bias, Fit, Tumble, fit_tumble, information};
 /// use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
 ///
 /// let tensor = Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45));
@@ -175,8 +177,13 @@ struct Scaled<'a> {
 ///     student: false,
 ///     starts: 4,
 /// };
-/// let found = fit_tumble(&tumble, &mut |_| ControlFlow::Continue(()))?;
+/// let go_on = &mut |_| ControlFlow::Continue(());
+/// let found: Vec<Fit> = fit_tumble(&tumble, go_on)?;
 /// assert!((found[0].inertia[0] - 0.2).abs() < 1e-9);
+///
+/// // What the same throw tells was known before.
+/// let told = information(&tumble, ([1.0, 2.0, 0.5], [0.2, 0.35, 0.45, 0.0, 0.0, 0.0]), go_on)?;
+/// assert!((told.triangle[0][0] / found[0].triangle[0][0] - 1.0).abs() < 1e-6);
 /// # Ok::<(), polhode::Error>(())
 /// ```
 ///
@@ -602,11 +609,11 @@ impl<'a> Scaled<'a> {
 
     /// Fits the first rows by pieces whose gaps close as the fit goes on (H. G. Bock, Springer Series in Chemical Physics 18,
     /// 1981, 102). Neither a separatrix nor the length of the log makes its way crooked, as that of ω₀ alone would be.
-    fn join(&self, start: &Balanced, rows: usize) -> Option<(Point, Linked)> {
+    fn join(&self, start: &Balanced, rows: usize, passes: usize) -> Option<(Point, Linked)> {
         let directions = self.directions();
         let mut here = self.chain(start, rows);
         let mut linked = self.link(&here, rows, &directions)?;
-        for _ in 0..JOINS {
+        for _ in 0..passes {
             // What nothing tells stays within half of its size.
             let sizes = vec![2.0; linked.triangle.unknowns()];
             let (step, gain) = linked.triangle.step(1.0, &sizes)?;
@@ -615,7 +622,7 @@ impl<'a> Scaled<'a> {
             }
             let mut share = 1.0;
             let mut taken = false;
-            while share > 0.01 && !taken {
+            while share > 0.05 && !taken {
                 let scaled: Vec<f64> = step.iter().map(|x| x * share).collect();
                 let mut next = Chain {
                     point: moved(&here.point, &scaled, &directions),
@@ -799,7 +806,7 @@ impl<'a> Scaled<'a> {
         let mut used = 0;
         for start in starts.iter().take(self.tumble.starts + 1) {
             used += 1;
-            let joined = self.join(start, n);
+            let joined = self.join(start, n, JOINS);
             let found = joined.and_then(|(point, _)| self.refine(&point, n, &stop));
             if self.stopped.get() {
                 return Vec::new();
@@ -842,7 +849,7 @@ impl<'a> Scaled<'a> {
             .take(self.tumble.starts)
         {
             self.done.set(0.5 + 0.5 * self.done.get());
-            let found = some.join(&start, count);
+            let found = some.join(&start, count, TRIES);
             if some.stopped.get() {
                 self.stopped.set(true);
                 return Vec::new();
@@ -860,7 +867,7 @@ impl<'a> Scaled<'a> {
                 inertia: other.inertia,
                 bias: other.bias,
             };
-            let other = self.join(&again, n).map(|(other, _)| other);
+            let other = self.join(&again, n, JOINS).map(|(other, _)| other);
             let Some((other, own, converged)) =
                 other.and_then(|other| self.refine(&other, n, &stop))
             else {
