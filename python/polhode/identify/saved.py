@@ -199,7 +199,5 @@ def _direction(given: dict[str, Any], file: Path) -> Direction:
     if change.ndim != 1:
         raise FileFormatError(f"{file}: observability.parameters has shape {change.shape}, expected (P,)")
     sizes = (require_field(given, name, file) for name in ("sigma", "relative"))
-    sigma, relative = (
-        math.inf if one is None else _number(one, "observability", file) for one in sizes
-    )
+    sigma, relative = (math.inf if one is None else _number(one, "observability", file) for one in sizes)
     return Direction(words, change, sigma, relative, remedy)
