@@ -137,7 +137,7 @@ class IdentificationError(PolhodeError):
     Attributes
     ----------
     kind : str
-        ``"undetermined"``, ``"no fit"``, ``"contradiction"`` or ``"clock"``.
+        ``"undetermined"``, ``"no fit"``, ``"contradiction"``, ``"clock"``, ``"units"`` or ``"saturated"``.
     observability : tuple of Direction
         The directions that the measurements leave undetermined.
     """

@@ -23,15 +23,15 @@ if TYPE_CHECKING:
 
 __all__ = ["best_throw", "design", "from_tumble"]
 
-_STARTS: Final = 6
+_STARTS: Final = 4
 _LEAST: Final = 8
 """Rows of a log, at least."""
 _NEVER: Final = 1e-6
 """Probability below which noise does not explain a sum of squares."""
 _UNCERTAIN: Final = 0.1
 """Share of its own size beyond which the sigma of a direction is told."""
-_LOST: Final = 1.0
-"""Share beyond which a direction is not determined: its sigma exceeds the size of the tensor."""
+_LOST: Final = 0.3
+"""Share beyond which a direction is not determined: the triangle inequality tells as much."""
 _SHARE: Final = 0.15
 _RANK: Final = 1e-13
 _AXES: Final = "xyz"
@@ -40,7 +40,9 @@ _SCALE_REMEDY: Final = (
     "no torque acts and no rotor turns: let a rotor of known momentum turn inside, or give what is known "
     "by prior="
 )
-_REMEDY: Final = "throw it so that ω moves about all axes (identify.best_throw), spin it faster, or log longer"
+_REMEDY: Final = (
+    "throw it so that ω moves about all axes (identify.best_throw), spin it faster, or log longer"
+)
 _BASIS: Final = np.array(tensor_of(np.eye(6)))
 _TRACE: Final = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 
@@ -84,20 +86,20 @@ def from_tumble(
     loss : {"gaussian", "student"}
         The second bears outliers: noise by Student's distribution with 4 degrees of freedom.
     starts : int, optional
-        Number of further starts, 6 by default, so that no second maximum is missed.
+        Number of further starts, 4 by default, so that no second maximum is missed.
     progress : callable, optional
         Called with the fraction done.
 
     Returns
     -------
     Identified
-        ``parameters`` are the angular velocity at the first time, the tensor and, if there is one, the bias.
-        ``motion`` is the motion of the most likely body; its times count from the first one.
+        ``parameters`` are the angular velocity at the time of the first finite row, the tensor and, if there
+        is one, the bias. ``motion`` is the motion of the most likely body; its times count from that row.
 
     Raises
     ------
     IdentificationError
-        ``"undetermined"`` where the sigma of a direction of the tensor exceeds its size; ``"no fit"`` where
+        ``"undetermined"`` where the sigma of a direction of the tensor exceeds 30 % of its size; ``"no fit"`` where
         no free motion explains the log, with a probability below 1e-6; ``"units"`` where one explains it in
         degrees; ``"clock"`` for times that do not ascend; ``"saturated"`` where values pile up at a limit.
     ValueError
@@ -142,14 +144,12 @@ def from_tumble(
             kind="no fit",
         )
     _check_fit(times, rows, known, found[0])
-    fits = [
-        _result(one, known, momentum, own_mass, prior is not None, scale_known, dropped) for one in found
-    ]
-    undetermined = tuple(one for one in fits[0].observability if one.relative >= _LOST and one.words != _SCALE)
-    if undetermined or np.isnan(fits[0].covariance).any():
+    fits = [_result(one, known, momentum, own_mass, scale_known, dropped) for one in found]
+    weak = tuple(one for one in fits[0].observability if one.words != _SCALE)
+    if any(one.relative >= _LOST for one in weak) or np.isnan(fits[0].covariance).any():
         raise IdentificationError(
             f"omega: {len(times)} rows leave undetermined: ",
-            "; ".join(one.words for one in undetermined) or "combinations of start and offsets",
+            "; ".join(one.words for one in weak) or "combinations of start and offsets",
             f"; {_REMEDY}",
             kind="undetermined",
             observability=fits[0].observability,
@@ -226,7 +226,7 @@ def design(
     )
     told["residuals"] = np.zeros((0, 3))
     told["chi2"] = 0.0
-    return _result(told, known, momentum, float(body.mass), False, scale_known, {}, rows=len(times))
+    return _result(told, known, momentum, float(body.mass), scale_known, {}, rows=len(times))
 
 
 def best_throw(
@@ -293,7 +293,8 @@ def best_throw(
     moments, axes = np.linalg.eigh(np.asarray(body.inertia))
     if not moments[0] > 1e-9 * moments[2]:
         raise ValueError(
-            f"body: the moment {moments[0]:.3g} is zero beside {moments[2]:.3g}; a spin about this axis has no energy"
+            f"body: the moment {moments[0]:.3g} is zero beside {moments[2]:.3g}; "
+            "a spin about this axis has no energy; give the body some thickness"
         )
     times = np.linspace(0.0, float(end), int(n))
     known, momentum = _known(sigma, bias, rotor, None, "gaussian")
@@ -398,8 +399,8 @@ def _known(
         raise ValueError(f"loss: expected 'gaussian' or 'student', got {loss!r}")
     offset: Any = bias
     if isinstance(bias, Uncertain):
-        if bias.value.shape != (3,):
-            raise ValueError(f"bias: expected an Uncertain of shape (3,), got {bias.value.shape}")
+        if np.shape(bias.value) != (3,):
+            raise ValueError(f"bias: expected an Uncertain of shape (3,), got {np.shape(bias.value)}")
         offset = (bias.value.tolist(), _whitening("bias", np.asarray(bias.covariance)).tolist())
     elif not isinstance(bias, (bool, np.bool_)):
         raise ValueError(
@@ -613,7 +614,6 @@ def _result(
     known: dict[str, Any],
     momentum: Floats,
     mass: float,
-    has_prior: bool,
     scaled: bool,
     dropped: dict[str, int],
     rows: int | None = None,
@@ -625,8 +625,10 @@ def _result(
     bound = _covariance(triangle, _allowed(inertia, scaled, False))
     covariance = _covariance(triangle, _allowed(inertia, scaled, True)) if edge else bound
     nothing = np.full((len(triangle), len(triangle)), np.nan)
-    names = [f"omega_{one}" for one in _AXES] + list(NUMBERS[4:]) + [f"bias_{one}" for one in _AXES] * has_bias
-    body = RigidBody(mass=mass, inertia=inertia)
+    names = (
+        [f"omega_{one}" for one in _AXES] + list(NUMBERS[4:]) + [f"bias_{one}" for one in _AXES] * has_bias
+    )
+    bare = body = RigidBody(mass=mass, inertia=inertia)
     if covariance is not None:
         whole = np.zeros((10, 10))
         whole[4:, 4:] = covariance[3:9, 3:9]
@@ -643,7 +645,8 @@ def _result(
             offset, covariance=0.5 * (covariance[9:, 9:] + covariance[9:, 9:].T)
         )  # fmt: skip
     still = np.zeros(3)
-    motion = body.gyrostat(momentum).free_motion(omega) if momentum.any() else body.free_motion(omega)
+    # A gyrostat's motion carries no sigmas.
+    motion = bare.gyrostat(momentum).free_motion(omega) if momentum.any() else body.free_motion(omega)
     return Identified(
         body=body, parameters=tuple(names), estimate=np.concatenate([omega, elements, offset])[: len(names)],
         covariance=nothing if covariance is None else covariance, crlb=nothing if bound is None else bound,

@@ -76,7 +76,19 @@ fn log<'a>(
             omega.len()
         )));
     }
+    check(t)?;
+    if !omega.as_flattened().iter().all(|x| x.is_finite()) {
+        return Err(PyValueError::new_err("omega: expected finite numbers"));
+    }
     Ok((t, omega))
+}
+
+/// Times have to ascend.
+fn check(t: &[f64]) -> PyResult<()> {
+    if t.iter().all(|x| x.is_finite()) && t.windows(2).all(|pair| pair[0] < pair[1]) {
+        return Ok(());
+    }
+    Err(PyValueError::new_err("t: expected finite, ascending times"))
 }
 
 fn dict<'py>(py: Python<'py>, fit: &Fit) -> PyResult<Bound<'py, PyDict>> {
@@ -114,7 +126,10 @@ pub(crate) fn fit_tumble<'py>(
     interrupt.finish(py, found.is_ok())?;
     let found: Result<Vec<Fit>, Error> = found;
     let found = found.map_err(|error| to_py(py, &error))?;
-    let found: Vec<_> = found.iter().map(|fit| dict(py, fit)).collect::<PyResult<_>>()?;
+    let found: Vec<_> = found
+        .iter()
+        .map(|fit| dict(py, fit))
+        .collect::<PyResult<_>>()?;
     PyList::new(py, found)
 }
 
@@ -133,6 +148,7 @@ pub(crate) fn tumble_information<'py>(
     if t.is_empty() {
         return Err(PyValueError::new_err("t: needs at least one time"));
     }
+    check(t)?;
     let still = vec![[0.0; 3]; t.len()];
     let tumble = known.with(t, &still);
     let interrupt = Interrupt::new(None);

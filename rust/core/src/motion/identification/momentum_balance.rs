@@ -55,7 +55,9 @@ fn windows(question: &Question<'_>, duration: f64) -> Vec<Window> {
     let span = t[t.len() - 1] - t[0];
     let usual = span / (t.len() - 1) as f64;
     let duration = duration.max(LEAST as f64 * usual).min(span);
-    let count = ((2.0 * span / duration).floor() as usize).saturating_sub(1).max(1);
+    let count = ((2.0 * span / duration).floor() as usize)
+        .saturating_sub(1)
+        .max(1);
     let stride = count.div_ceil(MOST);
     let mut found = Vec::new();
     for k in (0..count).step_by(stride) {
@@ -77,7 +79,10 @@ fn windows(question: &Question<'_>, duration: f64) -> Vec<Window> {
             let step = 0.5 * (upper - lower);
             let x = 2.0 * (t[i] - begin) / duration - 1.0;
             let hump = (1.0 - x * x).max(0.0);
-            let (phi, slope) = (hump.powi(4) * step, -16.0 * x * hump.powi(3) / duration * step);
+            let (phi, slope) = (
+                hump.powi(4) * step,
+                -16.0 * x * hump.powi(3) / duration * step,
+            );
             let y = Vector3::from(y[i]);
             left -= y * slope;
             products += y * y.transpose() * phi;
@@ -130,7 +135,8 @@ fn evaluate(question: &Question<'_>, windows: &[Window], at: &Balanced) -> Optio
                 let one = Vector3::ith(i, 1.0);
                 let products = -(one * w.transpose() + w * one.transpose());
                 columns[question.directions.len() + i] = inverse
-                    * (one.cross(&question.momentum) * window.zeroth - turned(&(products * at.inertia)));
+                    * (one.cross(&question.momentum) * window.zeroth
+                        - turned(&(products * at.inertia)));
             }
         }
         for i in 0..3 {
@@ -149,7 +155,11 @@ fn evaluate(question: &Question<'_>, windows: &[Window], at: &Balanced) -> Optio
     if question.has_bias {
         for i in 0..3 {
             let row = (0..unknowns).map(|c| {
-                if c == question.directions.len() + i { 1.0 / question.rate } else { 0.0 }
+                if c == question.directions.len() + i {
+                    1.0 / question.rate
+                } else {
+                    0.0
+                }
             });
             triangle.push(row, -b[i] / question.rate);
             cost += (b[i] / question.rate).powi(2);
@@ -172,7 +182,10 @@ pub(super) fn estimates(question: &Question<'_>, firsts: &[Balanced]) -> Vec<Bal
         if own.is_empty() {
             continue;
         }
-        let stop = Stop { gain: 1e-3, passes: 25 };
+        let stop = Stop {
+            gain: 1e-3,
+            passes: 25,
+        };
         for first in firsts {
             let moved = |at: &Balanced, step: &[f64]| {
                 let mut next = *at;
@@ -198,7 +211,10 @@ pub(super) fn estimates(question: &Question<'_>, firsts: &[Balanced]) -> Vec<Bal
     let mut apart: Vec<Balanced> = Vec::new();
     for (doubt, one) in found {
         let near = 0.02_f64.max(doubt.min(0.2)) * one.inertia.trace();
-        if !apart.iter().any(|other| (other.inertia - one.inertia).norm() < near) {
+        if !apart
+            .iter()
+            .any(|other| (other.inertia - one.inertia).norm() < near)
+        {
             apart.push(one);
         }
     }

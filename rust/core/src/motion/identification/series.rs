@@ -23,8 +23,10 @@ const ORDER: usize = 20;
 const LEFT_OUT: f64 = 1e-16;
 /// What the source of a derivative by the tensor is linear in: ω̇, and the products of the components of ω.
 const FEATURES: usize = 9;
-/// A motion of more steps than this for each unit of angle (its first rate times the time) has gone astray.
-const STEPS: f64 = 200.0;
+/// A motion of more steps than this for each unit of angle (its first rate times the time) has gone astray, and so has one of so large
+/// an angle for each row of the log.
+const STEPS: f64 = 30.0;
+const TURNED: f64 = 100.0;
 
 /// What turns: its tensor, the constant momentum inside, the constant torque; all in B.
 #[derive(Clone, Copy, Debug)]
@@ -182,8 +184,10 @@ impl<const C: usize, F: FnMut(&Sample<'_, C>) -> ControlFlow<()>> Kernel for Run
     #[inline(always)]
     fn run<L: Lane>(mut self) -> Self::Output {
         let end = self.end;
-        let rate = length(&self.series.x[0]) + length(&self.series.momentum) / self.series.moments[0];
-        let mut left = 1000.0 + STEPS * rate * (end - self.start);
+        let rate =
+            length(&self.series.x[0]) + length(&self.series.momentum) / self.series.moments[0];
+        let turned = (rate * (end - self.start)).min(TURNED * (1 + self.t.len()) as f64);
+        let mut left = 1000.0 + STEPS * turned;
         let (mut now, mut row) = (self.start, 0);
         loop {
             self.series.expand();
@@ -341,5 +345,70 @@ fn reach(ratio: f64, k: usize) -> f64 {
         f64::INFINITY
     } else {
         f64::NAN
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ends(body: &Spinning, omega: Vector3<f64>, directions: &[Matrix3<f64>]) -> Option<Place<9>> {
+        let mut follower = Follower::<9>::of(body, directions)?;
+        follower.run(&Place::start(omega), (0.0, 5.0), &[], |_| {
+            ControlFlow::Continue(())
+        })
+    }
+
+    #[test]
+    fn derivatives_are_those_of_differences() {
+        let body = Spinning {
+            inertia: Matrix3::new(0.2, 0.01, -0.02, 0.01, 0.35, 0.03, -0.02, 0.03, 0.45),
+            momentum: Vector3::new(0.1, -0.2, 0.05),
+            torque: Vector3::new(0.01, 0.02, -0.03),
+        };
+        let omega = Vector3::new(1.0, 2.0, 0.5);
+        let directions: Vec<Matrix3<f64>> = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
+            .map(|(i, j)| {
+                let mut one = Matrix3::zeros();
+                one[(i, j)] = 1.0;
+                one[(j, i)] = 1.0;
+                one
+            })
+            .to_vec();
+        let here = ends(&body, omega, &directions).expect("a motion");
+        let h = 1e-5;
+        for c in 0..9 {
+            let at = |s: f64| {
+                let (mut body, mut omega) = (body, omega);
+                if c < 3 {
+                    omega[c] += s;
+                } else {
+                    body.inertia += directions[c - 3] * s;
+                }
+                ends(&body, omega, &directions).expect("a motion").omega
+            };
+            let slope = (at(h) - at(-h)) / (2.0 * h);
+            for i in 0..3 {
+                assert!((slope[i] - here.columns[i][c]).abs() < 1e-6 * slope.norm().max(1.0));
+            }
+        }
+    }
+
+    #[test]
+    fn a_motion_that_has_gone_astray_ends() {
+        let body = Spinning {
+            inertia: Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45)),
+            momentum: Vector3::zeros(),
+            torque: Vector3::zeros(),
+        };
+        let mut follower = Follower::<0>::of(&body, &[]).expect("a tensor");
+        let start = Place::start(Vector3::new(1.0, 2.0, 0.5));
+        let far = follower.run(
+            &start,
+            (0.0, 1e300),
+            &[1e300],
+            |_| ControlFlow::Continue(()),
+        );
+        assert!(far.is_none());
     }
 }

@@ -134,7 +134,12 @@ impl Triangle {
     /// |R δ|².
     pub(super) fn square(&self, step: &[f64]) -> f64 {
         (0..step.len())
-            .map(|i| (i..step.len()).map(|k| self.at(i, k) * step[k]).sum::<f64>().powi(2))
+            .map(|i| {
+                (i..step.len())
+                    .map(|k| self.at(i, k) * step[k])
+                    .sum::<f64>()
+                    .powi(2)
+            })
             .sum()
     }
 }
@@ -202,10 +207,19 @@ pub(super) fn descend<P: Clone>(
         {
             let (won, quality) = (linear.cost - new.cost, (linear.cost - new.cost) / gain);
             (here, linear) = (next, new);
-            damping *= if quality > 0.75 { 0.01 } else if quality > 0.25 { 0.3 } else { 2.0 };
+            damping *= if quality > 0.75 {
+                0.01
+            } else if quality > 0.25 {
+                0.3
+            } else {
+                2.0
+            };
             faster = 2.0;
             // Damping may hide what is left to be won.
-            let left = linear.triangle.step(1e-24, &scales).map_or(f64::INFINITY, |(_, gain)| gain);
+            let left = linear
+                .triangle
+                .step(1e-24, &scales)
+                .map_or(f64::INFINITY, |(_, gain)| gain);
             if left < stop.gain && won < 1e3 * stop.gain {
                 return Some((here, linear, true));
             }

@@ -252,7 +252,12 @@ fn element_directions() -> Vec<Matrix3<f64>> {
 fn directions_across(without: &[Matrix3<f64>]) -> Vec<Matrix3<f64>> {
     let mut basis: Vec<Matrix3<f64>> = Vec::new();
     let mut found = Vec::new();
-    for (k, one) in without.iter().copied().chain(element_directions()).enumerate() {
+    for (k, one) in without
+        .iter()
+        .copied()
+        .chain(element_directions())
+        .enumerate()
+    {
         let mut rest = one / one.norm();
         for _ in 0..2 {
             for other in &basis {
@@ -297,7 +302,11 @@ impl<'a> Scaled<'a> {
         Self {
             t: tumble.t.iter().map(|t| (t - tumble.t[0]) * rate).collect(),
             omega: tumble.omega.iter().map(|y| y.map(|x| x / rate)).collect(),
-            sigma: Cell::new(tumble.sigma.map_or([level; 3], |sigma| sigma.map(|x| x / rate))),
+            sigma: Cell::new(
+                tumble
+                    .sigma
+                    .map_or([level; 3], |sigma| sigma.map(|x| x / rate)),
+            ),
             momentum: h / (rate * unit),
             torque: n / (rate * rate * unit),
             has_scale: prior.is_some() || told > 0.0,
@@ -386,8 +395,8 @@ impl<'a> Scaled<'a> {
                     self.look()?;
                 }
                 let predicted = axes * Vector3::from(*sample.omega) + at.bias;
-                let rest = (Vector3::from(self.omega[sample.row]) - predicted)
-                    .component_mul(&weights);
+                let rest =
+                    (Vector3::from(self.omega[sample.row]) - predicted).component_mul(&weights);
                 let square = rest.norm_squared();
                 let mut root = 1.0;
                 if self.tumble.student {
@@ -407,9 +416,9 @@ impl<'a> Scaled<'a> {
                     let share = weights[i] * root;
                     let a = [0, 1, 2].map(|k| axes[(i, k)] * share);
                     let [x, y, z] = sample.columns;
-                    let motion =
-                        (0..inner).map(|c| a[0] * x[c] + a[1] * y[c] + a[2] * z[c]);
-                    let offset = (inner..unknowns).map(|c| if c == inner + i { share } else { 0.0 });
+                    let motion = (0..inner).map(|c| a[0] * x[c] + a[1] * y[c] + a[2] * z[c]);
+                    let offset =
+                        (inner..unknowns).map(|c| if c == inner + i { share } else { 0.0 });
                     triangle.push(motion.chain(offset), rest[i] * root);
                 }
                 ControlFlow::Continue(())
@@ -420,17 +429,15 @@ impl<'a> Scaled<'a> {
     }
 
     /// Adds the rows of what is known beforehand, and returns their cost.
-    fn prior_rows(
-        &self,
-        at: &Point,
-        directions: &[Matrix3<f64>],
-        triangle: &mut Triangle,
-    ) -> f64 {
+    fn prior_rows(&self, at: &Point, directions: &[Matrix3<f64>], triangle: &mut Triangle) -> f64 {
         let (inner, unknowns) = (3 + directions.len(), triangle.unknowns());
         let mut cost = 0.0;
         let mut push = |first: usize, row: &[f64], target: f64| {
             let row = (0..unknowns).map(|c| {
-                c.checked_sub(first).and_then(|k| row.get(k)).copied().unwrap_or(0.0)
+                c.checked_sub(first)
+                    .and_then(|k| row.get(k))
+                    .copied()
+                    .unwrap_or(0.0)
             });
             triangle.push(row, target);
             cost += target * target;
@@ -492,8 +499,9 @@ impl<'a> Scaled<'a> {
         let to = (row..rows).take_while(near).last().unwrap_or(row);
         // As many on either side, so that slopes do not matter; at an end of the log they do.
         let side = (row - from).min(to - row);
-        let mut own: Vec<Vector3<f64>> =
-            (self.omega[row - side..=row + side].iter()).map(|y| Vector3::from(*y)).collect();
+        let mut own: Vec<Vector3<f64>> = (self.omega[row - side..=row + side].iter())
+            .map(|y| Vector3::from(*y))
+            .collect();
         let middle = own.len() / 2;
         Vector3::from_fn(|i, _| {
             if self.tumble.student {
@@ -562,7 +570,8 @@ impl<'a> Scaled<'a> {
                         let share = weights[i] * root;
                         let a = [0, 1, 2].map(|k| axes[(i, k)] * share);
                         let motion = (0..inner).map(|c| a[0] * x[c] + a[1] * y[c] + a[2] * z[c]);
-                        let offset = (inner..unknowns).map(|c| if c == inner + i { share } else { 0.0 });
+                        let offset =
+                            (inner..unknowns).map(|c| if c == inner + i { share } else { 0.0 });
                         triangle.push(motion.chain(offset), rest[i] * root - off[i] * share);
                     }
                     ControlFlow::Continue(())
@@ -616,7 +625,9 @@ impl<'a> Scaled<'a> {
                     for i in 0..3 {
                         let own = &place.columns[i];
                         node[i] += share * own[9];
-                        node[i] += (0..3 + directions.len()).map(|c| own[c] * scaled[c]).sum::<f64>();
+                        node[i] += (0..3 + directions.len())
+                            .map(|c| own[c] * scaled[c])
+                            .sum::<f64>();
                     }
                 }
                 if is_tensor(&next.point.inertia)
@@ -712,14 +723,19 @@ impl<'a> Scaled<'a> {
             return 0.0;
         }
         let rest = self.residuals(at);
-        let squares: Vec<f64> = rest.iter().map(|r| Vector3::from(*r).norm_squared()).collect();
+        let squares: Vec<f64> = rest
+            .iter()
+            .map(|r| Vector3::from(*r).norm_squared())
+            .collect();
         let count = 3.0 * squares.len() as f64;
         let old = self.sigma.get()[0];
         let mut square: f64;
         if self.tumble.student {
             square = 1.0;
             for _ in 0..200 {
-                let sum: f64 = (squares.iter()).map(|r| (NU + 3.0) / (NU + r / square) * r).sum();
+                let sum: f64 = (squares.iter())
+                    .map(|r| (NU + 3.0) / (NU + r / square) * r)
+                    .sum();
                 let new = sum / count;
                 let settled = (new / square - 1.0).abs() < 1e-12;
                 square = new;
@@ -744,12 +760,19 @@ impl<'a> Scaled<'a> {
             Bias::Prior(mean, _) => Vector3::from(mean) / self.rate,
             Bias::Zero | Bias::Free => Vector3::zeros(),
         };
-        let scales: &[f64] = if self.has_scale { &[1.0, 0.1, 10.0, 100.0] } else { &[1.0] };
+        let scales: &[f64] = if self.has_scale {
+            &[1.0, 0.1, 10.0, 100.0]
+        } else {
+            &[1.0]
+        };
         let firsts: Vec<Balanced> = match prior {
             Some(inertia) => vec![Balanced { inertia, bias }],
             None => scales
                 .iter()
-                .map(|scale| Balanced { inertia: Matrix3::identity() * (scale / 3.0), bias })
+                .map(|scale| Balanced {
+                    inertia: Matrix3::identity() * (scale / 3.0),
+                    bias,
+                })
                 .collect(),
         };
         let question = Question {
@@ -767,7 +790,10 @@ impl<'a> Scaled<'a> {
         // What noise alone costs: a fit with much more is not the best one.
         let sigma = self.sigma.get()[0];
         let usual = 3.0 * self.rows() as f64 * (self.level / sigma).powi(2).max(1.0);
-        let stop = Stop { gain: 1e-9, passes: 30 };
+        let stop = Stop {
+            gain: 1e-9,
+            passes: 30,
+        };
         let n = self.rows();
         let mut best: Option<(Point, Linear, bool)> = None;
         let mut used = 0;
@@ -779,11 +805,16 @@ impl<'a> Scaled<'a> {
                 return Vec::new();
             }
             if let Some(found) = found
-                && best.as_ref().is_none_or(|(_, best, _)| found.1.cost < best.cost)
+                && best
+                    .as_ref()
+                    .is_none_or(|(_, best, _)| found.1.cost < best.cost)
             {
                 best = Some(found);
             }
-            if best.as_ref().is_some_and(|(_, best, _)| best.cost < 2.0 * usual) {
+            if best
+                .as_ref()
+                .is_some_and(|(_, best, _)| best.cost < 2.0 * usual)
+            {
                 break;
             }
         }
@@ -805,7 +836,11 @@ impl<'a> Scaled<'a> {
         let Some((here, headed, _)) = some.refine(&point, count, &stop) else {
             return Vec::new();
         };
-        for start in self.others(&point, &starts[used..]).into_iter().take(self.tumble.starts) {
+        for start in self
+            .others(&point, &starts[used..])
+            .into_iter()
+            .take(self.tumble.starts)
+        {
             self.done.set(0.5 + 0.5 * self.done.get());
             let found = some.join(&start, count);
             if some.stopped.get() {
@@ -826,17 +861,25 @@ impl<'a> Scaled<'a> {
                 bias: other.bias,
             };
             let other = self.join(&again, n).map(|(other, _)| other);
-            let Some((other, own, converged)) = other.and_then(|other| self.refine(&other, n, &stop)) else {
+            let Some((other, own, converged)) =
+                other.and_then(|other| self.refine(&other, n, &stop))
+            else {
                 continue;
             };
-            if converged && all.iter().all(|(one, ..)| own.triangle.square(&self.between(&other, one)) > 0.1) {
+            if converged
+                && all
+                    .iter()
+                    .all(|(one, ..)| own.triangle.square(&self.between(&other, one)) > 0.1)
+            {
                 all.push((other, own.cost, converged));
             }
         }
         all.sort_by(|a, b| a.1.total_cmp(&b.1));
         let least = all[0].1;
         all.retain(|(_, cost, _)| cost - least < 2.0 * WITHIN);
-        all.iter().filter_map(|(point, _, converged)| self.possible(point, *converged)).collect()
+        all.iter()
+            .filter_map(|(point, _, converged)| self.possible(point, *converged))
+            .collect()
     }
 
     /// Starts with other tensors than a fit has: the estimates that are left, and pairs of moments exchanged, where the motion is on the
@@ -876,7 +919,10 @@ impl<'a> Scaled<'a> {
         if Self::excess(at) <= 1e-14 {
             return self.told(at, false, converged);
         }
-        let stop = Stop { gain: 1e-9, passes: 60 };
+        let stop = Stop {
+            gain: 1e-9,
+            passes: 60,
+        };
         let (mut point, _, mut converged) = self.refine_on_edge(at, &stop)?;
         for _ in 0..50 {
             if self.set_sigma(&point) < 1e-9 {
@@ -891,16 +937,34 @@ impl<'a> Scaled<'a> {
     fn told(&self, at: &Point, at_edge: bool, converged: bool) -> Option<Fit> {
         let mut residuals = Vec::with_capacity(self.rows());
         let elements = element_directions();
-        let linear =
-            self.evaluate::<9>(at, self.rows(), f64::INFINITY, &elements, Some(&mut residuals))?;
+        let linear = self.evaluate::<9>(
+            at,
+            self.rows(),
+            f64::INFINITY,
+            &elements,
+            Some(&mut residuals),
+        )?;
         let unknowns = linear.triangle.unknowns();
-        let by = |column: usize| if (3..9).contains(&column) { self.unit } else { self.rate };
+        let by = |column: usize| {
+            if (3..9).contains(&column) {
+                self.unit
+            } else {
+                self.rate
+            }
+        };
         let triangle = (0..unknowns)
-            .map(|row| (0..unknowns).map(|column| linear.triangle.at(row, column) / by(column)).collect())
+            .map(|row| {
+                (0..unknowns)
+                    .map(|column| linear.triangle.at(row, column) / by(column))
+                    .collect()
+            })
             .collect();
         let mut beside = Triangle::new(unknowns);
         let chi2 = self.prior_rows(at, &elements, &mut beside)
-            + residuals.iter().map(|r| Vector3::from(*r).norm_squared()).sum::<f64>();
+            + residuals
+                .iter()
+                .map(|r| Vector3::from(*r).norm_squared())
+                .sum::<f64>();
         Some(Fit {
             omega: (at.omega * self.rate).into(),
             inertia: ELEMENTS.map(|place| at.inertia[place] * self.unit),
