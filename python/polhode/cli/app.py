@@ -448,7 +448,7 @@ def identify(
     identify: Annotated[IdentifyOptions, ALL] = IdentifyOptions(),  # noqa: B008
     output: Output = SHOWN,
 ) -> int:
-    r"""Find the body that explains a log of measurements.
+    """Find the body that explains a log of measurements.
 
     Parameters
     ----------
@@ -457,11 +457,9 @@ def identify(
 
     Examples
     --------
-    polhode identify throw.csv --kind tumble --bias
-    polhode identify throw.csv --kind tumble --omega gx,gy,gz --rate-unit deg/s \
-        --save fit.png --save body.json
-    polhode identify wrist.csv --kind wrench --save fit.png
-    polhode identify swings.csv --kind pendulum --gravity 9.81 --mass "2 kg"
+    polhode identify tumble.csv --kind tumble
+    polhode identify tumble.csv --kind tumble --omega wx,wy,wz --rate-unit rad/s --save fit.png
+    polhode identify tumble.csv --kind tumble --bias --save body.json --format json
     """
     from polhode.cli.files import check_outputs
     from polhode.cli.identify import identify_report

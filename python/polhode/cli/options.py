@@ -420,7 +420,7 @@ class IdentifyOptions:
     torque: Annotated[Words, WORDS, TABLE] = ()
     specific_force: Annotated[Words, WORDS, TABLE] = ()
     angular_acceleration: Annotated[Words, WORDS, TABLE] = ()
-    bias: Annotated[bool, MEASURED] = False
+    bias: Annotated[bool, FLAG, MEASURED] = False
     omega_sigma: Annotated[str | None, MEASURED] = None
     rotor: Annotated[Words, WORDS, MEASURED] = ()
     mass: Annotated[str | None, MEASURED] = None

@@ -1,4 +1,4 @@
-"""Results of an identification as JSON: what ``Identified.save`` writes and ``Identified.from_file`` reads."""
+"""Results as JSON: what ``Identified.save`` writes and ``Identified.from_file`` reads."""
 
 from __future__ import annotations
 
@@ -155,11 +155,13 @@ def _result(fields: dict[str, Any], file: Path) -> Identified:
         except ValueError as error:
             raise FileFormatError(f"{file}: {error}") from error
     spread = fields.get("start_covariance")
+    if spread is not None:
+        spread = numbers(spread, "start_covariance", file, with_holes=True)
     return Identified(
         body=body, parameters=tuple(names), **arrays, **told, dropped=dropped, window=window,
         observability=tuple(_direction(one, file) for one in lists["observability"]),
         start=start, motion=motion,
-        start_covariance=None if spread is None else numbers(spread, "start_covariance", file, with_holes=True),
+        start_covariance=spread,
         alternatives=tuple(_result(one, file) for one in lists["alternatives"]),
     )  # fmt: skip
 
