@@ -99,9 +99,10 @@ def from_tumble(
     Raises
     ------
     IdentificationError
-        ``"undetermined"`` where the sigma of a direction of the tensor exceeds 30 % of its size; ``"no fit"`` where
-        no free motion explains the log, with a probability below 1e-6; ``"units"`` where one explains it in
-        degrees; ``"clock"`` for times that do not ascend; ``"saturated"`` where values pile up at a limit.
+        ``"undetermined"`` where the sigma of a direction of the tensor exceeds 30 % of its size; ``"no fit"``
+        where no free motion explains the log, with a probability below 1e-6; ``"units"`` where one explains
+        it in degrees; ``"clock"`` for times that do not ascend; ``"saturated"`` where values pile up at a
+        limit.
     ValueError
         For arrays whose shapes do not agree.
 
@@ -534,8 +535,8 @@ def _covariance(triangle: Floats, space: Floats) -> Floats | None:
 def _marginal(triangle: Floats) -> Floats:
     """Return the triangle of what the log tells of the tensor where start and offsets are not known."""
     order = [*range(3), *range(9, len(triangle)), *range(3, 9)]
-    upper = np.linalg.qr(triangle[:, order], mode="r")
-    return np.asarray(upper[-6:, -6:])
+    upper = np.asarray(np.linalg.qr(triangle[:, order], mode="r"))
+    return upper[-6:, -6:]
 
 
 def _directions(triangle: Floats, inertia: Floats, scaled: bool) -> tuple[Direction, ...]:
