@@ -21,6 +21,7 @@ from polhode.cli.options import (
     EnsembleOptions,
     FindingsOptions,
     FlybyOptions,
+    IdentifyOptions,
     LedgerOptions,
     MoleculeOptions,
     OutputOptions,
@@ -440,6 +441,38 @@ def audit(
 
 
 @app.command
+def identify(
+    file: File,
+    /,
+    *,
+    identify: Annotated[IdentifyOptions, ALL] = IdentifyOptions(),  # noqa: B008
+    output: Output = SHOWN,
+) -> int:
+    """Find the body that explains a log of measurements.
+
+    Parameters
+    ----------
+    file
+        A log of a sensor (CSV), a row for each time; or a table of pendulums; or - for standard input.
+
+    Examples
+    --------
+    polhode identify tumble.csv --kind tumble
+    polhode identify tumble.csv --kind tumble --omega wx,wy,wz --rate-unit rad/s --save fit.png
+    polhode identify tumble.csv --kind tumble --bias --save body.json --format json
+    """
+    from polhode.cli.files import check_outputs
+    from polhode.cli.identify import identify_report
+    from polhode.cli.layout import show
+
+    places = [*(("--save", path) for path in identify.save), ("--output", output.output)]
+    check_outputs(places, [file])
+    told, is_good = identify_report(file, identify)
+    show(told, output)
+    return GOOD if is_good else BAD_VERDICT
+
+
+@app.command
 def samples(folder: Path | None = None, /) -> int:
     """List the sample files, or write them into a folder.
 
@@ -510,6 +543,7 @@ def _examples(document: str) -> str:
 
 
 for _command in (
-    report, check, molecule, spin, roll, flyby, ensemble, assemble, ledger, audit, samples, demo, validate,
+    report, check, molecule, spin, roll, flyby, ensemble, assemble, ledger, audit, identify, samples, demo,
+    validate,
 ):  # fmt: skip
     app[_command.__name__].help_epilogue = _examples(_command.__doc__ or "")

@@ -23,6 +23,7 @@ __all__ = [
     "EnsembleOptions",
     "FindingsOptions",
     "FlybyOptions",
+    "IdentifyOptions",
     "LedgerOptions",
     "LengthUnit",
     "MoleculeOptions",
@@ -52,6 +53,7 @@ ROTATION: Final = _group("Rotation before the flyby")
 ORBIT: Final = _group("Orbit past the planet")
 MOTION: Final = _group("Motion")
 ATOMS: Final = _group("Atoms")
+MEASURED: Final = _group("Measurement")
 TABLE: Final = _group("Table")
 VERDICT: Final = _group("Verdict")
 COPY: Final = _group("Corrected copy")
@@ -370,6 +372,59 @@ class AuditOptions:
     finer: Annotated[Path | None, REPORT] = None
     ratio: Annotated[float | None, REPORT] = None
     rtol: Annotated[float | None, REPORT] = None
+    save: Annotated[Paths, REPEATED, RESULTS] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class IdentifyOptions:
+    """A log of measurements, from which a body is to be found.
+
+    Attributes
+    ----------
+    kind
+        Required: what was measured. A tumble is the angular velocity of a body in free flight; a wrench is
+        force and torque on a payload that is moved; of pendulums, the periods.
+    time
+        Column with the times, in s. Without it, one with a usual name.
+    omega
+        Columns with the angular velocity, such as "gx,gy,gz". Without it, those with usual names.
+    rate_unit
+        Unit of the angular velocity. Without it, that in the names of its columns, or rad/s.
+    force
+        Columns with the force of the sensor on the payload, in N.
+    torque
+        Columns with its torque about the origin of the sensor, in N m.
+    specific_force
+        Columns with what an accelerometer reads there, in m/s^2.
+    angular_acceleration
+        Columns with the angular acceleration, if it was measured.
+    bias
+        Whether constant offsets of the sensor are estimated too.
+    omega_sigma
+        Noise of the angular velocity, such as "0.01 rad/s". Without it, it is estimated.
+    rotor
+        Of a tumble: known angular momentum of a wheel inside, such as "0 0 0.02 N m s".
+    mass
+        Mass of the body, for a tumble or for pendulums, such as "1.2 kg" or "1.2 ± 0.01 kg".
+    gravity
+        Of pendulums: acceleration of free fall, such as 9.81. A number without a unit is in m/s^2.
+    save
+        File for a picture of the fit (.png, .pdf, .svg), or for the body (.json). May be repeated.
+    """
+
+    kind: Annotated[Literal["tumble", "wrench", "pendulum"] | None, MEASURED] = None
+    time: Annotated[str | None, TABLE] = None
+    omega: Annotated[Words, WORDS, TABLE] = ()
+    rate_unit: Annotated[Literal["rad/s", "deg/s", "rpm"] | None, TABLE] = None
+    force: Annotated[Words, WORDS, TABLE] = ()
+    torque: Annotated[Words, WORDS, TABLE] = ()
+    specific_force: Annotated[Words, WORDS, TABLE] = ()
+    angular_acceleration: Annotated[Words, WORDS, TABLE] = ()
+    bias: Annotated[bool, FLAG, MEASURED] = False
+    omega_sigma: Annotated[str | None, MEASURED] = None
+    rotor: Annotated[Words, WORDS, MEASURED] = ()
+    mass: Annotated[str | None, MEASURED] = None
+    gravity: Annotated[str | None, MEASURED] = None
     save: Annotated[Paths, REPEATED, RESULTS] = ()
 
 

@@ -29,6 +29,7 @@ CHAPTERS: Final = {
     "Bodies of parts": ("assemble", "ledger", "check"),
     "Many motions": ("ensemble", "flyby"),
     "Motions of other programs": ("audit",),
+    "Measurements": ("identify",),
     "This installation": ("validate",),
 }
 """The commands, in the order in which somebody new needs them."""
@@ -99,6 +100,7 @@ OTHER_COMMANDS: Final = (
     ("molecule FILE", "rotor constants spectrum isotopes"),
     ("ensemble FILE", "monte-carlo montecarlo clones members sample"),
     ("ledger FILE", "sum rollup parts budget .csv .tsv"),
+    ("identify LOG.csv --kind tumble", "fit estimate identification gyro log throw"),
     ("samples FOLDER", "examples data files"),
     ("demo", "tour tutorial example"),
     ("validate", "test selftest doctor"),

@@ -142,10 +142,9 @@ def labellings(
 
     >>> from polhode import identify
     >>> found = identify.labellings((2 / 30.56, 1 / 27.38), sigma=2e-5, moments=(0.61, 0.965, 1.0))
-    >>> row = [(2, -2), (1, 0)]
-    >>> k = [list(zip(*pair)) for pair in zip(found.j.tolist(), found.m.tolist())].index(row)
-    >>> bool(found.admissible[k]), found.mode[k].item(), round(1 / found.f_psi[k], 1)
-    (True, 'short-axis', 263.1)
+    >>> own = (found.j == (2, 1)).all(axis=1) & (found.m == (-2, 0)).all(axis=1) & found.admissible
+    >>> found.mode[own].tolist(), (1 / found.f_psi[own]).round(1).tolist()
+    (['long-axis', 'short-axis'], [263.1, 263.1])
     """
     measured = np.asarray(frequencies, dtype=float)
     if measured.ndim != 1 or not 2 <= len(measured) <= _MOST:

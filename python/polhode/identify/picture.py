@@ -36,8 +36,8 @@ def residuals(found: Identified, t: ArrayLike | None, ax: Axes | None) -> Axes:
     place = np.arange(len(rows)) if t is None else np.asarray(t, dtype=float)
     if place.shape != (len(rows),):
         raise ValueError(
-            f"t: expected shape ({len(rows)},), a time for each row of residuals, got {place.shape}; leave it "
-            "out to draw them row by row"
+            f"t: expected shape ({len(rows)},), a time for each row of residuals, got {place.shape}; leave "
+            "it out to draw them row by row"
         )
     ax = axes_2d(ax)
     ax.axhspan(-_NORMAL, _NORMAL, color="0.93", zorder=0)

@@ -196,3 +196,98 @@ def _cell_by_cell(
                 raise FileFormatError(f"{told}: line {number}: {names[column]} {what}; correct the line")
             values[k, j] = float(cell or "nan")
     return values
+
+
+class Log(NamedTuple):
+    """Columns of a log of sensors.
+
+    Attributes
+    ----------
+    values : dict of str and numpy.ndarray, shape (n, k)
+        What was found, by what it was asked for as.
+    columns : dict of str and list of str
+        The names of the columns, as they stand in the file.
+    """
+
+    values: dict[str, Floats]
+    columns: dict[str, list[str]]
+
+
+_SENSORS: Final[dict[str, tuple[tuple[str, ...], ...]]] = {
+    "time": tuple((one,) for one in (*_TIMES, "timestampms", "timems", "tms", "secondselapsed", "elapsed")),
+    "omega": (
+        *_OMEGAS,
+        ("gx", "gy", "gz"),
+        ("gyroscopex", "gyroscopey", "gyroscopez"),
+        ("omx", "omy", "omz"),
+        ("xgyro", "ygyro", "zgyro"),
+    ),
+    "force": (
+        ("fx", "fy", "fz"),
+        ("forcex", "forcey", "forcez"),
+        ("wrenchforcex", "wrenchforcey", "wrenchforcez"),
+    ),
+    "torque": (
+        ("tx", "ty", "tz"),
+        ("torquex", "torquey", "torquez"),
+        ("mx", "my", "mz"),
+        ("wrenchtorquex", "wrenchtorquey", "wrenchtorquez"),
+    ),
+    "specific_force": (
+        ("ax", "ay", "az"),
+        ("accx", "accy", "accz"),
+        ("accelx", "accely", "accelz"),
+        ("accelerometerx", "accelerometery", "accelerometerz"),
+        ("specificforcex", "specificforcey", "specificforcez"),
+        ("linearaccelerationx", "linearaccelerationy", "linearaccelerationz"),
+    ),
+    "angular_acceleration": (
+        ("alphax", "alphay", "alphaz"),
+        ("angularaccelerationx", "angularaccelerationy", "angularaccelerationz"),
+    ),
+}
+"""Usual names of columns, by what they hold."""
+
+
+def read_log(
+    path: str | PathLike[str], asked: dict[str, Sequence[str]], optional: Sequence[str], name: str
+) -> Log:
+    """Read the columns of a log of sensors, by their usual names or by those that are given.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        A table with names in its first line; an empty cell, or ``nan``, is unknown.
+    asked : dict of str and sequence of str
+        What is to be read (``time``, ``omega`` ...), with the names of its columns, or none.
+    optional : sequence of str
+        What may be missing.
+    name : str
+        Name of the file in errors.
+    """
+    lines = read_text(path, "a log of sensors").splitlines()
+    rows = [(k, line) for k, line in enumerate(lines, 1) if line.strip() and not line.startswith("#")]
+    if len(rows) < 2:
+        raise FileFormatError(f"{name}: it holds no rows below the names of its columns")
+    first = rows[0][1]
+    mark = next((mark for mark in (",", ";", "\t") if mark in first), None)
+    names = [part.strip().strip('"') for part in first.split(mark)]
+    if all(_is_number(part) for part in names):
+        raise FileFormatError(f"{name}: its columns have no names; write them into the first line")
+    found: dict[str, list[int]] = {}
+    for what, given in asked.items():
+        option = "--" + what.replace("_", "-")
+        places = _find_columns(name, names, given, _SENSORS[what], option, needed=what not in optional)
+        expected = 1 if what == "time" else 3
+        if places and len(places) != expected:
+            raise PolhodeError(f"{option}: expected {expected} columns, got {len(places)}")
+        if places:
+            found[what] = places
+    used = [place for places in found.values() for place in places]
+    try:
+        values = np.loadtxt([line for _, line in rows[1:]], delimiter=mark, usecols=used, ndmin=2)
+    except ValueError:
+        values = _cell_by_cell(name, rows[1:], mark, names, used)
+    ends = np.cumsum([0, *(len(places) for places in found.values())])
+    parts = {what: values[:, a:b] for what, a, b in zip(found, ends, ends[1:], strict=False)}
+    return Log(parts, {what: [names[k] for k in places] for what, places in found.items()})

@@ -43,7 +43,6 @@ NO_TEST = {
         for name in ("FreeMotion", "GyrostatMotion", "HeavyTop")
         for what in ("animate", "plot")
     ),
-    *(f"Identified.{name}" for name in ("from_file", "save", "plot")),
     *("read_stl", "read_plates", "stream_solid", "compiled", "labelled_voxels"),
     "machine",  # takes nothing
     "Stepper.step",  # goes on from where the call before has left it; tests/motion/test_stepper.py
