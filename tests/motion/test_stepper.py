@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import gc
 import weakref
 from itertools import pairwise
@@ -265,6 +266,10 @@ class TestEvents:
             ended.resume([40, 50])
         with pytest.raises(ValueError, match="the motion goes on from t ="):
             ended.resume([0, 50], from_event=True)
+        copied = copy.deepcopy(ended)  # which does not know the function any more
+        for motion in (ended, copied):
+            on = motion.resume([motion.events.t[-1], 40], from_event=True, events=self.EACH)
+            assert on.events.t[0] > motion.events.t[-1] + 0.1
         # Without the event, or with another one, it goes on too.
         time = ended.events.t[-1]
         plain = ended.resume([time, 40], from_event=True)
