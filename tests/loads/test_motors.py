@@ -150,7 +150,7 @@ class TestAnyController:
         run.resume([4.5, 6.5])
         assert law.count == 2
         law.count = 0
-        apart = sum(loads.wheel(a, j, torque=law.load()) for a, j in zip(AXES, J, strict=True))
+        apart: Any = sum(loads.wheel(a, j, torque=law.load()) for a, j in zip(AXES, J, strict=True))
         separate = BODY.simulate([0.0, 4.5], OMEGA, load=apart)
         assert law.count == 15
         assert sorted(separate.states)[:3] == ["law", "law_2", "law_3"]
@@ -185,7 +185,7 @@ class TestAnyController:
     def test_what_is_no_controller(self) -> None:
         for other in (loads.wheel((0, 0, 1), 0.1), loads.slug(0.1, 0.1), loads.uniform_gravity((0, 0, 1))):
             with pytest.raises(
-                PolhodeError, match="a motor exerts a torque alone, .* give torque= the controller alone"
+                PolhodeError, match=r"a motor exerts a torque alone, .* give torque= the controller alone"
             ):
                 one(torque=other)
         pushes = loads.callback(lambda *_: ((0, 0, 1.5), (0, 0, 0)))
@@ -293,7 +293,8 @@ class TestLimits:
         assert run.omega[-1] == pytest.approx(two.y[4:7, -1], abs=1e-10)
         axes_rate = [run.states[n][-1, 0] for n in ("wheel", "wheel_2", "wheel_3")] / J - UNIT @ run.omega[-1]
         assert axes_rate == pytest.approx(two.y[7:, -1], abs=1e-10)
-        for method, allowed in (("radau", 1e-7), ("dop853", 1e-10)):
+        methods: Any = (("radau", 1e-7), ("dop853", 1e-10))
+        for method, allowed in methods:
             again = BODY.simulate([0, 15], OMEGA, ATTITUDE, load=load, method=method, rtol=1e-12)
             assert again.omega[-1] == pytest.approx(two.y[4:7, -1], abs=allowed)
 
@@ -390,7 +391,7 @@ class TestAllocation:
         control = loads.feedback(K=2.0, D=1.5)
         axes = np.linalg.qr(AXES)[0]
         together = loads.wheels(axes, J, torque=control, rate=(1, 2, 3), friction=0.01, name="w")
-        alone = sum(
+        alone: Any = sum(
             loads.wheel(a, j, r, torque=control, friction=0.01, name="w")
             for a, j, r in zip(axes, J, (1, 2, 3), strict=True)
         )
