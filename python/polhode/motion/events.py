@@ -156,14 +156,12 @@ class Event:
         return self.function(t, omega, quaternion, position, velocity, *states)
 
 
-def passed(events: Any, last: Any) -> Any:
-    """Return the events of a run that begins where the event `last` ended another one."""
-    if last is None:
-        return events
+def passed(events: Any, last: Any, number: int) -> Any:
+    """Return the events of a run that begins where `last`, or the one of this number, ended another."""
     last = last.function if getattr(last, "_has_passed", False) else last
 
-    def begun(event: Any) -> Any:
-        if event is not last:
+    def begun(index: int, event: Any) -> Any:
+        if (index != number) if last is None else (event is not last):
             return event
         of_wheel = getattr(event, "_of_wheel", None)
         again = Event(event, getattr(event, "direction", 0.0), getattr(event, "terminal", False))
@@ -171,7 +169,9 @@ def passed(events: Any, last: Any) -> Any:
         object.__setattr__(again, "_has_passed", True)
         return again
 
-    return begun(events) if callable(events) else [begun(event) for event in events]
+    if callable(events):
+        return begun(0, events)
+    return [begun(index, event) for index, event in enumerate(events)]
 
 
 def _never_called(*_: Any) -> float:

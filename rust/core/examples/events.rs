@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use polhode::motion::loads::Analytic;
 use polhode::motion::simulate::{
-    Direction, Events, Method, Phase, Rule, State, Task, Tolerance, simulate,
+    Direction, EventTrigger, Events, Method, Phase, Rule, State, Task, Tolerance, simulate,
 };
 use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::{Error, RigidBody};
@@ -19,7 +19,8 @@ impl Events for Passages {
         &[Rule {
             direction: Direction::Any,
             last: 4,
-            ..Rule::default()
+            trigger: EventTrigger::Function,
+            has_passed: false,
         }]
     }
 

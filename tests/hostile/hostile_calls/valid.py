@@ -173,7 +173,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "RigidBody.__getitem__": {"self": [STACK], "key": 1},
     "RigidBody.__len__": {"self": [STACK]},
     "RigidBody.simulate": {"rtol": 1e-8, "max_steps": 100_000},
-    "RigidBody.stepper": {"start": 0.5, "rtol": 1e-8, "max_steps": 100_000},
+    "RigidBody.stepper": {"self": [TUMBLER, TOP], "start": 0.5, "rtol": 1e-8, "max_steps": 100_000},
     "RigidBody.pivot_reaction": {"about": "origin"},
     "RigidBody.free_motion_from_periods": {
         "self": [TUMBLER],

@@ -831,7 +831,7 @@ fn read_controller(
 /// >>> axes = [(1, 0, 1), (0, 1, 1), (-1, 0, 1), (0, -1, 1)]
 /// >>> control = loads.feedback(K=0.5, D=3.0)
 /// >>> wheels = loads.wheels(axes, 0.02, torque=control, max_torque=0.5)
-/// >>> motion = body.simulate([0, 60], (0, 0, 0), (0, 0, 0.1, 0.995), load=wheels)
+/// >>> motion = body.simulate([0, 60], (0, 0, 0), (0, 0, 0.28, 0.96), load=wheels)
 /// >>> print(*motion.states, bool(motion.rotation[-1].magnitude() < 1e-3))
 /// wheel wheel_2 wheel_3 wheel_4 True
 #[pyfunction]

@@ -35,7 +35,7 @@
 //!     type Error = polhode::Error;
 //!
 //!     fn rules(&self) -> &[Rule] {
-//!         &[Rule { direction: Direction::Rising, last: 2, trigger: EventTrigger::Function, ..Rule::default() }]
+//!         &[Rule { direction: Direction::Rising, last: 2, trigger: EventTrigger::Function, has_passed: false }]
 //!     }
 //!
 //!     fn value(&mut self, _: usize, _: f64, phase: &Phase) -> Result<f64, Self::Error> {
