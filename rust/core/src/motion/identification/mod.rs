@@ -7,6 +7,9 @@
 //! | ω along a motion, with its derivatives by start and tensor | `series` |
 //! | least squares by a triangle, steps of Levenberg and Marquardt | `triangle` |
 
+// Loops run over components and columns, as the formulas do; a comparison that fails for NaN is meant.
+#![allow(clippy::needless_range_loop, clippy::neg_cmp_op_on_partial_ord)]
+
 mod momentum_balance;
 mod series;
 mod triangle;

@@ -50,6 +50,11 @@ pub(super) struct Question<'a> {
 }
 
 /// The windows of a duration, half over one another.
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a count of windows, fewer than there are rows"
+)]
 fn windows(question: &Question<'_>, duration: f64) -> Vec<Window> {
     let (t, y) = (question.t, question.omega);
     let span = t[t.len() - 1] - t[0];
