@@ -227,7 +227,7 @@ def test_a_slip_that_comes_back_to_zero_in_its_first_step() -> None:
     mu, t = 0.1703245510777031, np.linspace(0, 1.5, 301)
     found = dry(body, rolling.sphere(0.5), t, omega, None, mu, attitude=attitude, rtol=1e-13)
     assert found.events.kind[:2].tolist() == ["slip", "roll"]
-    assert found.events.t[:2] == pytest.approx([0.32972195, 0.34023558], abs=1e-8)
+    assert found.events.t[:2] == pytest.approx([0.32972195, 0.34023532], abs=1e-8)
     check_law(found, mu)
     # The slip is so small that its time ends where it does for a motion that is cut into pieces.
     for rtol in (1e-10, 2.3e-15):
@@ -243,7 +243,7 @@ def test_a_slip_whose_series_overflow_before_it_ceases(rtol: float) -> None:
     body = RigidBody.from_principal(1.0, moments, center_of_mass=center)
     omega = (-0.6214050915308232, -1.017192832613387, -0.30521964612967195)
     attitude = (0.7066639600854763, 0.08789109846451296, -0.10957023083358955, 0.6934663415351084)
-    mu, t = 0.3741866348800028, np.linspace(0, 0.7, 141)
+    mu, t = 0.3741866348800028, np.linspace(0, 0.635, 128)
     found = dry(body, rolling.torus(0.4, 0.1), t, omega, None, mu, attitude=attitude, rtol=rtol)
     assert found.events.kind.tolist() == ["slip", "roll"]
     assert found.events.t == pytest.approx([0.49138432, 0.63466902], abs=1e-8)
