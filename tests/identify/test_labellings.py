@@ -79,7 +79,7 @@ def lines(t: Floats, light: Floats, n: int) -> list[float]:
         start = grid[np.argmax(spectrum)]
 
         def power(f: float, left: Floats = left) -> float:
-            return -abs(np.sum(left * taper * np.exp(-2j * np.pi * f * t)))
+            return -float(abs(np.sum(left * taper * np.exp(-2j * np.pi * f * t))))
 
         best = optimize.minimize_scalar(
             power, bounds=(start - 3 * step, start + 3 * step), method="bounded", options={"xatol": 1e-12}
@@ -126,7 +126,7 @@ def test_every_labelling_is_found(order: int) -> None:
         if (rates > 0.0).all() and stats.chi2.sf(norm**2, 1) >= 1e-3:
             want[labels] = (*rates, norm**2)
     found = identify.labellings(measured, sigma, order=order)
-    got = {}
+    got: dict[Any, list[Any]] = {}
     for k in range(len(found)):
         labels = tuple(zip(found.j[k].tolist(), found.m[k].tolist(), strict=True))
         got.setdefault(labels, []).append((found.f_phi[k], found.f_psi[k], found.chi2[k]))
@@ -226,5 +226,6 @@ def test_nothing_fits_and_anything_fits() -> None:
     ],
 )
 def test_bad_input(changed: dict[str, Any], words: str) -> None:
+    given: dict[str, Any] = {"frequencies": (1.0, 0.3), "sigma": 1e-3}
     with pytest.raises(ValueError, match=words):
-        identify.labellings(**{"frequencies": (1.0, 0.3), "sigma": 1e-3} | changed)
+        identify.labellings(**given | changed)

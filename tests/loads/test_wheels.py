@@ -242,7 +242,7 @@ REFUSED: list[tuple[Callable[[], Any], type[Exception], str]] = [
     ),
     (lambda: loads.wheel((0, 0, 1), 1, name=""), ValueError, "name: must not be empty"),
     (
-        lambda: loads.wheel((0, 0, 1), 1, torque=0.1, limit=ANY),
+        lambda: loads.wheel((0, 0, 1), 1, torque=0.1, limit=ANY),  # type: ignore[call-arg]
         TypeError,
         "unexpected keyword argument 'limit'; it takes .*max_torque",
     ),

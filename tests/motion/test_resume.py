@@ -48,7 +48,7 @@ def total(motion: Trajectory, index: int) -> Any:
 def test_a_chain_is_the_single_run(name: str, passes_load: bool) -> None:
     load, cuts = LOADS[name], [0.0, 1.0, 2.45, 2.8, 5.0]
     whole = BODY.simulate(cuts, (0.3, 0.5, -0.2), load=load, **OPTIONS)
-    again = {"load": load} if passes_load else {}
+    again: dict[str, Any] = {"load": load} if passes_load else {}
     part = BODY.simulate(cuts[:2], (0.3, 0.5, -0.2), load=load, **OPTIONS)
     for index, pair in enumerate(pairwise(cuts[1:]), start=2):
         before, part = part, part.resume(pair, **again, **OPTIONS)

@@ -145,7 +145,7 @@ def _sensors(file: Path, options: IdentifyOptions, report: Report) -> tuple[Iden
             )
         finite = np.isfinite(omega).all(axis=1) & np.isfinite(t)
         return found, (t[finite], omega[finite])
-    rows = {name: log.values[name] for name in _OWN["wrench"] if name in log.values}
+    rows: dict[str, Any] = {name: log.values[name] for name in _OWN["wrench"] if name in log.values}
     if "angular_acceleration" in rows:
         rows["angular_acceleration"] = rows["angular_acceleration"] * _RATES[rate]
     return identify.from_wrench(t, omega=omega, omega_sigma=sigma, bias=options.bias, **rows), None
@@ -177,10 +177,11 @@ def _rates(log: Log, options: IdentifyOptions, notes: list[str]) -> tuple[Floats
         told = {_unit(name) for name in log.columns["omega"]} - {""}
         unit = "rad/s"
         if len(told) == 1 and (own := next(iter(told))) not in ("rad/s", "rads", "rad s-1", "1/s"):
-            unit = {"deg/s": "deg/s", "dps": "deg/s", "°/s": "deg/s", "degrees/s": "deg/s", "rpm": "rpm"}.get(
-                own, ""
-            )
-            if not unit:
+            if own in ("deg/s", "dps", "°/s", "degrees/s"):
+                unit = "deg/s"
+            elif own == "rpm":
+                unit = "rpm"
+            else:
                 raise PolhodeError(
                     f"--rate-unit: the name {log.columns['omega'][0]!r} says {own!r}, which is not known; "
                     "state --rate-unit rad/s, --rate-unit deg/s or --rate-unit rpm"

@@ -11,7 +11,7 @@ from polhode.errors import FileFormatError, PolhodeError
 from polhode.io.budget import read_text
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from os import PathLike
 
     from numpy.typing import NDArray
@@ -250,7 +250,7 @@ _SENSORS: Final[dict[str, tuple[tuple[str, ...], ...]]] = {
 
 
 def read_log(
-    path: str | PathLike[str], asked: dict[str, Sequence[str]], optional: Sequence[str], name: str
+    path: str | PathLike[str], asked: Mapping[str, Sequence[str]], optional: Sequence[str], name: str
 ) -> Log:
     """Read the columns of a log of sensors, by their usual names or by those that are given.
 
@@ -258,7 +258,7 @@ def read_log(
     ----------
     path : str or os.PathLike
         A table with names in its first line; an empty cell, or ``nan``, is unknown.
-    asked : dict of str and sequence of str
+    asked : mapping of str and sequence of str
         What is to be read (``time``, ``omega`` ...), with the names of its columns, or none.
     optional : sequence of str
         What may be missing.

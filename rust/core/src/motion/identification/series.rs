@@ -336,7 +336,7 @@ impl<const C: usize> Series<C> {
     }
 }
 
-/// The s with |x_k| sᵏ = LEFT_OUT.
+/// The s with `|x_k| sᵏ = LEFT_OUT`.
 #[inline(always)]
 fn reach(ratio: f64, k: usize) -> f64 {
     if ratio > 0.0 {

@@ -759,8 +759,8 @@ impl<'a> Scaled<'a> {
         (new / old - 1.0).abs()
     }
 
-    /// The maxima of the likelihood, the best first.
-    fn maxima(&self) -> Vec<Fit> {
+    /// The tensors and offsets that a fit begins with: those that balance the momentum, and what is known beforehand.
+    fn starts(&self) -> Vec<Balanced> {
         let directions = self.directions();
         let prior = self.tumble.prior.map(|(mean, _)| tensor(&mean) / self.unit);
         let bias = match self.tumble.bias {
@@ -794,6 +794,12 @@ impl<'a> Scaled<'a> {
         };
         let mut starts = estimates(&question, &firsts);
         starts.extend(&firsts);
+        starts
+    }
+
+    /// The maxima of the likelihood, the best first.
+    fn maxima(&self) -> Vec<Fit> {
+        let starts = self.starts();
         // What noise alone costs: a fit with much more is not the best one.
         let sigma = self.sigma.get()[0];
         let usual = 3.0 * self.rows() as f64 * (self.level / sigma).powi(2).max(1.0);
