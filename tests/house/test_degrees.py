@@ -20,6 +20,7 @@ HAVE = {
     "polhode.euler_angles.from_quaternion",
     "polhode.euler_angles.rates",
     "polhode.euler_angles.to_quaternion",
+    "polhode.orbits.RelativeMotion.angles",
     "polhode.orbits.from_elements",
     "polhode.results.NutationDamping.angle",
     "polhode.results.NutationDamping.time",

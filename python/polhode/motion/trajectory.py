@@ -494,7 +494,7 @@ class Trajectory(metaclass=ClassWithHints):
         >>> t = np.linspace(0.0, 6.0, 4)
         >>> motion = solids.sphere(0.1, mass=1.0).free_motion(local.omega, local.quaternion).at(t)
         >>> relative = motion.relative_to(orbit)
-        >>> (np.abs(relative.pitch) < 1e-12).all(), (np.abs(relative.omega) < 1e-12).all()
+        >>> bool((np.abs(relative.pitch) < 1e-12).all()), bool((np.abs(relative.omega) < 1e-12).all())
         (True, True)
         """
         from polhode.orbits import Path, RelativeMotion
