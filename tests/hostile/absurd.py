@@ -260,6 +260,16 @@ OTHERS: dict[str, Callable[[], object]] = {
     "wheel, absurd times": lambda: _core.wheel(
         V, 1.0, torque=np.broadcast_to(1.0, ABSURD), times=np.broadcast_to(1.0, ABSURD)
     ),
+    "wheels, absurd axes": lambda: _core.wheels(
+        np.broadcast_to(V, (ABSURD, 3)), 1.0, torque=loads.feedback(K=1.0, D=1.0)
+    ),
+    "RigidBody.stepper, absurd omega": lambda: BODY.stepper(np.broadcast_to(V, (ABSURD, 3))),
+    "fit_tumble, absurd times": lambda: _core.fit_tumble(
+        np.broadcast_to(0.0, ABSURD), np.broadcast_to(V, (ABSURD, 3)), {}
+    ),
+    "tumble_information, absurd times": lambda: _core.tumble_information(
+        np.broadcast_to(0.0, ABSURD), V, [1.0, 1.2, 1.5, 0.0, 0.0, 0.0], {}
+    ),
     "Load.__getitem__": lambda: LOADS[np.broadcast_to(0, ABSURD)],
     "RigidBody.__add__": lambda: COLUMN + COLUMN[:, 0],
     "RigidBody.__sub__": lambda: COLUMN - COLUMN[:, 0],

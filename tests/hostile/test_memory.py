@@ -36,6 +36,7 @@ SIZELESS = {
     "to_spatial_inertia",
     "torque_callback",
     "Contact",
+    "Stepper",
     "Surface",
     "rolling_critical_rate",
     "rolling_modes",

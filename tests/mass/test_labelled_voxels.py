@@ -206,3 +206,14 @@ def test_refused() -> None:
         RigidBody.from_labelled_voxels(np.full((1, 1, 1), "a"), 1.0, spacing=1.0)
     labels, bodies = RigidBody.from_labelled_voxels(np.zeros((2, 2, 2), dtype=int), 1.0, spacing=1.0)
     assert labels.shape == bodies.shape == (0,)
+
+
+def test_labels_that_are_not_aligned_in_memory() -> None:
+    """As in a record of a binary file."""
+    labels = np.zeros(4 * 8 + 1, np.uint8)[1:].view(np.int64).reshape(1, 2, 2)
+    labels[:] = [[[1, 2], [0, 1]]]
+    assert not labels.flags.aligned
+    names, bodies = RigidBody.from_labelled_voxels(labels, density=2.0, spacing=0.5)
+    same, expected = RigidBody.from_labelled_voxels(labels.copy(), density=2.0, spacing=0.5)
+    assert np.array_equal(names, same)
+    assert bodies == expected

@@ -428,7 +428,7 @@ def bodies_of_labels(
     if own.flags.f_contiguous and not own.flags.c_contiguous and not is_image:  # as nibabel reads it
         own, spacing, origin, affine = _turned_round(own, spacing, origin, affine)
     try:
-        own = np.ascontiguousarray(own)
+        own = np.require(own, requirements=("C", "A"))
     except MemoryError as error:
         raise MemoryError(f"labels: {error}; take a part of the image") from None
     ranges: dict[int, NDArray[np.uint64]] = {}

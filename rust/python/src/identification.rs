@@ -83,6 +83,16 @@ fn log<'a>(
     Ok((t, omega))
 }
 
+/// So many numbers.
+fn fixed<const N: usize>(given: &Bound<'_, PyAny>, name: &str) -> PyResult<[f64; N]> {
+    let found = floats(given, name)?;
+    let found = found.as_slice()?;
+    found.try_into().map_err(|_| {
+        let count = found.len();
+        PyValueError::new_err(format!("{name}: expected {N} numbers, got {count}"))
+    })
+}
+
 /// Times have to ascend.
 fn check(t: &[f64]) -> PyResult<()> {
     if t.iter().all(|x| x.is_finite()) && t.windows(2).all(|pair| pair[0] < pair[1]) {
@@ -138,11 +148,13 @@ pub(crate) fn fit_tumble<'py>(
 pub(crate) fn tumble_information<'py>(
     py: Python<'py>,
     t: &Bound<'py, PyAny>,
-    omega: [f64; 3],
-    inertia: [f64; 6],
+    omega: &Bound<'py, PyAny>,
+    inertia: &Bound<'py, PyAny>,
     known: &Bound<'py, PyDict>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let known = Known::of(known)?;
+    let omega = fixed::<3>(omega, "omega")?;
+    let inertia = fixed::<6>(inertia, "inertia")?;
     let t = floats(t, "t")?;
     let t = t.as_slice()?;
     if t.is_empty() {

@@ -301,6 +301,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
         "name": "inertia",
     },
     "Trajectory.point": {"point": [1.0, 0.0, 0.5]},
+    "Trajectory.relative_to": {"orbit": orbits.kepler(1.0, (1.0, 0.0, 0.0), (0.0, 1.0, 0.25))},
     "Trajectory.resume": {"t": [0.5, 0.75, 1.0]},
     "Trajectory.invariants": {},
     "molecules.isotopes": {"labels": ["C", "D", "O"], "masses": "most_common"},

@@ -26,7 +26,7 @@ const FEATURES: usize = 9;
 /// A motion of more steps than this for each unit of angle (its first rate times the time) has gone astray, and so has one of so large
 /// an angle for each row of the log.
 const STEPS: f64 = 30.0;
-const TURNED: f64 = 100.0;
+const TURNED: f64 = 10.0;
 
 /// What turns: its tensor, the constant momentum inside, the constant torque; all in B.
 #[derive(Clone, Copy, Debug)]

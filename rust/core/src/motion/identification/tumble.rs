@@ -386,6 +386,9 @@ impl<'a> Scaled<'a> {
         directions: &[Matrix3<f64>],
         mut told: Option<&mut Vec<[f64; 3]>>,
     ) -> Option<Linear> {
+        if self.look().is_break() {
+            return None;
+        }
         let inner = 3 + directions.len();
         let unknowns = inner + if self.has_bias() { 3 } else { 0 };
         let mut triangle = Triangle::new(unknowns);
@@ -537,6 +540,9 @@ impl<'a> Scaled<'a> {
     ///
     /// The last column carries the gaps on: how far the motion would be from the nodes if they were closed.
     fn link(&self, at: &Chain, rows: usize, directions: &[Matrix3<f64>]) -> Option<Linked> {
+        if self.look().is_break() {
+            return None;
+        }
         let inner = 3 + directions.len();
         let unknowns = inner + if self.has_bias() { 3 } else { 0 };
         let mut triangle = Triangle::new(unknowns);
