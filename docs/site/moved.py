@@ -13,7 +13,7 @@ MOVED = {
     "theory/motion": (
         "kinematics", "euler_angles", "kinetic_energy", "euler_equations", "stability", "free",
         "free_invariants", "free_periods", "free_sensitivity", "free_precession", "heavy_top", "gyrostat",
-        "rolling", "loads", "simulate", "integrate", "variation",
+        "rolling", "loads", "simulate", "integrate", "variation", "identification",
     ),
 }  # fmt: skip
 """A page, and those beside it that hold its sections now."""
