@@ -53,30 +53,103 @@ impl Fault {
     }
 }
 
-/// The functions of a load that motors follow.
-struct ActingController<'a> {
+/// The functions of a load: of one that acts on a body, or of one that motors follow.
+struct LoadFunctions<'a> {
     load: &'a PyLoad,
+    with_states: Vec<&'a WithStates>,
     /// Those that are switched on.
-    callbacks: Vec<&'a Callback>,
     compiled: Vec<&'a Compiled>,
+    callbacks: Vec<&'a Callback>,
 }
 
-impl<'a> ActingController<'a> {
+/// What functions are called with.
+struct Call<'a, 'py> {
+    /// Needed where the load calls Python.
+    py: Option<Python<'py>>,
+    slots: &'a [Slot],
+    terms: &'a [Term],
+    t: f64,
+    phase: &'a Phase,
+}
+
+impl<'a> LoadFunctions<'a> {
     fn new(load: &'a PyLoad) -> Self {
         Self {
             load,
-            callbacks: load.callbacks().collect(),
+            with_states: load.with_states().collect(),
             compiled: load.compiled_functions().collect(),
+            callbacks: load.callbacks().collect(),
         }
+    }
+
+    /// Number of states.
+    fn states(&self) -> usize {
+        let called = self.with_states.iter().map(|one| one.initial.len());
+        let compiled = self.load.compiled_functions().map(|one| one.initial.len());
+        called.chain(compiled).sum()
+    }
+
+    /// Times at which something begins or ends to act.
+    fn breaks(&self, from: f64, to: f64) -> Vec<f64> {
+        let called = self.load.callbacks().map(|callback| &callback.windows);
+        let compiled = (self.load.compiled_functions()).map(|compiled| &compiled.windows);
+        let windows = called.chain(compiled).flatten();
+        let mut breaks: Vec<f64> = windows.flat_map(Windows::switches).collect();
+        breaks.extend(self.with_states.iter().flat_map(|one| one.times(from, to)));
+        breaks
     }
 
     /// From now on what is on at the time `middle` acts.
     fn enter(&mut self, middle: f64) {
         let is_on =
             |windows: &Option<Windows>| windows.as_ref().is_none_or(|open| open.contains(middle));
-        self.callbacks = (self.load.callbacks().filter(|one| is_on(&one.windows))).collect();
+        self.callbacks.clear();
+        (self.callbacks).extend(self.load.callbacks().filter(|one| is_on(&one.windows)));
+        self.compiled.clear();
         let compiled = self.load.compiled_functions();
-        self.compiled = compiled.filter(|one| is_on(&one.windows)).collect();
+        (self.compiled).extend(compiled.filter(|one| is_on(&one.windows)));
+    }
+
+    /// Add the wrenches to a sum, and write the rates of the states from number `first` on into `rates`, where there is room.
+    fn add(
+        &self,
+        call: &Call<'_, '_>,
+        mut first: usize,
+        rates: &mut [f64],
+        sum: &mut Wrench,
+    ) -> Result<(), Fault> {
+        let Call { t, phase, .. } = *call;
+        let asked = !rates.is_empty();
+        if let Some(py) = call.py
+            && !self.with_states.is_empty()
+        {
+            let states = Named::of(call.slots, call.terms, phase);
+            for one in &self.with_states {
+                let own = first..first + one.initial.len();
+                first = own.end;
+                if asked {
+                    one.rates(py, t, phase, &states, &mut rates[own])
+                        .map_err(Fault::Python)?;
+                }
+                *sum += one.call(py, t, phase, &states).map_err(Fault::Python)?;
+            }
+        }
+        for compiled in &self.compiled {
+            let own = first..first + compiled.initial.len();
+            first = own.end;
+            let into = if asked {
+                &mut rates[own.clone()]
+            } else {
+                &mut []
+            };
+            *sum += compiled.call(t, phase, &phase.internal_state[own], into);
+        }
+        if let Some(py) = call.py {
+            for callback in &self.callbacks {
+                *sum += callback.call(py, t, phase).map_err(Fault::Python)?;
+            }
+        }
+        Ok(())
     }
 }
 
@@ -86,12 +159,9 @@ pub(crate) struct ActingLoad<'a, 'py> {
     load: &'a PyLoad,
     /// Needed where the load calls Python.
     py: Option<Python<'py>>,
-    /// Those that are switched on.
-    callbacks: Vec<&'a Callback>,
-    compiled: Vec<&'a Compiled>,
-    with_states: Vec<&'a WithStates>,
+    functions: LoadFunctions<'a>,
     /// What motors follow, if it is functions.
-    controllers: Vec<ActingController<'a>>,
+    controllers: Vec<LoadFunctions<'a>>,
     /// For each of the analytic terms the number of the controller that its motor follows.
     follows: Vec<Option<usize>>,
     /// The states by name, where Python is called with them.
@@ -112,14 +182,12 @@ impl<'a, 'py> ActingLoad<'a, 'py> {
         let has_states = |load: &PyLoad| load.with_states().next().is_some();
         let names_states = has_states(load) || controllers.iter().any(|one| has_states(one));
         Self {
-            controllers: controllers.into_iter().map(ActingController::new).collect(),
+            controllers: controllers.into_iter().map(LoadFunctions::new).collect(),
             follows,
             analytic: Analytic::new(terms, subject),
             load,
             py,
-            callbacks: load.callbacks().collect(),
-            compiled: load.compiled_functions().collect(),
-            with_states: load.with_states().collect(),
+            functions: LoadFunctions::new(load),
             slots: if names_states {
                 load.slots()
             } else {
@@ -137,37 +205,11 @@ impl<'a, 'py> ActingLoad<'a, 'py> {
         mut first: usize,
         rates: &mut [f64],
     ) -> Result<Vec<Vector3<f64>>, Fault> {
-        let asked = !rates.is_empty();
         let mut all = Vec::with_capacity(self.controllers.len());
         for one in &self.controllers {
             let mut sum = Wrench::default();
-            if let Some(py) = self.py
-                && one.load.calls_python()
-            {
-                let states = Named::of(&self.slots, self.analytic.terms(), phase);
-                for law in one.load.with_states() {
-                    let own = first..first + law.initial.len();
-                    first = own.end;
-                    if asked {
-                        law.rates(py, t, phase, &states, &mut rates[own])
-                            .map_err(Fault::Python)?;
-                    }
-                    sum += law.call(py, t, phase, &states).map_err(Fault::Python)?;
-                }
-                for callback in &one.callbacks {
-                    sum += callback.call(py, t, phase).map_err(Fault::Python)?;
-                }
-            }
-            for compiled in &one.compiled {
-                let own = first..first + compiled.initial.len();
-                first = own.end;
-                let into = if asked {
-                    &mut rates[own.clone()]
-                } else {
-                    &mut []
-                };
-                sum += compiled.call(t, phase, &phase.internal_state[own], into);
-            }
+            one.add(&self.call(t, phase), first, rates, &mut sum)?;
+            first += one.states();
             if sum.force != Vector3::zeros() {
                 let [x, y, z] = sum.force.into();
                 return Err(Fault::Python(PyValueError::new_err(format!(
@@ -182,9 +224,17 @@ impl<'a, 'py> ActingLoad<'a, 'py> {
 
     /// The number of the first state of the controllers.
     fn first_of_controllers(&self) -> usize {
-        let called = self.with_states.iter().map(|one| one.initial.len());
-        let compiled = self.load.compiled_functions().map(|one| one.initial.len());
-        self.first_of_functions() + called.chain(compiled).sum::<usize>()
+        self.first_of_functions() + self.functions.states()
+    }
+
+    fn call<'s>(&'s self, t: f64, phase: &'s Phase) -> Call<'s, 'py> {
+        Call {
+            py: self.py,
+            slots: &self.slots,
+            terms: self.analytic.terms(),
+            t,
+            phase,
+        }
     }
 
     /// Tells the motors what the controllers ask for.
@@ -216,7 +266,11 @@ impl Load for ActingLoad<'_, '_> {
     fn exerts_force(&self) -> bool {
         self.analytic.exerts_force()
             || self.load.callbacks().any(Callback::exerts_force)
-            || self.with_states.iter().any(|one| one.exerts_force())
+            || self
+                .functions
+                .with_states
+                .iter()
+                .any(|one| one.exerts_force())
             || self.load.compiled_functions().next().is_some()
     }
 
@@ -227,39 +281,17 @@ impl Load for ActingLoad<'_, '_> {
     }
 
     fn breaks(&self, from: f64, to: f64) -> Vec<f64> {
-        let windows = (self.load.callbacks().map(|callback| &callback.windows)).chain(
-            self.load
-                .compiled_functions()
-                .map(|compiled| &compiled.windows),
-        );
-        let mut breaks: Vec<f64> = windows.flatten().flat_map(Windows::switches).collect();
+        let mut breaks = self.functions.breaks(from, to);
         breaks.extend(self.analytic.breaks(from, to));
-        breaks.extend(self.with_states.iter().flat_map(|one| one.times(from, to)));
         for one in &self.controllers {
-            let called = one.load.callbacks().map(|callback| &callback.windows);
-            let compiled = one
-                .load
-                .compiled_functions()
-                .map(|compiled| &compiled.windows);
-            let windows = called.chain(compiled).flatten();
-            breaks.extend(windows.flat_map(Windows::switches));
-            breaks.extend(one.load.with_states().flat_map(|law| law.times(from, to)));
+            breaks.extend(one.breaks(from, to));
         }
         breaks
     }
 
     fn enter(&mut self, from: f64, to: f64) -> Result<(), Fault> {
         let middle = from + 0.5 * (to - from);
-        let is_on =
-            |windows: &Option<Windows>| windows.as_ref().is_none_or(|open| open.contains(middle));
-        self.callbacks.clear();
-        (self.callbacks).extend(self.load.callbacks().filter(|one| is_on(&one.windows)));
-        self.compiled.clear();
-        (self.compiled).extend(
-            self.load
-                .compiled_functions()
-                .filter(|one| is_on(&one.windows)),
-        );
+        self.functions.enter(middle);
         for one in &mut self.controllers {
             one.enter(middle);
         }
@@ -312,37 +344,9 @@ impl Load for ActingLoad<'_, '_> {
             self.command(&torques);
         }
         let mut sum = self.analytic.act(t, phase, rates)?;
-        let mut first = self.first_of_functions();
-        let asked = !rates.is_empty();
-        if let Some(py) = self.py
-            && !self.with_states.is_empty()
-        {
-            let states = Named::of(&self.slots, self.analytic.terms(), phase);
-            for one in &self.with_states {
-                let own = first..first + one.initial.len();
-                first = own.end;
-                if asked {
-                    one.rates(py, t, phase, &states, &mut rates[own])
-                        .map_err(Fault::Python)?;
-                }
-                sum += one.call(py, t, phase, &states).map_err(Fault::Python)?;
-            }
-        }
-        for compiled in &self.compiled {
-            let own = first..first + compiled.initial.len();
-            first = own.end;
-            let into = if asked {
-                &mut rates[own.clone()]
-            } else {
-                &mut []
-            };
-            sum += compiled.call(t, phase, &phase.internal_state[own], into);
-        }
-        if let Some(py) = self.py {
-            for callback in &self.callbacks {
-                sum += callback.call(py, t, phase).map_err(Fault::Python)?;
-            }
-        }
+        let first = self.first_of_functions();
+        self.functions
+            .add(&self.call(t, phase), first, rates, &mut sum)?;
         Ok(sum)
     }
 
@@ -368,7 +372,7 @@ impl Load for ActingLoad<'_, '_> {
         let mut of_controllers = self.first_of_controllers();
         let controllers = self.controllers.iter().map(|one| {
             let first = of_controllers;
-            of_controllers += one.load.scales_of_functions().len();
+            of_controllers += one.states();
             (first, one.load)
         });
         let laws = std::iter::once(own)
