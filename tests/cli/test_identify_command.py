@@ -101,6 +101,15 @@ def test_a_wrist(tmp_path: Path) -> None:
     assert {"the moment about x"} <= {one["words"] for one in found["observability"]}
 
 
+def test_a_linear_acceleration_is_not_guessed(tmp_path: Path) -> None:
+    """A phone takes gravity away from it, and an inertial sensor of a robot does not."""
+    names = "t,wx,wy,wz,fx,fy,fz,tx,ty,tz,linear_acceleration_x,linear_acceleration_y,linear_acceleration_z"
+    log = write(tmp_path / "wrist.csv", names, T, *(np.ones((len(T), 3)) for _ in range(4)))
+    code, _, err = run("identify", log, "--kind", "wrench")
+    assert code == 2
+    assert "no columns are called as those for --specific-force" in err
+
+
 SWINGS = """device,axis,period,known
 torsional,z,2.0 ± 0.001,0.05
 torsional,x,2.3 ± 0.001,

@@ -209,6 +209,15 @@ class TestDesign:
             size.append(np.trace(identify.design(body, omega, t, SIGMA).covariance[3:9, 3:9]))
         assert min(size) == size[0]
 
+    def test_throws_that_turn_too_far(self) -> None:
+        body = RigidBody.from_principal(1.0, (0.2, 0.35, 0.45))
+        t = np.arange(20.0)
+        assert np.isfinite(identify.design(body, (40.0, 80.0, 20.0), t, SIGMA).crlb).all()
+        with pytest.raises(ValueError, match=r"t, omega: the body turns by 1\.15e\+09 rad from one time"):
+            identify.design(body, (5e8, 1e9, 2.5e8), t, SIGMA)
+        with pytest.raises(ValueError, match=r"energy, end, n: no throw with an energy of 1e\+18"):
+            identify.best_throw(body, energy=1e18, end=20.0, sigma=SIGMA, n=20)
+
 
 class TestLogs:
     def test_a_rotor_tells_the_scale(self) -> None:

@@ -278,10 +278,11 @@ class TestLimits:
         def limit(_t: float, y: np.ndarray) -> Any:
             return y[7] - most
 
-        limit.terminal = True  # type: ignore[attr-defined]
+        stop: Any = limit
+        stop.terminal = True
         exact: Any = {"method": "DOP853", "rtol": 3e-14, "atol": 1e-14}
         start = np.concatenate([ATTITUDE, OMEGA, NONE])
-        one = solve_ivp(free, (0, 15), start, events=limit, **exact)
+        one = solve_ivp(free, (0, 15), start, events=stop, **exact)
         two = solve_ivp(held, (one.t[-1], 15), one.y[:, -1], **exact)
         load: Any = sum(
             loads.wheel(axis, j, torque=torque, max_rate=most if k == 0 else None)

@@ -342,7 +342,7 @@ def _draw(found: Identified, drawing: Any, path: Path) -> None:
     """Draw the fit, where there is a motion, and the residuals."""
     figure: Any = require("matplotlib.figure", extra="plot", purpose="drawing")
     drawn = figure.Figure(figsize=(8.0, 6.0 if drawing else 4.5), facecolor="white", layout="constrained")
-    if drawing is None:
+    if drawing is None or found.motion is None:
         found.plot(drawn.subplots())
     else:
         from polhode.draw.plot.axes import tidy
@@ -351,7 +351,7 @@ def _draw(found: Identified, drawing: Any, path: Path) -> None:
         t, omega = drawing
         top, bottom = drawn.subplots(2, sharex=True, height_ratios=(3, 2))
         fine = np.linspace(t[0], t[-1], 2000)
-        line = found.motion.at(fine - t[0]).omega  # type: ignore[union-attr] # a tumble has a motion
+        line = found.motion.at(fine - t[0]).omega
         if found.bias is not None:
             line = line + np.asarray(found.bias.value)
         for k, name in enumerate("xyz"):

@@ -145,6 +145,12 @@ def from_tumble(
             kind="no fit",
         )
     _check_fit(times, rows, known, found[0])
+    if not found[0]["converged"]:
+        raise IdentificationError(
+            "omega: the fit came near a maximum of the likelihood and did not reach it; ",
+            "record longer, give sigma=, or more starts=",
+            kind="no fit",
+        )
     fits = [_result(one, known, momentum, own_mass, scale_known, dropped) for one in found]
     weak = tuple(one for one in fits[0].observability if one.words != _SCALE)
     if any(one.relative >= _LOST for one in weak) or np.isnan(fits[0].covariance).any():
@@ -210,24 +216,20 @@ def design(
     >>> len(spin.observability), [one.words for one in tumble.observability]
     (4, ['the scale of the tensor'])
     """
-    check_kind(body, "body", "RigidBody")
-    if body.shape != ():
-        raise ValueError(f"body: expected one body, got a stack of shape {body.shape}")
     times = _times(t)
     if not np.isfinite(times).all():
         raise ValueError("t: expected finite times")
-    known, momentum = _known(sigma, bias, rotor, None, "gaussian")
-    known["starts"] = 0
-    scale_known = bool(momentum.any())
-    inertia = np.asarray(body.inertia)
-    if not scale_known:
-        inertia = inertia / np.trace(inertia)
-    told = tumble_information(
-        times, _vector("omega", omega).tolist(), [float(inertia[i, j]) for i, j in ELEMENTS], known
-    )
-    told["residuals"] = np.zeros((0, 3))
-    told["chi2"] = 0.0
-    return _result(told, known, momentum, float(body.mass), scale_known, {}, rows=len(times))
+    inertia, known, momentum = _before_a_throw(body, sigma, bias, rotor)
+    start = _vector("omega", omega)
+    fit = _information(times, start, inertia, known)
+    if fit is None:
+        turns = float(np.linalg.norm(start)) * float(np.diff(times).max())
+        raise ValueError(
+            f"t, omega: the body turns by {turns:.3g} rad from one time to the next, too far to be followed; "
+            "give more times, or a slower throw"
+        )
+    fit |= {"residuals": np.zeros((0, 3)), "chi2": 0.0}
+    return _result(fit, known, momentum, float(body.mass), bool(momentum.any()), {}, rows=len(times))
 
 
 def best_throw(
@@ -283,9 +285,7 @@ def best_throw(
     >>> bool(best.body.sigma.principal_moments.max() < flat.body.sigma.principal_moments.max())
     True
     """
-    check_kind(body, "body", "RigidBody")
-    if body.shape != ():
-        raise ValueError(f"body: expected one body, got a stack of shape {body.shape}")
+    inertia, known, momentum = _before_a_throw(body, sigma, bias, rotor)
     for name, x in (("energy", energy), ("end", end)):
         if not 0.0 < float(x) < 1e100:
             raise ValueError(f"{name}: expected a positive number, got {x!r}")
@@ -298,22 +298,17 @@ def best_throw(
             "a spin about this axis has no energy; give the body some thickness"
         )
     times = np.linspace(0.0, float(end), int(n))
-    known, momentum = _known(sigma, bias, rotor, None, "gaussian")
-    known["starts"] = 0
     scaled = bool(momentum.any())
-    inertia = np.asarray(body.inertia)
-    if not scaled:
-        inertia = inertia / np.trace(inertia)
-    elements = [float(inertia[i, j]) for i, j in ELEMENTS]
 
     def throw(direction: Floats) -> Floats:
         unit = direction / np.linalg.norm(direction)
         return np.asarray(axes @ (unit * np.sqrt(2.0 * float(energy) / moments)))
 
     def loss(direction: Floats) -> float:
-        told = tumble_information(times, throw(direction).tolist(), elements, known)
-        space = _allowed(inertia, scaled, False)
-        covariance = _covariance(np.array(told["triangle"]), space)
+        fit = _information(times, throw(direction), inertia, known)
+        if fit is None:
+            return math.inf
+        covariance = _covariance(np.array(fit["triangle"]), _allowed(inertia, scaled, False))
         return math.inf if covariance is None else float(np.trace(covariance[3:9, 3:9]))
 
     # Without a rotor the signs of the components do not matter: reflections of the motion.
@@ -324,6 +319,11 @@ def best_throw(
     directions = np.vstack([directions, -directions]) if scaled else np.abs(directions)
     losses = [loss(one) for one in directions]
     best, least = directions[int(np.argmin(losses))], min(losses)
+    if least == math.inf:
+        raise ValueError(
+            f"energy, end, n: no throw with an energy of {float(energy):.3g} tells of this body within "
+            f"{float(end):.3g} in {n} samples: it turns too little, or too far from one to the next"
+        )
     step = 0.1
     while step > 1e-3:
         tried = [best + step * sign * one for one in np.eye(3) for sign in (1.0, -1.0)]
@@ -334,6 +334,29 @@ def best_throw(
         else:
             step *= 0.4
     return throw(best)
+
+
+def _before_a_throw(
+    body: RigidBody, sigma: ArrayLike, bias: bool | Uncertain, rotor: ArrayLike | None
+) -> tuple[Floats, dict[str, Any], Floats]:
+    """Return the tensor that is believed in, what else is known, and the momentum inside.
+
+    Without a rotor the tensor has the trace 1.
+    """
+    check_kind(body, "body", "RigidBody")
+    if body.shape != ():
+        raise ValueError(f"body: expected one body, got a stack of shape {body.shape}")
+    known, momentum = _known(sigma, bias, rotor, None, "gaussian")
+    inertia = np.asarray(body.inertia)
+    return inertia if momentum.any() else inertia / np.trace(inertia), known | {"starts": 0}, momentum
+
+
+def _information(
+    times: Floats, start: Floats, inertia: Floats, known: dict[str, Any]
+) -> dict[str, Any] | None:
+    """Compute what a throw would tell; None where the motion is not followed."""
+    elements = [float(inertia[i, j]) for i, j in ELEMENTS]
+    return tumble_information(times, start.tolist(), elements, known)
 
 
 def _times(t: ArrayLike) -> Floats:
@@ -487,11 +510,11 @@ def _check_fit(times: Floats, rows: Floats, known: dict[str, Any], fit: dict[str
             kind="units",
         )
     if known["sigma"] is None:
-        said = f"the residuals have a sigma of {fit['sigma'][0]:.3g}, far more than the noise of the log; "
+        misfit = f"the residuals have a sigma of {fit['sigma'][0]:.3g}, far more than the noise of the log; "
     else:
-        said = f"chi2 is {fit['chi2']:.6g} with {3 * len(times) - _unknowns(known)} degrees of freedom; "
+        misfit = f"chi2 is {fit['chi2']:.6g} with {3 * len(times) - _unknowns(known)} degrees of freedom; "
     raise IdentificationError(
-        f"omega: {said}",
+        f"omega: {misfit}",
         "no free motion explains the log; cut off the rows of throw and catch, estimate the offset by ",
         'bias=True, take loss="student" for outliers, or enlarge sigma',
         kind="no fit",
@@ -551,7 +574,7 @@ def _directions(triangle: Floats, inertia: Floats, scaled: bool) -> tuple[Direct
         if value * _UNCERTAIN >= 1.0:
             continue
         relative = math.inf if value <= 1e-11 * large else 1.0 / float(value)
-        vector, words = _named(space @ row, inertia, scaled)
+        vector, words = _describe(space @ row, inertia, scaled)
         sigma = relative * size * float(np.abs(vector).max())
         found.append(Direction(words, vector * size, sigma, relative, _REMEDY))
     return tuple(sorted(found, key=lambda one: -one.relative))
@@ -562,8 +585,8 @@ def _scale_direction(inertia: Floats) -> Direction:
     return Direction(_SCALE, vector, math.inf, math.inf, _SCALE_REMEDY)
 
 
-def _named(vector: Floats, inertia: Floats, scaled: bool) -> tuple[Floats, str]:
-    """Return a direction and its name.
+def _describe(vector: Floats, inertia: Floats, scaled: bool) -> tuple[Floats, str]:
+    """Return a direction of the tensor and its words.
 
     Without a scale a multiple of the tensor changes nothing, and the multiple with the fewest parts is taken.
     """

@@ -233,13 +233,13 @@ _SENSORS: Final[dict[str, tuple[tuple[str, ...], ...]]] = {
         ("mx", "my", "mz"),
         ("wrenchtorquex", "wrenchtorquey", "wrenchtorquez"),
     ),
+    # No "linear acceleration": it is with gravity for some and without it for others.
     "specific_force": (
         ("ax", "ay", "az"),
         ("accx", "accy", "accz"),
         ("accelx", "accely", "accelz"),
         ("accelerometerx", "accelerometery", "accelerometerz"),
         ("specificforcex", "specificforcey", "specificforcez"),
-        ("linearaccelerationx", "linearaccelerationy", "linearaccelerationz"),
     ),
     "angular_acceleration": (
         ("alphax", "alphay", "alphaz"),

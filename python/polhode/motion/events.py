@@ -54,7 +54,7 @@ class Event:
     direction: float = 0.0
     terminal: bool | int = False
     _of_wheel: tuple[str, str] | None = field(default=None, init=False, repr=False)
-    _has_passed: bool = field(default=False, init=False, repr=False)
+    _is_at_start: bool = field(default=False, init=False, repr=False)
 
     @classmethod
     def stop(cls, wheel: str = "wheel", *, terminal: bool | int = False) -> Event:
@@ -156,22 +156,25 @@ class Event:
         return self.function(t, omega, quaternion, position, velocity, *states)
 
 
-def passed(events: Any, last: Any, number: int) -> Any:
-    """Return the events of a run that begins where `last`, or the one of this number, ended another."""
-    last = last.function if getattr(last, "_has_passed", False) else last
+def after_event(events: Any, last: Any, number: int) -> Any:
+    """Return the events of a run that begins where `last`, or the one of this number, ended another.
 
-    def begun(index: int, event: Any) -> Any:
+    That event is at zero there, and does not count again.
+    """
+    last = last.function if getattr(last, "_is_at_start", False) else last
+
+    def skip_start(index: int, event: Any) -> Any:
         if (index != number) if last is None else (event is not last):
             return event
         of_wheel = getattr(event, "_of_wheel", None)
         again = Event(event, getattr(event, "direction", 0.0), getattr(event, "terminal", False))
         object.__setattr__(again, "_of_wheel", of_wheel)
-        object.__setattr__(again, "_has_passed", True)
+        object.__setattr__(again, "_is_at_start", True)
         return again
 
     if callable(events):
-        return begun(0, events)
-    return [begun(index, event) for index, event in enumerate(events)]
+        return skip_start(0, events)
+    return [skip_start(index, event) for index, event in enumerate(events)]
 
 
 def _never_called(*_: Any) -> float:

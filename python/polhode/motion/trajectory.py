@@ -12,7 +12,7 @@ import numpy as np
 from polhode import _core
 from polhode._hints import ClassWithHints, no_attribute
 from polhode.motion.contact import ContactHistory, Extreme
-from polhode.motion.events import Events, passed
+from polhode.motion.events import Events, after_event
 from polhode.motion.gyrostat import Wheel, wheel
 from polhode.motion.invariants import drift, lengths
 from polhode.results import AngularMomentum, Invariants, KineticEnergy, State
@@ -180,10 +180,8 @@ class Trajectory(metaclass=ClassWithHints):
 
     def __getstate__(self) -> dict[str, Any]:
         """Return all attributes, for copy and pickle."""
-        kept = (
-            one.name for one in fields(self) if one.name != "_ended_by"
-        )  # a function, which need not pickle
-        return {name: getattr(self, name) for name in kept} | {"_ended_by": None}
+        # What ended the motion is a function, which may not pickle.
+        return {one.name: getattr(self, one.name) for one in fields(self)} | {"_ended_by": None}
 
     def __len__(self) -> int:
         """Count the times."""
@@ -871,7 +869,7 @@ class Trajectory(metaclass=ClassWithHints):
         if is_another:
             self._check_momentum(start, state, given)
         if from_event and options.get("events") is not None:
-            given["events"] = passed(options.pop("events"), self._ended_by, int(self.events.event[-1]))
+            given["events"] = after_event(options.pop("events"), self._ended_by, int(self.events.event[-1]))
         run = self.body.simulate(t, **given | options)
         run.__dict__["_origin"] = replace(run._origin, start=first)
         if self.uncertain_start != (None, None) or self.body._doubts() is not None:

@@ -5,6 +5,7 @@
 
 mod carried;
 mod free_motion;
+mod identification;
 mod laws;
 mod runs;
 #[cfg(feature = "serde")]

@@ -102,7 +102,7 @@ impl Functions {
             },
             last,
             trigger: read_event(function, load, terms)?,
-            has_passed: (function.getattr_opt("_has_passed")?)
+            has_passed: (function.getattr_opt("_is_at_start")?)
                 .is_some_and(|given| given.is_truthy().unwrap_or(false)),
         });
         Ok(())

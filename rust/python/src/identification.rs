@@ -143,7 +143,7 @@ pub(crate) fn fit_tumble<'py>(
     PyList::new(py, found)
 }
 
-/// What the motion from `omega` of a body with the elements `inertia` would tell at the times t (n,).
+/// What the motion from `omega` of a body with the elements `inertia` would tell at the times t (n,); None where it is not followed.
 #[pyfunction]
 pub(crate) fn tumble_information<'py>(
     py: Python<'py>,
@@ -151,7 +151,7 @@ pub(crate) fn tumble_information<'py>(
     omega: &Bound<'py, PyAny>,
     inertia: &Bound<'py, PyAny>,
     known: &Bound<'py, PyDict>,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<Option<Bound<'py, PyDict>>> {
     let known = Known::of(known)?;
     let omega = fixed::<3>(omega, "omega")?;
     let inertia = fixed::<6>(inertia, "inertia")?;
@@ -167,5 +167,6 @@ pub(crate) fn tumble_information<'py>(
     let found =
         py.detach(|| information_of(&tumble, (omega, inertia), &mut |_| interrupt.poll(None)));
     interrupt.finish(py, found.is_ok())?;
-    dict(py, &found.map_err(|error| to_py(py, &error))?)
+    let found = found.map_err(|error| to_py(py, &error))?;
+    found.map(|fit| dict(py, &fit)).transpose()
 }

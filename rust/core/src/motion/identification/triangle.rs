@@ -176,15 +176,15 @@ pub(super) struct Stop {
     pub(super) passes: usize,
 }
 
-/// Goes down from `start` by the method of Levenberg and Marquardt (J. J. Moré, Lecture Notes in Mathematics 630, 1978, 105).
+/// Go down from `start` by the method of Levenberg and Marquardt (J. J. Moré, Lecture Notes in Mathematics 630, 1978, 105).
 ///
-/// `evaluate` computes a place, or returns None where it is none or its cost exceeds a limit; `moved` makes a step. The last value says
+/// `evaluate` computes a place, or returns None where it is none or its cost exceeds a limit; `step_from` makes a step. The last value says
 /// whether the end was reached.
 pub(super) fn descend<P: Clone>(
     start: P,
     stop: &Stop,
     mut evaluate: impl FnMut(&P, f64) -> Option<Linear>,
-    moved: impl Fn(&P, &[f64]) -> Option<P>,
+    step_from: impl Fn(&P, &[f64]) -> Option<P>,
 ) -> Option<(P, Linear, bool)> {
     let mut here = start;
     let mut linear = evaluate(&here, f64::INFINITY)?;
@@ -200,7 +200,7 @@ pub(super) fn descend<P: Clone>(
             damping = (damping * 10.0_f64).max(1e-8);
             continue;
         };
-        let next = moved(&here, &step);
+        let next = step_from(&here, &step);
         let found = next.and_then(|next| Some((evaluate(&next, linear.cost)?, next)));
         if let Some((new, next)) = found
             && new.cost <= linear.cost

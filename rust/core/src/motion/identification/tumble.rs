@@ -6,7 +6,7 @@
 //! y_i = ω(t_i; ω₀, I) + b + n_i ,        I ω̇ + ω × (I ω + h) = N .
 //! ```
 //!
-//! Without a known h or N only ratios of the tensor are told; its trace is 1 then.
+//! Without a known h or N the log has only ratios of the tensor; its trace is 1 then.
 
 use std::cell::{Cell, RefCell};
 use std::ops::ControlFlow;
@@ -38,7 +38,7 @@ const TRIES: usize = 6;
 /// Rows on which further starts are tried out, and how many of them.
 const HEAD: usize = 2000;
 const TRIED: usize = 300;
-/// Of log L: maxima that are lower by more are not told.
+/// Of log L: maxima that are lower by more are left out.
 const WITHIN: f64 = 3.0;
 
 /// What is known of the offset of the gyro.
@@ -137,7 +137,7 @@ struct Scaled<'a> {
     torque: Vector3<f64>,
     rate: f64,
     unit: f64,
-    /// Whether the scale of the tensor is told by something.
+    /// Whether h, N or a prior has the scale of the tensor.
     has_scale: bool,
     /// The noise that the log seems to have.
     level: f64,
@@ -147,10 +147,10 @@ struct Scaled<'a> {
     done: Cell<f64>,
 }
 
-/// Fits a log: the best maximum of the likelihood first, then others within 3 of its logarithm.
+/// Find the maxima of the likelihood of a log: the best first, then others within 3 of its logarithm.
 ///
-/// The first start balances momentum over windows; the horizon of the fit grows to as far as the prediction holds. Further starts have other
-/// tensors. `watch` gets the fraction done and may end the work.
+/// The first start balances momentum over windows. Pieces of the log are fitted then, and their gaps close as the fit goes on. Further
+/// starts have other tensors. `watch` gets the fraction done and may end the work.
 ///
 /// # Examples
 ///
@@ -181,9 +181,10 @@ struct Scaled<'a> {
 /// let found: Vec<Fit> = fit_tumble(&tumble, go_on)?;
 /// assert!((found[0].inertia[0] - 0.2).abs() < 1e-9);
 ///
-/// // What the same throw tells was known before.
-/// let told = information(&tumble, ([1.0, 2.0, 0.5], [0.2, 0.35, 0.45, 0.0, 0.0, 0.0]), go_on)?;
-/// assert!((told.triangle[0][0] / found[0].triangle[0][0] - 1.0).abs() < 1e-6);
+/// // What the same throw tells could be known before.
+/// let before = information(&tumble, ([1.0, 2.0, 0.5], [0.2, 0.35, 0.45, 0.0, 0.0, 0.0]), go_on)?;
+/// let before = before.expect("a motion that can be followed");
+/// assert!((before.triangle[0][0] / found[0].triangle[0][0] - 1.0).abs() < 1e-6);
 /// # Ok::<(), polhode::Error>(())
 /// ```
 ///
@@ -206,8 +207,9 @@ pub fn fit_tumble(tumble: &Tumble<'_>, watch: &mut Watch<'_>) -> Result<Vec<Fit>
     Ok(found)
 }
 
-/// The derivatives of the predictions of a log by ω₀, tensor and offset in units of `tumble.sigma`, and the predictions:
-/// what the motion from `omega` would tell of the tensor `inertia`. The measured values do not matter.
+/// Compute what a log of the motion from `omega` would tell of the tensor `inertia`: the derivatives of its predictions by ω₀, tensor and
+/// offset, in units of `tumble.sigma`. The measured values do not matter. None where the motion turns by so much from row to row that
+/// it is not followed.
 ///
 /// # Errors
 /// [`Error::Stopped`] if `watch` said so.
@@ -218,7 +220,7 @@ pub fn information(
     tumble: &Tumble<'_>,
     (omega, inertia): ([f64; 3], [f64; 6]),
     watch: &mut Watch<'_>,
-) -> Result<Fit, Error> {
+) -> Result<Option<Fit>, Error> {
     assert!(!tumble.t.is_empty(), "times");
     let watch = RefCell::new(watch);
     let watch = |done: f64| (watch.borrow_mut())(done);
@@ -228,11 +230,11 @@ pub fn information(
         inertia: tensor(&inertia) / scaled.unit,
         bias: Vector3::zeros(),
     };
-    let fit = scaled.told(&point, false, true);
-    match fit {
-        Some(fit) if !scaled.stopped.get() => Ok(fit),
-        _ => Err(Error::Stopped),
+    let fit = scaled.fit_at(&point, false, true);
+    if scaled.stopped.get() {
+        return Err(Error::Stopped);
     }
+    Ok(fit)
 }
 
 fn tensor(elements: &[f64; 6]) -> Matrix3<f64> {
@@ -302,8 +304,8 @@ impl<'a> Scaled<'a> {
         let rate = if rate > 0.0 { rate } else { 1.0 };
         let (h, n) = (Vector3::from(tumble.momentum), Vector3::from(tumble.torque));
         let prior = tumble.prior.map(|(mean, _)| mean[0] + mean[1] + mean[2]);
-        let told = (h.norm() / rate).max(n.norm() / rate.powi(2));
-        let unit = prior.unwrap_or(if told > 0.0 { 3.0 * told } else { 1.0 });
+        let moment = (h.norm() / rate).max(n.norm() / rate.powi(2));
+        let unit = prior.unwrap_or(if moment > 0.0 { 3.0 * moment } else { 1.0 });
         // Noise below rounding is none.
         let level = (level / rate).max(1e-13);
         Self {
@@ -316,7 +318,7 @@ impl<'a> Scaled<'a> {
             ),
             momentum: h / (rate * unit),
             torque: n / (rate * rate * unit),
-            has_scale: prior.is_some() || told > 0.0,
+            has_scale: prior.is_some() || moment > 0.0,
             tumble,
             rate,
             unit,
@@ -328,7 +330,7 @@ impl<'a> Scaled<'a> {
     }
 
     /// Some of the rows, on which starts are tried out.
-    fn thinned(&self) -> Self {
+    fn thin_out(&self) -> Self {
         let head = self.rows().min(HEAD);
         let stride = head.div_ceil(TRIED);
         Self {
@@ -366,7 +368,7 @@ impl<'a> Scaled<'a> {
         }
     }
 
-    /// Whether to go on, asked now and then.
+    /// Return whether to go on.
     fn look(&self) -> ControlFlow<()> {
         let answer = (self.watch)(self.done.get());
         if answer.is_break() {
@@ -384,7 +386,7 @@ impl<'a> Scaled<'a> {
         rows: usize,
         limit: f64,
         directions: &[Matrix3<f64>],
-        mut told: Option<&mut Vec<[f64; 3]>>,
+        mut rests: Option<&mut Vec<[f64; 3]>>,
     ) -> Option<Linear> {
         if self.look().is_break() {
             return None;
@@ -411,13 +413,13 @@ impl<'a> Scaled<'a> {
                 let mut root = 1.0;
                 if self.tumble.student {
                     cost += (NU + 3.0) * (square / NU).ln_1p();
-                    let expected = told.is_some();
+                    let expected = rests.is_some();
                     root = ((NU + 3.0) / if expected { NU + 5.0 } else { NU + square }).sqrt();
                 } else {
                     cost += square;
                 }
-                if let Some(told) = told.as_deref_mut() {
-                    told.push(rest.into());
+                if let Some(rests) = rests.as_deref_mut() {
+                    rests.push(rest.into());
                 }
                 if !(cost <= limit) {
                     return ControlFlow::Break(());
@@ -484,7 +486,7 @@ impl<'a> Scaled<'a> {
             }
         };
         descend(*start, stop, evaluate, |at, step| {
-            let next = moved(at, step, &directions);
+            let next = step_from(at, step, &directions);
             is_tensor(&next.inertia).then_some(next)
         })
     }
@@ -613,7 +615,7 @@ impl<'a> Scaled<'a> {
         })
     }
 
-    /// Fits the first rows by pieces whose gaps close as the fit goes on (H. G. Bock, Springer Series in Chemical Physics 18,
+    /// Fit the first rows by pieces whose gaps close as the fit goes on (H. G. Bock, Springer Series in Chemical Physics 18,
     /// 1981, 102). Neither a separatrix nor the length of the log makes its way crooked, as that of ω₀ alone would be.
     fn join(&self, start: &Balanced, rows: usize, passes: usize) -> Option<(Point, Linked)> {
         let directions = self.directions();
@@ -631,7 +633,7 @@ impl<'a> Scaled<'a> {
             while share > 0.05 && !taken {
                 let scaled: Vec<f64> = step.iter().map(|x| x * share).collect();
                 let mut next = Chain {
-                    point: moved(&here.point, &scaled, &directions),
+                    point: step_from(&here.point, &scaled, &directions),
                     nodes: here.nodes.clone(),
                 };
                 for (node, place) in next.nodes.iter_mut().zip(&linked.follows) {
@@ -666,7 +668,7 @@ impl<'a> Scaled<'a> {
         Some((here.point, linked))
     }
 
-    /// Goes down among the tensors of flat bodies: those where the triangle inequality of the moments is an equality.
+    /// Go down among the tensors of flat bodies: those where the triangle inequality of the moments is an equality.
     fn refine_on_edge(&self, start: &Point, stop: &Stop) -> Option<(Point, Linear, bool)> {
         let directions = |at: &Point| {
             let axis = eigen3(&at.inertia).vectors.column(2).into_owned();
@@ -680,14 +682,14 @@ impl<'a> Scaled<'a> {
         let evaluate = |at: &Point, limit: f64| {
             self.evaluate::<8>(at, self.rows(), limit, &directions(at), None)
         };
-        descend(self.flattened(start), stop, evaluate, |at, step| {
-            let next = self.flattened(&moved(at, step, &directions(at)));
+        descend(self.flatten(start), stop, evaluate, |at, step| {
+            let next = self.flatten(&step_from(at, step, &directions(at)));
             is_tensor(&next.inertia).then_some(next)
         })
     }
 
-    /// The point with the nearest tensor of a flat body.
-    fn flattened(&self, at: &Point) -> Point {
+    /// Return the point with the nearest tensor of a flat body.
+    fn flatten(&self, at: &Point) -> Point {
         let eigen = eigen3(&at.inertia);
         let [a, b, c] = eigen.values;
         // Second moments in the plane; a motion needs some moment about a rod.
@@ -730,7 +732,7 @@ impl<'a> Scaled<'a> {
         found
     }
 
-    /// Sets the sigma, where it is not known, to that of the residuals at a point; by how much it changed.
+    /// Set the sigma, where it is not known, to that of the residuals at a point; return by how much it changed.
     fn set_sigma(&self, at: &Point) -> f64 {
         if self.tumble.sigma.is_some() {
             return 0.0;
@@ -803,7 +805,7 @@ impl<'a> Scaled<'a> {
         starts
     }
 
-    /// The maxima of the likelihood, the best first.
+    /// Find the maxima of the likelihood, the best first.
     fn maxima(&self) -> Vec<Fit> {
         let starts = self.starts();
         // What noise alone costs: a fit with much more is not the best one.
@@ -850,7 +852,7 @@ impl<'a> Scaled<'a> {
             (point, linear, converged) = found;
         }
         let mut all = vec![(point, linear.cost, converged)];
-        let some = self.thinned();
+        let some = self.thin_out();
         let count = some.rows();
         let Some((here, headed, _)) = some.refine(&point, count, &stop) else {
             return Vec::new();
@@ -897,7 +899,7 @@ impl<'a> Scaled<'a> {
         let least = all[0].1;
         all.retain(|(_, cost, _)| cost - least < 2.0 * WITHIN);
         all.iter()
-            .filter_map(|(point, _, converged)| self.possible(point, *converged))
+            .filter_map(|(point, _, converged)| self.fit_of_body(point, *converged))
             .collect()
     }
 
@@ -934,9 +936,9 @@ impl<'a> Scaled<'a> {
     }
 
     /// The fit at a maximum, or the best one on the edge where it is that of no body.
-    fn possible(&self, at: &Point, converged: bool) -> Option<Fit> {
+    fn fit_of_body(&self, at: &Point, converged: bool) -> Option<Fit> {
         if Self::excess(at) <= 1e-14 {
-            return self.told(at, false, converged);
+            return self.fit_at(at, false, converged);
         }
         let stop = Stop {
             gain: 1e-9,
@@ -949,11 +951,11 @@ impl<'a> Scaled<'a> {
             }
             (point, _, converged) = self.refine_on_edge(&point, &stop)?;
         }
-        self.told(&point, true, converged)
+        self.fit_at(&point, true, converged)
     }
 
-    /// What is told of a point, in the units of the log.
-    fn told(&self, at: &Point, at_edge: bool, converged: bool) -> Option<Fit> {
+    /// Compute the fit at a point, in the units of the log.
+    fn fit_at(&self, at: &Point, at_edge: bool, converged: bool) -> Option<Fit> {
         let mut residuals = Vec::with_capacity(self.rows());
         let elements = element_directions();
         let linear = self.evaluate::<9>(
@@ -1010,7 +1012,8 @@ impl<'a> Scaled<'a> {
     }
 }
 
-fn moved(at: &Point, step: &[f64], directions: &[Matrix3<f64>]) -> Point {
+/// Return the point after a step.
+fn step_from(at: &Point, step: &[f64], directions: &[Matrix3<f64>]) -> Point {
     let mut next = *at;
     for i in 0..3 {
         next.omega[i] += step[i];
