@@ -38,12 +38,19 @@ COLUMNS = 9
 """Of an extrapolation."""
 STEP = LONG(1e-30)
 SETTLED = 1e-14
-"""Motions that change by less with half the steps are known; the others depend on their start that much."""
-MOST_STEPS = 1024
+"""A motion is known where it changes by less with half the steps, beside a change of its start by as much."""
+MOVE = LONG(1e-10)
+MOST_GROWTH = 1e4
+"""Motions that depend more on their start are left out: what is asked of them would say little."""
+FEWEST_STEPS, MOST_STEPS = 16, 64
+"""In a rotation."""
+GROUP = 6
+"""Motions of one kind of surface that are computed side by side."""
 LEAST_MARGIN = 0.05
 """Motions that come nearer to lying flat, or to the rim of their surface, are left out."""
-SHORT, LONGER = 50, 100
-"""How many motions are drawn of about 5 rotations, and of 5 to 60; some are not known."""
+SHORT, LONGER = 50, 70
+"""How many motions are drawn of less than about 5 rotations, and of 5 to 60; some are not known."""
+SLIPPING, LONGER_SLIPPING = 50, 40
 
 Wide = Any
 Vector = list[mpf]
@@ -272,6 +279,14 @@ class Extended:
         self.start = np.array([[LONG(x) for x in row] for row in starts])
         self.t = column("t")
 
+    def add_copies(self, move: Wide) -> None:
+        """Put a copy beside each case, with a start that is turned and spun up by so much."""
+        self.surfaces = [*self.surfaces, *self.surfaces]
+        for name, value in list(vars(self).items()):
+            if isinstance(value, np.ndarray):
+                setattr(self, name, np.concatenate([value, value]))
+        self.start[len(self.start) // 2 :, :7] += move * LONG([0.3, -0.5, 0.4, 0.6, 0.5, -0.6, 0.7])
+
     def rates(self, state: Wide) -> Wide:
         """Return the rates of (q, ω in space, C); that of the contact by a complex step."""
         q, omega, place = state[:, :4], state[:, 4:7], state[:, 7:]
@@ -362,6 +377,10 @@ class ExtendedSliding(Extended):
             starts = [[mpmath.nstr(x, 24) for x in body.velocity(body.start())] for body in bodies]
         velocity = np.array([[LONG(x) for x in row] for row in starts])
         self.start = np.concatenate([self.start, velocity], axis=1)
+
+    def add_copies(self, move: Wide) -> None:
+        super().add_copies(move)
+        self.laws = [np.concatenate([law, law]) for law in self.laws]
 
     def rates(self, state: Wide) -> Wide:
         """Return the rates of (q, ω in space, C, its velocity)."""
@@ -519,10 +538,13 @@ def draw(number: int, rng: random.Random) -> dict[str, Any]:
     }
 
 
-def longer(number: int, case: dict[str, Any]) -> dict[str, Any]:
-    """Return the case over 5 to 60 rotations."""
-    rotations = 5 * 12 ** (number // 5 % 10 / 9)
-    return case | {"t": 2 * math.pi * rotations / math.hypot(*case["omega"])}
+def longer(number: int, count: int, rng: random.Random, least: float = 5.0) -> dict[str, Any]:
+    """Draw one of so many cases over `least` to 60 rotations, with the less tilt the longer it lasts."""
+    case = draw(number, rng)
+    rotations = least * (60 / least) ** (number // 5 / (count // 5 - 1))
+    t = 2 * math.pi * rotations / math.hypot(*case["omega"])
+    tilt = [x * case["t"] / t for x in case["normal"][:2]]
+    return case | {"t": t, "normal": [*tilt, case["normal"][2]]}
 
 
 def rotations_of(case: dict[str, Any]) -> float:
@@ -531,7 +553,8 @@ def rotations_of(case: dict[str, Any]) -> float:
 
 def slipping(number: int, case: dict[str, Any], rng: random.Random) -> dict[str, Any]:
     """Return the case with half the spin, so that the plane need not pull, friction and a slip that lasts."""
-    friction = [("coulomb", 0.02), ("normal", 0.1), ("plain", 0.6)][number // 5 % 3]
+    share = min(2.5 / case["t"], 1.0)
+    friction = [("coulomb", 0.02 * share), ("normal", 0.1 * share), ("plain", 0.6 * share)][number // 5 % 3]
     case = case | {"omega": [0.5 * x for x in case["omega"]]}
     with mp.workdps(DIGITS):
         body = RollingBody(case)
@@ -544,46 +567,57 @@ def slipping(number: int, case: dict[str, Any], rng: random.Random) -> dict[str,
     return case | {"friction": friction, "velocity": velocity}
 
 
-def known(drawn: list[dict[str, Any]], kind: type[Extended], most: int = MOST_STEPS) -> None:
-    """Add the ends of cases with one kind of surface, as far as they are known."""
-    left, steps = drawn, 64
-    before, _ = kind(left).ends(steps)
-    while left:
-        steps *= 2
+def known(drawn: list[dict[str, Any]], kind: type[Extended]) -> None:
+    """Add the ends of cases with one kind of surface, as far as they are known.
+
+    A case beside each, whose start is turned and spun up a little, shows how much changes of the start grow.
+    """
+    left, per_rotation = drawn, FEWEST_STEPS
+    before: Wide = None
+    while left and per_rotation <= MOST_STEPS:
+        steps = math.ceil(per_rotation * max(rotations_of(case) for case in left))
         extended = kind(left)
-        now, _ = extended.ends(steps)
-        off = np.max(np.abs(now - before), axis=1)
-        # What is not known of the start grows with the rotations at least.
-        is_known = off < SETTLED * np.array([1 + rotations_of(case) for case in left])
-        is_known &= extended.least_margin > LEAST_MARGIN
-        print(kind, steps, np.array(off, dtype=float), file=sys.stderr)
+        extended.add_copies(MOVE)
+        both, _ = extended.ends(steps)
+        now, moved = both[: len(left)], both[len(left) :]
+        growth = np.max(np.abs(moved - now), axis=1) / MOVE
+        margin = np.minimum(*np.split(extended.least_margin, 2))
+        # Of what comes near to lying flat, or to a rim, too little is known.
+        is_left = (margin > LEAST_MARGIN) & np.isfinite(growth) & (growth < MOST_GROWTH)
+        if before is None:
+            is_known = np.zeros(len(left), dtype=bool)
+        else:
+            off = np.max(np.abs(now - before), axis=1)
+            is_known = is_left & (off < SETTLED * (1 + growth))
+            print(kind.__name__, steps, np.array(off, dtype=float), file=sys.stderr)
+        print(np.array(growth, dtype=float), np.array(margin, dtype=float), file=sys.stderr, flush=True)
         for case, end in zip(compress(left, is_known), now[is_known], strict=True):
             case["end"] = [np.format_float_scientific(x, unique=False, precision=20) for x in end]
-        is_left = ~is_known & np.isfinite(np.array(now, dtype=float)).all(axis=1)
-        is_left &= extended.least_margin > 0
+        is_left &= ~is_known
         left, before = list(compress(left, is_left)), now[is_left]
-        left = left if steps < most else []
+        per_rotation *= 2
 
 
 def main() -> None:
-    """Write the tables, or the one that is named, which takes minutes."""
+    """Write the tables, or the one that is named, which takes most of an hour."""
     for name in sys.argv[1:] or ("rolling", "sliding"):
         rng = random.Random(47)
-        drawn = [draw(number, rng) for number in range(SHORT)]
         if name == "rolling":
-            rng = random.Random(47)
-            drawn += [longer(number, draw(number, rng)) for number in range(LONGER)]
+            drawn = [draw(number, rng) for number in range(SHORT)]
+            rng = random.Random(48)
+            drawn += [longer(number, LONGER, rng) for number in range(LONGER)]
         else:
+            drawn = [draw(number, rng) for number in range(SLIPPING)]
             drawn = [slipping(number, case, rng) for number, case in enumerate(drawn)]
-            drawn += [longer(number, case) for number, case in enumerate(drawn[:15])]
+            rng = random.Random(48)
+            # Half the spin is left of these.
+            more = [longer(number, LONGER_SLIPPING, rng, 10.0) for number in range(LONGER_SLIPPING)]
+            drawn += [slipping(number, case, rng) for number, case in enumerate(more)]
         for kind in range(5):
-            if name == "rolling":
-                known(drawn[kind::5], Extended)
-            else:
-                known(drawn[kind::5], ExtendedSliding, MOST_STEPS // 4)
-            # Of what comes near to lying flat too little is known.
-            ended = (case for case in drawn if "end" in case)
-            found = [case for case in ended if np.isfinite(np.array(case["end"], dtype=float)).all()]
+            alike = sorted(drawn[kind::5], key=rotations_of)
+            for first in range(0, len(alike), GROUP):
+                known(alike[first : first + GROUP], Extended if name == "rolling" else ExtendedSliding)
+            found = [case for case in drawn if "end" in case]
             (TABLES / f"{name}.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
 
 

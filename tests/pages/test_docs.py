@@ -145,7 +145,9 @@ class TestInterface:
             fields = {*inspect.get_annotations(value), *getattr(value, "_fields", ())}
             fields |= {name for name, member in vars(value).items() if inspect.ismemberdescriptor(member)}
             members = {name for name in vars(value) if not name.startswith("_")} - fields
-            missing[export] = members - set((listed[1] or "").split(", "))
+            # Long classes have further pages of their own.
+            parts = re.findall(rf"automethod:: polhode\.{export}\.(\w+)$", text, re.MULTILINE)
+            missing[export] = members - set((listed[1] or "").split(", ")) - set(parts)
         assert {export: names for export, names in missing.items() if names} == {}
         assert "top" in vars(polhode.PrincipalAxes)  # a cached property is among them
         assert re.search(r"orbits\.Orbit\n   :members: .*dipole_field", text)  # which its base holds

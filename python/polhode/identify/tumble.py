@@ -145,12 +145,6 @@ def from_tumble(
             kind="no fit",
         )
     _check_fit(times, rows, known, found[0])
-    if not found[0]["converged"]:
-        raise IdentificationError(
-            "omega: the fit came near a maximum of the likelihood and did not reach it; ",
-            "record longer, give sigma=, or more starts=",
-            kind="no fit",
-        )
     fits = [_result(one, known, momentum, own_mass, scale_known, dropped) for one in found]
     weak = tuple(one for one in fits[0].observability if one.words != _SCALE)
     if any(one.relative >= _LOST for one in weak) or np.isnan(fits[0].covariance).any():
@@ -160,6 +154,12 @@ def from_tumble(
             f"; {_REMEDY}",
             kind="undetermined",
             observability=fits[0].observability,
+        )
+    if not found[0]["converged"]:
+        raise IdentificationError(
+            "omega: the fit came near a maximum of the likelihood and did not reach it; ",
+            "record longer, give sigma=, or more starts=",
+            kind="no fit",
         )
     others = tuple(one for one in fits[1:] if not np.isnan(one.covariance).any())
     return replace(fits[0], alternatives=others)

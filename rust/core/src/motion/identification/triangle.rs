@@ -2,6 +2,8 @@
 
 /// Rows that are taken in at once.
 const BLOCK: usize = 96;
+/// An expected fall of the cost that matters little beside the noise: (0.1 sigma)².
+const NEAR: f64 = 1e-2;
 
 /// The triangle R of rows (J | r), to which rows are added: |J δ − r|² is |R δ − q|² and a rest.
 ///
@@ -169,6 +171,14 @@ pub(super) struct Linear {
     pub(super) cost: f64,
 }
 
+impl Linear {
+    /// By how much the cost could fall, as long as the rows are linear.
+    fn gain_left(&self, sizes: &[f64]) -> f64 {
+        let step = self.triangle.step(1e-24, sizes);
+        step.map_or(f64::INFINITY, |(_, gain)| gain)
+    }
+}
+
 /// How an iteration ends.
 pub(super) struct Stop {
     /// An expected change of the cost that is too small to be of interest.
@@ -179,7 +189,7 @@ pub(super) struct Stop {
 /// Go down from `start` by the method of Levenberg and Marquardt (J. J. Moré, Lecture Notes in Mathematics 630, 1978, 105).
 ///
 /// `evaluate` computes a place, or returns None where it is none or its cost exceeds a limit; `step_from` makes a step. The last value says
-/// whether the end was reached.
+/// whether the end was reached, or is nearer than a tenth of a sigma: in a valley that bends, steps are short.
 pub(super) fn descend<P: Clone>(
     start: P,
     stop: &Stop,
@@ -216,11 +226,7 @@ pub(super) fn descend<P: Clone>(
             };
             faster = 2.0;
             // Damping may hide what is left to be won.
-            let left = linear
-                .triangle
-                .step(1e-24, &scales)
-                .map_or(f64::INFINITY, |(_, gain)| gain);
-            if left < stop.gain && won < 1e3 * stop.gain {
+            if linear.gain_left(&scales) < stop.gain && won < 1e3 * stop.gain {
                 return Some((here, linear, true));
             }
         } else {
@@ -231,9 +237,10 @@ pub(super) fn descend<P: Clone>(
             damping = (damping * 4.0 * faster).max(1e-6);
             faster *= 2.0;
             if damping > 1e12 {
-                return Some((here, linear, false));
+                break;
             }
         }
     }
-    Some((here, linear, false))
+    let is_near = linear.gain_left(&sizes) < NEAR;
+    Some((here, linear, is_near))
 }

@@ -813,7 +813,7 @@ impl<'a> Scaled<'a> {
         let usual = 3.0 * self.rows() as f64 * (self.level / sigma).powi(2).max(1.0);
         let stop = Stop {
             gain: 1e-9,
-            passes: 30,
+            passes: 60,
         };
         let n = self.rows();
         let mut best: Option<(Point, Linear, bool)> = None;
