@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 
 import numpy as np
@@ -11,7 +12,15 @@ from polhode._core import RigidBody, Uncertain
 from polhode._hints import check_kind
 from polhode.errors import IdentificationError
 from polhode.identify.cone import along_the_edge, fit_possible, pseudo_inertia_maps
-from polhode.identify.results import ELEMENTS, NUMBERS, Identified, find_directions, p_value_of, tensor_of
+from polhode.identify.results import (
+    ELEMENTS,
+    NUMBERS,
+    Direction,
+    Identified,
+    find_directions,
+    p_value_of,
+    tensor_of,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -486,7 +495,7 @@ class _Fit:
         for trial in range(_PASSES):
             whiten = np.linalg.inv(np.linalg.cholesky(self.covariances(x, sigmas)))
             jacobian, target, rest = self.least_squares(whiten)
-            self._check_rank(jacobian)
+            self._check_rank(jacobian, target)
             before, x, gap, edge = x, *self.possible(jacobian, target, rest)
             old, sigmas = sigmas, self.levels(x, sigmas)
             if self.student:
@@ -602,13 +611,15 @@ class _Fit:
         squares = [np.sum((one @ own.T) ** 2, axis=1) for one, own in both]
         self.weights = [(_NU + 6.0) / (_NU + one) for one in squares]
 
-    def _check_rank(self, jacobian: Floats) -> None:
+    def _check_rank(self, jacobian: Floats, target: Floats) -> None:
         extra = len(self.columns) - 10
         remedy = "turn the payload about all axes, faster, and in several attitudes; or give a prior"
-        found, lost = find_directions(jacobian[extra:, extra:], np.ones(10), NUMBERS, remedy)
+        inner = jacobian[extra:, extra:]
+        found, lost = find_directions(inner, np.ones(10), NUMBERS, remedy)
         # An offset that is not determined lies in the part before.
         if lost or (extra and np.abs(np.diagonal(jacobian)[:extra]).min() <= 1e-11 * np.abs(jacobian).max()):
-            lost_ones = tuple(one for one in found if not math.isfinite(one.relative))
+            some = np.asarray(np.linalg.lstsq(inner, target[extra:], rcond=1e-11)[0], dtype=np.float64)
+            lost_ones = tuple(self._of_body(one, some) for one in found if not math.isfinite(one.relative))
             raise IdentificationError(
                 "omega, specific_force: the motion leaves undetermined: ",
                 "; ".join(one.words for one in lost_ones) or "offsets of the sensor",
@@ -616,6 +627,16 @@ class _Fit:
                 kind="undetermined",
                 observability=lost_ones,
             )
+
+    def _of_body(self, direction: Direction, x: Floats) -> Direction:
+        """Return a direction of m, mc and I_O as one of mass, centre and the tensor about it, at a body."""
+        if not x[0] > 0.0:
+            x = np.eye(10)[0]
+        slopes = _to_numbers(x * self.unit[:10])[1]
+        mass, radius = x[0] * self.mass, self.radius
+        sizes = np.repeat([mass, radius, mass * radius**2], [1, 3, 6])
+        changes = slopes @ (direction.parameters * self.unit[:10])
+        return replace(direction, parameters=changes / np.linalg.norm(changes / sizes))
 
     def _result(
         self,
