@@ -505,5 +505,11 @@ def test_what_is_named_is_what_is_open(case: str) -> None:
             assert one.relative == pytest.approx(np.sqrt(unit @ told.inverse @ unit), rel=0.02)
 
 
+def test_open_directions_have_short_names_of_their_own() -> None:
+    words = [one.words for one in CASES["spin about the axis of the largest moment"]().directions]
+    assert len(set(words)) == len(words)
+    assert {f"the product of inertia {pair}" for pair in ("xy", "xz", "yz")} < set(words)
+
+
 def test_there_are_enough_cases() -> None:
     assert len(CASES) - len(DETERMINED) - len(SCALE_ALONE) >= 12

@@ -40,6 +40,7 @@ __all__ = [
     "NUMBERS",
     "Direction",
     "Identified",
+    "echelon",
     "find_directions",
     "p_value_of",
     "spread_directions",
@@ -300,7 +301,7 @@ def find_directions(
     values = np.append(values, np.zeros(len(sizes) - len(values)))
     # What is left of nothing after rounding; and where all sigmas are huge, nothing is determined by itself.
     lost = values <= rank * max(float(values.max(initial=0.0)), 1e-300)
-    found = [(math.inf, one) for one in _echelon(rows[lost])]
+    found = [(math.inf, one) for one in echelon(rows[lost])]
     weak = ~lost & (values * _UNCERTAIN < 1.0)
     found += _weak(rows[weak], 1.0 / values[weak])
     directions = (_direction(relative, vector, sizes, names, remedy) for relative, vector in found)
@@ -319,7 +320,7 @@ def spread_directions(
 
 def _weak(rows: Floats, sigmas: Floats) -> list[tuple[float, Floats]]:
     """Return directions of large sigma that have names, with their sigmas, the worst first."""
-    named = _echelon(rows)
+    named = echelon(rows)
     found = [(float(np.linalg.norm((rows @ one) * sigmas)), one) for one in named]
     return sorted(found, key=lambda one: -one[0])
 
@@ -334,7 +335,7 @@ def _direction(
     )
 
 
-def _echelon(rows: Floats) -> list[Floats]:
+def echelon(rows: Floats) -> list[Floats]:
     """Return a basis of the same space with few components each, so that each has a name."""
     rows = rows.copy()
     pivots: list[int] = []

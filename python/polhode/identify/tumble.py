@@ -11,7 +11,7 @@ import numpy as np
 from polhode._core import RigidBody, Uncertain, fit_tumble, tumble_information, white_noise
 from polhode._hints import check_kind
 from polhode.errors import IdentificationError
-from polhode.identify.results import ELEMENTS, NUMBERS, Direction, Identified, p_value_of, tensor_of
+from polhode.identify.results import ELEMENTS, NUMBERS, Direction, Identified, echelon, p_value_of, tensor_of
 from polhode.results import State
 
 if TYPE_CHECKING:
@@ -573,11 +573,12 @@ def _directions(triangle: Floats, inertia: Floats, scaled: bool) -> tuple[Direct
     values = np.append(values, np.zeros(space.shape[1] - len(values)))
     found = [] if scaled else [_scale_direction(inertia, size)]
     large = float(np.abs(triangle[:, :3]).max()) * float(np.sqrt(size))
-    for value, row in sorted(zip(values, rows, strict=True), key=lambda one: one[0]):
-        if value * _UNCERTAIN >= 1.0:
-            continue
-        relative = math.inf if value <= 1e-11 * large else 1.0 / float(value)
-        vector, words = _describe(space @ row, inertia, scaled)
+    lost = values <= 1e-11 * large
+    weak = ~lost & (values * _UNCERTAIN < 1.0)
+    named = [(math.inf, one) for one in echelon(rows[lost] @ space.T)]
+    named += [(1.0 / float(value), space @ row) for value, row in zip(values[weak], rows[weak], strict=True)]
+    for relative, row in named:
+        vector, words = _describe(row, inertia, scaled)
         sigma = relative * size * float(np.abs(vector).max())
         found.append(Direction(words, vector * size, sigma, relative, _REMEDY))
     around = (3, len(triangle) - 9)
