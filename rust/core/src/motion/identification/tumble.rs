@@ -961,12 +961,27 @@ impl<'a> Scaled<'a> {
             passes: 60,
         };
         let n = self.rows();
+        let some = self.thin_out();
+        let count = some.rows();
         let mut best: Option<(Point, Linear, bool)> = None;
         let mut used = 0;
         for start in starts.iter().take(self.tumble.starts + 1) {
             used += 1;
-            let joined = self.join(start, n, JOINS);
-            let found = joined.and_then(|(point, _)| self.refine(&point, n, &stop));
+            // Of a log that is not long, some rows mostly lead near enough to the maximum.
+            let mut found = None;
+            if count < n && n <= HEAD {
+                found = some
+                    .join(start, count, JOINS)
+                    .and_then(|(point, _)| self.refine(&point, n, &stop))
+                    .filter(|(_, linear, _)| linear.cost < 2.0 * usual);
+            }
+            if found.is_none() && !some.stopped.get() {
+                let joined = self.join(start, n, JOINS);
+                found = joined.and_then(|(point, _)| self.refine(&point, n, &stop));
+            }
+            if some.stopped.get() {
+                self.stopped.set(true);
+            }
             if self.stopped.get() {
                 return Vec::new();
             }
@@ -997,8 +1012,7 @@ impl<'a> Scaled<'a> {
             (point, linear, converged) = found;
         }
         let mut all = vec![(point, linear.cost, converged)];
-        let some = self.thin_out();
-        let count = some.rows();
+        some.sigma.set(self.sigma.get());
         let Some((here, headed, _)) = some.refine(&point, count, &stop) else {
             return Vec::new();
         };
