@@ -32,6 +32,7 @@ FILES_OF_ROWS = (
     "simulate",
     "chunks",
     "flyby",
+    "identification",
     "callbacks",
     "threads",
 )

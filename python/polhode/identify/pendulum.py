@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import numpy as np
 
@@ -40,6 +40,8 @@ _STEP: Final = 1e-30
 _DOUBLINGS: Final = 14
 """Doublings of the number of points of a quadrature."""
 _PASSES: Final = 60
+_OPEN: Final = 1e-9
+"""Share of the largest singular value of the equations below which a direction is not determined."""
 _ROUNDING: Final = 2e-15
 """Of a tensor: what `RigidBody` takes for one, relative to the trace."""
 _BASIS: Final = np.array(tensor_of(np.eye(6)))
@@ -663,8 +665,8 @@ class _Task:
                 by_u = np.vstack([by_u, own / scale[:, None]])
             jacobian = by_z * sizes
             left, values, right = np.linalg.svd(jacobian, full_matrices=True)
-            if len(values) < count or values[-1] <= 1e-9 * values[0]:
-                self._refuse(jacobian, sizes)
+            if len(values) < count or values[-1] <= _OPEN * values[0]:
+                self._refuse(z, x, sizes, prior)
             inverse = (right.T / values) @ left[:, :count].T
             rest = left[:, count:].T
             # The least |u| with which the equations beyond the unknowns hold.
@@ -713,19 +715,24 @@ class _Task:
             share *= 0.5
         return share
 
-    def _refuse(self, jacobian: Floats, sizes: Floats) -> None:
-        """Raise the error that names what the rows leave open."""
+    def _refuse(self, z: Floats, x: Floats, sizes: Floats, prior: tuple[Floats, ...] | None) -> NoReturn:
+        """Raise the error that names what the rows leave open, at unknowns that explain them."""
+        for _ in range(_PASSES):
+            g, by_z, _ = self.equations(z, x)
+            change = -np.linalg.pinv(by_z * sizes, rcond=_OPEN) @ g * sizes
+            z = z + self._within(z, change, sizes) * change
+            if np.abs(change / sizes).max() < 1e-9:
+                break
+        by_z = self.equations(z, x)[1]
+        if prior is not None:
+            by_z = np.vstack([by_z, prior[1] / sizes[: len(prior[1]), None]])
         names, to_numbers, own = self._names(sizes)
+        back = np.linalg.pinv(to_numbers)
+        # Numbers that a symmetry excludes are not open.
+        barred = (np.eye(len(own)) - to_numbers @ back) / own
         remedy = "let it swing about further axes, or give what is known by normal=, axis= or prior="
-        found, _ = find_directions((jacobian / sizes) @ np.linalg.pinv(to_numbers), own, names, remedy)
+        found, _ = find_directions(np.vstack([by_z @ back, barred]), own, names, remedy, _OPEN)
         open_ones = tuple(one for one in found if not math.isfinite(one.relative))
-        # Directions that a symmetry excludes are none.
-        allowed = to_numbers @ np.linalg.pinv(to_numbers)
-        open_ones = tuple(
-            one
-            for one in open_ones
-            if np.abs(allowed @ one.parameters - one.parameters).max() < 1e-6 * np.abs(one.parameters).max()
-        )
         raise IdentificationError(
             f"measurements: {len(self.rows)} rows leave undetermined: ",
             "; ".join(one.words for one in open_ones) or "combinations of the unknowns",

@@ -69,8 +69,8 @@ class Direction:
         What it is: ``"the moment about y"``.
     parameters : numpy.ndarray, shape (P,)
         The direction: the change of each parameter, in units of that parameter. Its length is one when each
-        parameter is measured by its own size: the mass, the mass times the radius of gyration, the mean of
-        the principal moments.
+        parameter is measured by its own size: the mass, the radius of gyration, the mean of the principal
+        moments. Of a tumble the changes of start and offset are zero: these may be any.
     sigma : float
         Standard deviation along the direction, in units of the largest of these changes; infinite where the
         data say nothing.
@@ -121,7 +121,7 @@ class Identified:
     noise : Uncertain or None
         Standard deviations that were estimated from the residuals, if the data had none.
     bias : Uncertain or None
-        Constant offsets that were estimated.
+        Constant offsets that were estimated; None where the data do not determine them.
     scale : Uncertain or None
         Errors of the scales of the gyro that were estimated, shape (3,): measured over true, less 1.
     sensor_place : Uncertain or None
@@ -297,7 +297,7 @@ def p_value_of(chi2: float, degrees_of_freedom: int) -> float:
 
 
 def find_directions(
-    jacobian: Floats, sizes: Floats, names: Sequence[str], remedy: str
+    jacobian: Floats, sizes: Floats, names: Sequence[str], remedy: str, rank: float = _RANK
 ) -> tuple[tuple[Direction, ...], int]:
     """Find the directions that data hardly determine, the worst first, and how many they do not at all.
 
@@ -309,7 +309,7 @@ def find_directions(
     values, rows = np.linalg.svd(scaled, full_matrices=True)[1:]
     values = np.append(values, np.zeros(len(sizes) - len(values)))
     # What is left of nothing after rounding; and where all sigmas are huge, nothing is determined by itself.
-    lost = values <= _RANK * max(float(values.max(initial=0.0)), 1e-300)
+    lost = values <= rank * max(float(values.max(initial=0.0)), 1e-300)
     found = [(math.inf, one) for one in _echelon(rows[lost])]
     weak = ~lost & (values * _UNCERTAIN < 1.0)
     found += _weak(rows[weak], 1.0 / values[weak])

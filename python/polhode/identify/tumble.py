@@ -666,12 +666,15 @@ def _marginal(triangle: Floats) -> Floats:
 
 
 def _directions(triangle: Floats, inertia: Floats, scaled: bool) -> tuple[Direction, ...]:
-    """Find the directions of the tensor that the log hardly determines, the worst first."""
+    """Find the directions of the tensor that the log hardly determines, the worst first.
+
+    Their parameters are those of the triangle: start, tensor and what else is unknown.
+    """
     space, size = _allowed(inertia, scaled, False), float(np.trace(inertia)) / 3.0
     jacobian = _marginal(triangle) @ space * size
     values, rows = np.linalg.svd(jacobian, full_matrices=True)[1:]
     values = np.append(values, np.zeros(space.shape[1] - len(values)))
-    found = [] if scaled else [_scale_direction(inertia)]
+    found = [] if scaled else [_scale_direction(inertia, size)]
     large = float(np.abs(triangle[:, :3]).max()) * float(np.sqrt(size))
     for value, row in sorted(zip(values, rows, strict=True), key=lambda one: one[0]):
         if value * _UNCERTAIN >= 1.0:
@@ -680,12 +683,14 @@ def _directions(triangle: Floats, inertia: Floats, scaled: bool) -> tuple[Direct
         vector, words = _describe(space @ row, inertia, scaled)
         sigma = relative * size * float(np.abs(vector).max())
         found.append(Direction(words, vector * size, sigma, relative, _REMEDY))
+    around = (3, len(triangle) - 9)
+    found = [replace(one, parameters=np.pad(one.parameters, around)) for one in found]
     return tuple(sorted(found, key=lambda one: -one.relative))
 
 
-def _scale_direction(inertia: Floats) -> Direction:
+def _scale_direction(inertia: Floats, size: float) -> Direction:
     vector = np.array([inertia[i, j] for i, j in ELEMENTS])
-    return Direction(_SCALE, vector, math.inf, math.inf, _SCALE_REMEDY)
+    return Direction(_SCALE, vector * (size / np.linalg.norm(vector)), math.inf, math.inf, _SCALE_REMEDY)
 
 
 def _describe(vector: Floats, inertia: Floats, scaled: bool) -> tuple[Floats, str]:

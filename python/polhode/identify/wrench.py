@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 
 import numpy as np
@@ -11,7 +12,15 @@ from polhode._core import RigidBody, Uncertain
 from polhode._hints import check_kind
 from polhode.errors import IdentificationError
 from polhode.identify.cone import along_the_edge, fit_possible, pseudo_inertia_maps
-from polhode.identify.results import ELEMENTS, NUMBERS, Identified, find_directions, p_value_of, tensor_of
+from polhode.identify.results import (
+    ELEMENTS,
+    NUMBERS,
+    Direction,
+    Identified,
+    find_directions,
+    p_value_of,
+    tensor_of,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -47,7 +56,8 @@ _LEAST: Final = 32
 """Samples of the shortest window."""
 _SMOOTH: Final = 7
 """Lines of a spectrum over which it is smoothed."""
-_BLOCK: Final = 65536
+_PIECE: Final = 128
+"""Rows of a piece of which a triangle is made."""
 _NU: Final = 4.0
 """Degrees of freedom of Student's distribution."""
 _GAP: Final = 3.0
@@ -60,9 +70,10 @@ _PASSES: Final = 50
 class _Sums(NamedTuple):
     """Triangles of the features of groups of rows, and what their noise is made of."""
 
-    features: list[Floats]
-    triangles: list[Floats]
-    shares: list[tuple[float, float]]
+    features: Floats
+    """Shape (groups, rows, 19)."""
+    triangles: Floats
+    shares: Floats
     """Of each group: how much of the noise of ω is in its products, and in its acceleration."""
     spins: Floats
     """Three vectors u with Σ u uᵀ the mean of ω ωᵀ."""
@@ -194,8 +205,8 @@ def from_wrench(
                 "window: with angular_acceleration each row is an equation; give only one of them"
             )
         whole = {name: one[good] for name, one in data.items()}
-        features = [_features(whole, whole["angular_acceleration"])]
-        shares, spin_sigma = [(1.0, 0.0)], spin_sigma or 0.0
+        features = _features(whole, whole["angular_acceleration"])[None]
+        shares, spin_sigma = np.array([[1.0, 0.0]]), spin_sigma or 0.0
     else:
         if window is not None and (int(window) != window or not _LEAST <= window <= len(times)):
             raise ValueError(
@@ -225,11 +236,11 @@ def from_wrench(
         features, shares, lost = _windows(times[good], whole, runs, window, highest)
         if lost:
             dropped["outside windows"] = lost
-    _check_rows(len(features[0]) * len(features), least)
+    _check_rows(features.shape[0] * features.shape[1], least)
     mean = whole["omega"].T @ whole["omega"] / len(whole["omega"])
     values, vectors = np.linalg.eigh(mean)
     spins = (vectors * np.sqrt(np.maximum(values, 0.0))).T
-    sums = _Sums(features, [_triangle(one) for one in features], shares, spins)
+    sums = _Sums(features, _triangles(features), shares, spins)
     fit = _Fit(sums, sigmas, spin_sigma, bias, prior, loss == "student")
     return fit.solve(origin, dropped, window)
 
@@ -286,12 +297,27 @@ def _features(data: dict[str, Floats], turn: Floats) -> Floats:
     return np.hstack([data["specific_force"], turn, products, one, data["force"], data["torque"]])
 
 
-def _triangle(features: Floats) -> Floats:
-    """Return the triangle of the QR of the features: all that least squares need of any number of rows."""
-    found: Floats = np.zeros((0, features.shape[1]))
-    for first in range(0, len(features), _BLOCK):
-        found = np.asarray(np.linalg.qr(np.vstack([found, features[first : first + _BLOCK]]), mode="r"))
-    return found
+def _triangles(features: Floats) -> Floats:
+    """Return the triangles of the QR of groups: all that least squares need of any number of rows.
+
+    Of short pieces first, then of the triangles of these: for a long matrix a library takes two threads,
+    which wait for one another at each column.
+    """
+    groups, n, columns = features.shape
+    while n > _PIECE:
+        whole = n // _PIECE * _PIECE
+        pieces = features[:, :whole].reshape(-1, _PIECE, columns)
+        reduced = np.asarray(np.linalg.qr(pieces, mode="r")).reshape(groups, -1, columns)
+        features = np.concatenate([reduced, features[:, whole:]], axis=1)
+        n = features.shape[1]
+    return np.asarray(np.linalg.qr(features, mode="r"))
+
+
+def _products(matrices: Floats, rows: Floats) -> Floats:
+    """Return a product for each window; where all have one matrix, by one product."""
+    if len(matrices) > 1:
+        return np.asarray(matrices @ rows)
+    return np.moveaxis(np.tensordot(matrices[0], rows, (1, 1)), 0, 1)
 
 
 def _highest(t: Floats, omega: Floats) -> float:
@@ -340,7 +366,7 @@ def _best_window(runs: list[int], highest: float) -> int:
 
 def _windows(
     t: Floats, data: dict[str, Floats], runs: list[NDArray[np.int64]], window: int, highest: float
-) -> tuple[list[Floats], list[tuple[float, float]], int]:
+) -> tuple[Floats, Floats, int]:
     """Return features of windows, projected on orthonormal splines of time.
 
     In a window the angular velocity is the spline that fits it best, and its acceleration is the derivative
@@ -351,7 +377,7 @@ def _windows(
     tiles = [one[: len(one) // window * window].reshape(-1, window) for one in runs]
     index = np.concatenate(tiles)
     if not len(index):
-        return [np.zeros((0, 19))], [(0.0, 0.0)], len(t)
+        return np.zeros((1, 0, 19)), np.zeros((1, 2)), len(t)
     local = t[index]
     span = local[:, -1:] - local[:, :1]
     place = (local - local[:, :1]) / span
@@ -370,19 +396,18 @@ def _windows(
     fine = np.linalg.qr(_splines(place, min(_FINER * pieces, window - _DEGREE))[0])[0]
     base = fine @ np.linalg.svd(fine.swapaxes(1, 2) @ slope)[0]
     spin = ((base.swapaxes(1, 2) @ slope) ** 2).sum(axis=2).mean(axis=0) * float((span**-2).mean())
-    weights = smooth.swapaxes(1, 2) @ data["omega"][index]
+    weights = _products(smooth.swapaxes(1, 2), data["omega"][index])
     motion = {name: one[index].reshape(-1, 3) for name, one in data.items()}
-    motion["omega"] = (smooth @ weights).reshape(-1, 3)
-    turn = (slope @ weights / span[..., None]).reshape(-1, 3)
+    motion["omega"] = _products(smooth, weights).reshape(-1, 3)
+    turn = (_products(slope, weights) / span[..., None]).reshape(-1, 3)
     rows = _features(motion, turn).reshape(*index.shape, -1)
-    found = (base.swapaxes(1, 2) @ rows).swapaxes(0, 1)
+    found = np.ascontiguousarray(_products(base.swapaxes(1, 2), rows).swapaxes(0, 1))
     some = motion["omega"].reshape(*index.shape, 3)[:: len(index) // _SOME + 1]
     turned = base[:: len(index) // _SOME + 1, :, None] * some[..., None]
     within = np.einsum("wjcm,wjk->wckm", turned, smooth[:: len(index) // _SOME + 1], optimize=True)
     product = (within**2).sum(axis=(0, 1, 2)) / np.maximum((turned**2).sum(axis=(0, 1, 2)), 1e-300)
     spin[smooth.shape[2] :] = 0.0  # but for rounding
-    shares = list(zip(product.tolist(), spin.tolist(), strict=True))
-    return list(found), shares, len(t) - int(index.size)
+    return found, np.stack([product, spin], axis=1), len(t) - int(index.size)
 
 
 def _splines(place: Floats, pieces: int) -> tuple[Floats, Floats]:
@@ -461,13 +486,12 @@ class _Fit:
         self.sums, self.given, self.spin_sigma = sums, sigmas, spin_sigma
         self.columns = np.arange(16 if bias else 10)
         self.prior, self.student = prior, student
-        self.weights = [np.ones(len(one)) for one in sums.features]
-        self.rows = sum(len(one) for one in sums.features)
-        force, torque = (
-            math.sqrt(sum(float(np.sum(one[:, part] ** 2)) for one in sums.triangles) / self.rows)
-            for part in (slice(13, 16), slice(16, 19))
+        self.weights = np.ones(sums.features.shape[:2])
+        self.rows = self.weights.size
+        push, force, torque = (
+            math.sqrt(float(np.sum(sums.triangles[..., part] ** 2)) / self.rows)
+            for part in (slice(3), slice(13, 16), slice(16, 19))
         )
-        push = math.sqrt(sum(float(np.sum(one[:, :3] ** 2)) for one in sums.triangles) / self.rows)
         if not min(force, torque, push) > 0.0:
             raise IdentificationError(
                 "force, torque, specific_force: one of them is zero in all rows; no payload is there, ",
@@ -486,7 +510,7 @@ class _Fit:
         for trial in range(_PASSES):
             whiten = np.linalg.inv(np.linalg.cholesky(self.covariances(x, sigmas)))
             jacobian, target, rest = self.least_squares(whiten)
-            self._check_rank(jacobian)
+            self._check_rank(jacobian, target)
             before, x, gap, edge = x, *self.possible(jacobian, target, rest)
             old, sigmas = sigmas, self.levels(x, sigmas)
             if self.student:
@@ -495,15 +519,14 @@ class _Fit:
             settled = not np.isnan(self.given).any() and self.spin_sigma == 0.0 and not self.student
             if settled or (trial and change < 1e-9):
                 break
-        both = zip(self.residuals(x, self.sums.features), whiten, strict=True)
-        white = [one @ own.T for one, own in both]
+        white = self.residuals(x, self.sums.features) @ whiten.swapaxes(1, 2)
         if self.student:
-            self.weights = [np.ones(len(one)) for one in self.weights]
+            self.weights = np.ones_like(self.weights)
             jacobian = self.least_squares(whiten)[0]
             jacobian = jacobian * math.sqrt((_NU + 6.0) / (_NU + 8.0))
         inverse: Floats = np.asarray(np.linalg.inv(jacobian), dtype=np.float64)
         return self._result(
-            x, jacobian, inverse, np.vstack(white), gap, edge, sigmas, origin, dropped, window
+            x, jacobian, inverse, white.reshape(-1, 6), gap, edge, sigmas, origin, dropped, window
         )
 
     def covariances(self, x: Floats, sigmas: Floats) -> Floats:
@@ -516,7 +539,7 @@ class _Fit:
             by_spin = by_features[:, 6:12] @ slopes
             products += by_spin @ by_spin.T
         noise = self.spin_sigma**2
-        product, spin = np.array(self.sums.shares).T[:, :, None, None]
+        product, spin = self.sums.shares.T[:, :, None, None]
         found: Floats = np.diag(sigmas**2) + noise * (product * products + spin * (turn @ turn.T))
         return found
 
@@ -525,11 +548,11 @@ class _Fit:
         columns = len(self.columns)
         slopes = _REGRESSOR[:, :, self.columns] * self.unit[self.columns]
         slopes = np.tensordot(whiten, slopes, 1)  # of group, equation, feature and parameter
-        blocks = []
-        for triangle, own, slope in zip(self._triangles(), whiten, slopes, strict=True):
-            lines = (triangle[:, :_FEATURES] @ slope).reshape(-1, columns)
-            sides = (own @ triangle[:, _FEATURES:].T).reshape(-1, 1)
-            blocks.append(np.hstack([lines, sides]))
+        triangles = self._triangles()
+        lines = triangles[:, None, :, :_FEATURES] @ slopes
+        sides = whiten @ triangles[:, :, _FEATURES:].swapaxes(1, 2)
+        rows = np.concatenate([lines, sides[..., None]], axis=3)
+        blocks = [_triangles(rows.reshape(1, -1, columns + 1))[0]]
         if self.prior is not None:
             blocks.append(self._prior_rows())
         stacked = np.vstack(blocks)
@@ -540,11 +563,10 @@ class _Fit:
             both = np.pad(both, ((0, count + 1 - len(both)), (0, 0)))
         return both[:count, :count], both[:count, count], float(both[count, count] ** 2)
 
-    def _triangles(self) -> list[Floats]:
+    def _triangles(self) -> Floats:
         if not self.student:
             return self.sums.triangles
-        both = zip(self.sums.features, self.weights, strict=True)
-        return [_triangle(one * np.sqrt(w)[:, None]) for one, w in both]
+        return _triangles(self.sums.features * np.sqrt(self.weights)[..., None])
 
     def _prior_rows(self) -> Floats:
         """Return the rows of what is known beforehand, to first order about it."""
@@ -572,10 +594,10 @@ class _Fit:
         upper = target[:extra] - jacobian[:extra, extra:] @ body
         return np.concatenate([body, np.linalg.solve(jacobian[:extra, :extra], upper)]), gap, edge
 
-    def residuals(self, x: Floats, features: list[Floats]) -> list[Floats]:
-        """Return measured minus predicted wrenches of each group, of rows or of a triangle, shape (n, 6)."""
+    def residuals(self, x: Floats, features: Floats) -> Floats:
+        """Return measured minus predicted wrenches of groups, of rows or triangles, shape (g, n, 6)."""
         slopes = np.einsum("efp,p->fe", _REGRESSOR[:, :, self.columns], x * self.unit[self.columns])
-        return [one[:, _FEATURES:] - one[:, :_FEATURES] @ slopes for one in features]
+        return np.asarray(features[..., _FEATURES:] - features[..., :_FEATURES] @ slopes)
 
     def levels(self, x: Floats, sigmas: Floats) -> Floats:
         """Return the sigmas, those that are unknown from the residuals."""
@@ -583,13 +605,12 @@ class _Fit:
         if not unknown.any():
             return sigmas
         noise = np.diagonal(self.covariances(x, np.zeros(6)), axis1=1, axis2=2)
-        groups = list(zip(self.residuals(x, self._triangles()), noise, self.weights, strict=True))
         # Where an acceleration has no noise the level is told best.
-        quiet = [one for one, (_, spin) in zip(groups, self.sums.shares, strict=True) if spin == 0.0]
-        total, rows = np.zeros(6), 0
-        for one, own, w in quiet:
-            total += np.maximum(np.sum(one**2, axis=0) - len(w) * own, 0.0)
-            rows += len(w)
+        quiet = self.sums.shares[:, 1] == 0.0
+        squares = np.sum(self.residuals(x, self._triangles())[quiet] ** 2, axis=1)
+        each = len(self.weights[0])
+        total = np.maximum(squares - each * noise[quiet], 0.0).sum(axis=0)
+        rows = int(quiet.sum()) * each
         total = total / max(rows * (1.0 - len(self.columns) / (6.0 * self.rows)), 1.0)
         # One level for the three components of a kind, and never below rounding.
         total = np.repeat([total[:3].mean(), total[3:].mean()], 3)
@@ -598,17 +619,18 @@ class _Fit:
 
     def reweigh(self, x: Floats, whiten: Floats) -> None:
         """Set the weights of Student's distribution with six components."""
-        both = zip(self.residuals(x, self.sums.features), whiten, strict=True)
-        squares = [np.sum((one @ own.T) ** 2, axis=1) for one, own in both]
-        self.weights = [(_NU + 6.0) / (_NU + one) for one in squares]
+        white = self.residuals(x, self.sums.features) @ whiten.swapaxes(1, 2)
+        self.weights = (_NU + 6.0) / (_NU + np.sum(white**2, axis=2))
 
-    def _check_rank(self, jacobian: Floats) -> None:
+    def _check_rank(self, jacobian: Floats, target: Floats) -> None:
         extra = len(self.columns) - 10
         remedy = "turn the payload about all axes, faster, and in several attitudes; or give a prior"
-        found, lost = find_directions(jacobian[extra:, extra:], np.ones(10), NUMBERS, remedy)
+        inner = jacobian[extra:, extra:]
+        found, lost = find_directions(inner, np.ones(10), NUMBERS, remedy)
         # An offset that is not determined lies in the part before.
         if lost or (extra and np.abs(np.diagonal(jacobian)[:extra]).min() <= 1e-11 * np.abs(jacobian).max()):
-            lost_ones = tuple(one for one in found if not math.isfinite(one.relative))
+            some = np.asarray(np.linalg.lstsq(inner, target[extra:], rcond=1e-11)[0], dtype=np.float64)
+            lost_ones = tuple(self._of_body(one, some) for one in found if not math.isfinite(one.relative))
             raise IdentificationError(
                 "omega, specific_force: the motion leaves undetermined: ",
                 "; ".join(one.words for one in lost_ones) or "offsets of the sensor",
@@ -616,6 +638,16 @@ class _Fit:
                 kind="undetermined",
                 observability=lost_ones,
             )
+
+    def _of_body(self, direction: Direction, x: Floats) -> Direction:
+        """Return a direction of m, mc and I_O as one of mass, centre and the tensor about it, at a body."""
+        if not x[0] > 0.0:
+            x = np.eye(10)[0]
+        slopes = _to_numbers(x * self.unit[:10])[1]
+        mass, radius = x[0] * self.mass, self.radius
+        sizes = np.repeat([mass, radius, mass * radius**2], [1, 3, 6])
+        changes = slopes @ (direction.parameters * self.unit[:10])
+        return replace(direction, parameters=changes / np.linalg.norm(changes / sizes))
 
     def _result(
         self,
