@@ -1237,7 +1237,11 @@ def fit_tumble(
     progress: Callable[[float], object] | None = None,
 ) -> list[dict[str, Any]]: ...
 def tumble_information(
-    t: ArrayLike, omega: Sequence[float], inertia: Sequence[float], known: dict[str, Any]
+    t: ArrayLike,
+    omega: Sequence[float],
+    inertia: Sequence[float],
+    place: Sequence[float],
+    known: dict[str, Any],
 ) -> dict[str, Any] | None: ...
 def attitudes(
     t: ArrayLike, omega: ArrayLike, attitude: _Attitude, frame: Literal["body", "space"], order: int

@@ -17,14 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["residuals"]
 
-_NAMES: Final = {
-    1: ("",),
-    3: ("x", "y", "z"),
-    6: ("force x", "torque x", "force y", "torque y", "force z", "torque z"),
-}
-"""In the order of the legend, which is filled column by column."""
-_ORDER: Final = {6: (0, 3, 1, 4, 2, 5)}
-_MARKS: Final = "os^osv"
+_MARKS: Final = "os^osvDPX"
 _NORMAL: Final = 2.0
 """Sigmas between which 95 of 100 residuals are."""
 
@@ -43,19 +36,22 @@ def residuals(found: Identified, t: ArrayLike | None, ax: Axes | None) -> Axes:
     ax.axhspan(-_NORMAL, _NORMAL, color="0.93", zorder=0)
     ax.axhline(0.0, color="0.6", linewidth=0.8, zorder=1)
     count = rows.shape[1]
-    names = _NAMES.get(count, tuple(str(k) for k in range(count)))
+    sensors = max(count // 3, 1)
+    names = [one.rsplit(" ", 1)[-1] if sensors == 1 else one.replace("_", " ") for one in found.columns]
+    # The legend is filled column by column.
+    order = [3 * sensor + axis for axis in range(3) for sensor in range(sensors)] if names else range(count)
     size = float(np.clip(300.0 / max(len(rows), 1), 1.5, 5.0))
-    for k, name in zip(_ORDER.get(count, range(count)), names, strict=True):
+    for k in order:
         color = AXIS_COLORS[k % 3] if count != 1 else OMEGA_COLOR
         ax.plot(
             place,
             rows[:, k],
             linestyle="none",
-            marker=_MARKS[k % 6],
+            marker=_MARKS[k % len(_MARKS)],
             markersize=size,
             markerfacecolor=color if k < 3 else "none",
             color=color,
-            label=name or None,
+            label=names[k] if names else None,
             rasterized=len(rows) > 10_000,
         )
     ax.set_xlabel("row" if t is None else "t")
@@ -66,8 +62,7 @@ def residuals(found: Identified, t: ArrayLike | None, ax: Axes | None) -> Axes:
     ax.margins(x=0.02)
     most = max(1.1 * float(np.nanmax(np.abs(rows), initial=0.0)), 1.6 * _NORMAL)
     ax.set_ylim(-most, most)
-    if count > 1 and len(rows):
-        lines = 1 if count <= 3 else 2
-        ax.set_ylim(-most, most * (1.0 + 0.25 * lines))  # room for the legend
+    if names and len(rows):
+        ax.set_ylim(-most, most * (1.0 + 0.25 * sensors))  # room for the legend
         ax.legend(loc="upper right", ncols=min(count, 3), fontsize="small", markerscale=2.0)
     return ax

@@ -110,7 +110,9 @@ class Identified:
     crlb : numpy.ndarray, shape (P, P)
         Bound of Cramér and Rao at the estimate, as if every set of parameters were possible.
     residuals : numpy.ndarray, shape (n, k)
-        In units of their standard deviations.
+        In units of their standard deviations; NaN where a sensor has no row.
+    columns : tuple of str
+        Names of the columns of the residuals, shape (k,).
     chi2 : float
         Sum of their squares at the estimate.
     degrees_of_freedom : int
@@ -121,6 +123,10 @@ class Identified:
         Standard deviations that were estimated from the residuals, if the data had none.
     bias : Uncertain or None
         Constant offsets that were estimated; None where the data do not determine them.
+    scale : Uncertain or None
+        Errors of the scales of the gyro that were estimated, shape (3,): measured over true, less 1.
+    sensor_place : Uncertain or None
+        Place of the accelerometer that was estimated, shape (3,), from the centre of mass in body axes.
     at_edge : bool
         Whether the most likely set of parameters is that of no body. The body is then the most likely among
         the possible ones and lies on their edge: it is flat, thin, or has mass in one point only. Intervals
@@ -138,11 +144,12 @@ class Identified:
     window : int or None
         Number of samples of a window, where the angular acceleration was not given.
     start : State or None
-        Of a tumble: the state at the first time. The log does not tell the attitude; it is the identity.
+        Of a tumble: the state at the first time. Without measured attitudes its attitude is the identity.
     start_covariance : numpy.ndarray, shape (3, 3), or None
         Covariance of the angular velocity at the first time.
     motion : FreeMotion, GyrostatMotion or None
-        The motion that was fitted; its times count from the first time.
+        The free motion that was fitted; its times count from the first time. None where a torque acts:
+        simulate it from `start`.
     alternatives : tuple of Identified
         Other maxima of the likelihood whose logarithm is less by at most 3.
     """
@@ -164,6 +171,9 @@ class Identified:
     observability: tuple[Direction, ...]
     scale_known: bool
     dropped: dict[str, int]
+    columns: tuple[str, ...] = ()
+    scale: Uncertain | None = None
+    sensor_place: Uncertain | None = None
     window: int | None = None
     start: State | None = None
     start_covariance: Floats | None = None
@@ -381,9 +391,10 @@ _FORMAT: Final = "polhode.Identified/1"
 _ARRAYS: Final = ("estimate", "covariance", "crlb", "residuals")
 _NUMBERS: Final = ("chi2", "degrees_of_freedom", "p_value", "gap")
 _TRUTHS: Final = ("at_edge", "linear", "scale_known")
+_UNCERTAINTIES: Final = ("noise", "bias", "scale", "sensor_place")
 _OTHERS: Final = (
-    "body", "parameters", "noise", "bias", "observability", "dropped", "window", "start", "start_covariance",
-    "rotor", "alternatives",
+    "body", "parameters", "columns", *_UNCERTAINTIES, "observability", "dropped", "window", "start",
+    "start_covariance", "free", "rotor", "alternatives",
 )  # fmt: skip
 _FIELDS: Final = (*_ARRAYS, *_NUMBERS, *_TRUTHS, *_OTHERS)
 _STATE: Final = ("omega", "attitude")
@@ -406,12 +417,13 @@ def _read(path: str | PathLike[str]) -> Identified:
 def _fields(found: Identified, file: Path) -> dict[str, Any]:
     fields: dict[str, Any] = {"body": in_json(body_fields(found.body), file)}
     fields["parameters"] = list(found.parameters)
+    fields["columns"] = list(found.columns)
     fields |= in_json({name: getattr(found, name) for name in _ARRAYS}, file)
     for name in _NUMBERS:
         value = getattr(found, name)
         fields[name] = None if isinstance(value, float) and math.isnan(value) else value
     fields |= {name: bool(getattr(found, name)) for name in _TRUTHS}
-    for name in ("noise", "bias"):
+    for name in _UNCERTAINTIES:
         value = getattr(found, name)
         if value is not None:
             both = {"value": np.asarray(value.value), "covariance": np.asarray(value.covariance)}
@@ -431,6 +443,8 @@ def _fields(found: Identified, file: Path) -> dict[str, Any]:
         fields["window"] = found.window
     if found.start is not None:
         fields["start"] = {name: getattr(found.start, name).tolist() for name in _STATE}
+        if found.motion is None:
+            fields["free"] = False
         rotor = getattr(found.motion, "rotor", None)
         if rotor is not None:
             fields["rotor"] = np.asarray(rotor).tolist()
@@ -455,6 +469,9 @@ def _result(fields: dict[str, Any], file: Path) -> Identified:
     names = need("parameters")
     if not isinstance(names, list) or not all(isinstance(one, str) for one in names):
         raise wrong("parameters", "a list of names")
+    columns = fields.get("columns", [])
+    if not isinstance(columns, list) or not all(isinstance(one, str) for one in columns):
+        raise wrong("columns", "a list of names")
     n = len(names)
     arrays: dict[str, Any] = {name: numbers(need(name), name, file, with_holes=True) for name in _ARRAYS}
     for name, shape in {"estimate": (n,), "covariance": (n, n), "crlb": (n, n)}.items():
@@ -471,7 +488,7 @@ def _result(fields: dict[str, Any], file: Path) -> Identified:
         told[name] = need(name)
         if not isinstance(told[name], bool):
             raise wrong(name, "true or false")
-    for name in ("noise", "bias"):
+    for name in _UNCERTAINTIES:
         told[name] = _uncertain(fields, name, file)
     dropped = need("dropped")
     if not isinstance(dropped, dict) or not all(isinstance(one, int) for one in dropped.values()):
@@ -485,7 +502,8 @@ def _result(fields: dict[str, Any], file: Path) -> Identified:
             raise wrong(name, "a list of objects")
     for one in lists["alternatives"]:
         check_names(one, (*_FIELDS, *WORDS), f"{file}: alternatives")
-    start, motion = None, None
+    start: State | None = None
+    motion: FreeMotion | GyrostatMotion | None = None
     if "start" in fields:
         given = fields["start"]
         if not isinstance(given, dict) or set(given) != set(_STATE):
@@ -493,19 +511,22 @@ def _result(fields: dict[str, Any], file: Path) -> Identified:
         omega, attitude = (numbers(given[name], name, file) for name in _STATE)
         start = State(omega, attitude, np.zeros(3), np.zeros(3))
         rotor = numbers(fields["rotor"], "rotor", file) if "rotor" in fields else None
+        is_free = fields.get("free", True)
+        if not isinstance(is_free, bool):
+            raise wrong("free", "true or false")
         try:
-            motion = (
-                body.free_motion(omega, attitude)
-                if rotor is None
-                else _certain(body).gyrostat(rotor).free_motion(omega, attitude)
-            )
+            if is_free and rotor is None:
+                motion = body.free_motion(omega, attitude)
+            elif is_free:
+                motion = _certain(body).gyrostat(rotor).free_motion(omega, attitude)
         except ValueError as error:
             raise FileFormatError(f"{file}: {error}") from error
     spread = fields.get("start_covariance")
     if spread is not None:
         spread = numbers(spread, "start_covariance", file, with_holes=True)
     return Identified(
-        body=body, parameters=tuple(names), **arrays, **told, dropped=dropped, window=window,
+        body=body, parameters=tuple(names), columns=tuple(columns), **arrays, **told, dropped=dropped,
+        window=window,
         observability=tuple(_direction_of(one, file) for one in lists["observability"]),
         start=start, motion=motion,
         start_covariance=spread,

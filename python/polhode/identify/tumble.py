@@ -12,12 +12,16 @@ from polhode._core import RigidBody, Uncertain, fit_tumble, tumble_information, 
 from polhode._hints import check_kind
 from polhode.errors import IdentificationError
 from polhode.identify.results import ELEMENTS, NUMBERS, Direction, Identified, echelon, p_value_of, tensor_of
+from polhode.motion.rates import read_quaternions, read_vectors
 from polhode.results import State
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import ArrayLike, NDArray
+
+    from polhode._core import FreeMotion, GyrostatMotion
+    from polhode._typing import SupportsQuaternion
 
     Floats = NDArray[np.float64]
 
@@ -37,8 +41,8 @@ _RANK: Final = 1e-13
 _AXES: Final = "xyz"
 _SCALE: Final = "the scale of the tensor"
 _SCALE_REMEDY: Final = (
-    "no torque acts and no rotor turns: let a rotor of known momentum turn inside, or give what is known "
-    "by prior="
+    "no torque acts and no rotor turns: let a rotor of known momentum turn inside, apply a known torque, or "
+    "give what is known by prior="
 )
 _REMEDY: Final = (
     "throw it so that ω moves about all axes (identify.best_throw), spin it faster, or log longer"
@@ -54,6 +58,12 @@ def from_tumble(
     sigma: ArrayLike | None = None,
     bias: bool | Uncertain = False,
     rotor: ArrayLike | None = None,
+    torque: ArrayLike | None = None,
+    attitude: ArrayLike | SupportsQuaternion | None = None,
+    attitude_sigma: ArrayLike | None = None,
+    specific_force: ArrayLike | None = None,
+    specific_force_sigma: ArrayLike | None = None,
+    scale: bool = False,
     mass: float | None = None,
     prior: RigidBody | None = None,
     loss: Literal["gaussian", "student"] = "gaussian",
@@ -62,9 +72,9 @@ def from_tumble(
 ) -> Identified:
     """Find the most likely tensor of a freely tumbling body from a log of its angular velocity.
 
-    The model is the exact motion of Euler's equations, ``I ω̇ + ω × (I ω + h) = 0``, plus white noise. Body
-    frame: the axes of the gyro, with the origin at the centre of mass. Without a rotor or a prior only ratios
-    of the tensor are told: its trace is then 1, and ``scale_known`` is False.
+    The model is the exact motion of Euler's equations, ``I ω̇ + ω × (I ω + h) = N``, plus white noise. Body
+    frame: the axes of the gyro, with the origin at the centre of mass. Without a rotor, a torque or a prior
+    the log has only ratios of the tensor: its trace is then 1, and ``scale_known`` is False.
 
     Parameters
     ----------
@@ -79,6 +89,21 @@ def from_tumble(
         Constant offset of the gyro: none, estimated, or known beforehand as an Uncertain of shape (3,).
     rotor : array_like, shape (3,), optional
         Known constant angular momentum of rotors inside, relative to the body, in its axes.
+    torque : array_like, shape (3,), optional
+        Known constant torque about the centre of mass, in body axes: that of a thruster.
+    attitude : array_like or rotation, shape (n, 4) or (n, 3, 3), optional
+        Measured attitudes R_NB at the same times, with white noise of small turns about body axes. A row of
+        NaN is none: cameras are slower than gyros.
+    attitude_sigma : float or array_like, shape (3,), optional
+        Standard deviations of these turns, in radians. Needed with `attitude`.
+    specific_force : array_like, shape (n, 3), optional
+        What an accelerometer at an unknown place r reads in free flight, ``ω̇ × r + ω × (ω × r)``, in body
+        axes, in units of length per time squared. A row of NaN is none. The place is estimated.
+    specific_force_sigma : float or array_like, shape (3,), optional
+        Standard deviations of its noise. Needed with `specific_force`.
+    scale : bool
+        Whether the gyro's three scales have errors that are estimated. Only beside `attitude`: three scales
+        and two ratios of moments do not follow from a gyro alone.
     mass : float, optional
         Mass of the body that is returned, 1 by default. The motion does not depend on it.
     prior : RigidBody, optional
@@ -93,8 +118,10 @@ def from_tumble(
     Returns
     -------
     Identified
-        ``parameters`` are the angular velocity at the time of the first finite row, the tensor and, if there
-        is one, the bias. ``motion`` is the motion of the most likely body; its times count from that row.
+        ``parameters`` are the angular velocity at the time of the first finite row, the tensor and what else
+        is estimated: ``bias``, ``scale`` (measured over true, less 1), the first attitude as a small turn
+        about body axes, ``sensor_place`` from the centre of mass. ``motion`` is the motion of the most likely
+        body; its times count from that row.
 
     Raises
     ------
@@ -109,7 +136,7 @@ def from_tumble(
     Notes
     -----
     Pieces of the log are fitted first, whose gaps close as the fit goes on; then one motion is fitted to the
-    whole log. See :doc:`/theory/identification`.
+    whole log, and last to all sensors. See :doc:`/theory/identification`.
 
     Examples
     --------
@@ -127,8 +154,11 @@ def from_tumble(
     >>> [one.words for one in found.observability]
     ['the scale of the tensor']
     """
-    times, rows, dropped = _log(t, omega)
-    known, momentum = _known(sigma, bias, rotor, prior, loss)
+    times, rows, good = _log(t, omega)
+    dropped = {"not finite": int((~good).sum())} if not good.all() else {}
+    known = _known(sigma, bias, rotor, torque, prior, loss) | _sensors(
+        good, attitude, attitude_sigma, specific_force, specific_force_sigma, scale
+    )
     if starts is not None and (isinstance(starts, bool) or int(starts) != starts or starts < 0):
         raise ValueError(f"starts: expected a whole number of at least 0, got {starts!r}")
     known["starts"] = _STARTS if starts is None else int(starts)
@@ -136,7 +166,6 @@ def from_tumble(
     if not 0.0 < own_mass < math.inf:
         raise ValueError(f"mass: expected a positive number, got {mass!r}")
     _check_saturation(rows)
-    scale_known = bool(momentum.any()) or prior is not None
     found = fit_tumble(times, rows, known, progress)
     if not found:
         raise IdentificationError(
@@ -145,7 +174,7 @@ def from_tumble(
             kind="no fit",
         )
     _check_fit(times, rows, known, found[0])
-    fits = [_result(one, known, momentum, own_mass, scale_known, dropped) for one in found]
+    fits = [_result(one, known, own_mass, dropped) for one in found]
     weak = tuple(one for one in fits[0].observability if one.words != _SCALE)
     if any(one.relative >= _LOST for one in weak) or np.isnan(fits[0].covariance).any():
         raise IdentificationError(
@@ -173,6 +202,11 @@ def design(
     *,
     bias: bool | Uncertain = False,
     rotor: ArrayLike | None = None,
+    torque: ArrayLike | None = None,
+    attitude_sigma: ArrayLike | None = None,
+    specific_force_sigma: ArrayLike | None = None,
+    sensor_place: ArrayLike = (0.0, 0.0, 0.0),
+    scale: bool = False,
 ) -> Identified:
     """Compute what a log of a throw would tell of a body, before it is thrown.
 
@@ -188,7 +222,13 @@ def design(
         Standard deviations of the noise.
     bias : bool or Uncertain
         As in :func:`from_tumble`.
-    rotor : array_like, shape (3,), optional
+    rotor, torque : array_like, shape (3,), optional
+        As in :func:`from_tumble`.
+    attitude_sigma, specific_force_sigma : float or array_like, shape (3,), optional
+        Noise of further sensors, if there are any, with a row at each time.
+    sensor_place : array_like, shape (3,)
+        Where the accelerometer is, from the centre of mass.
+    scale : bool
         As in :func:`from_tumble`.
 
     Returns
@@ -219,17 +259,21 @@ def design(
     times = _times(t)
     if not np.isfinite(times).all():
         raise ValueError("t: expected finite times")
-    inertia, known, momentum = _before_a_throw(body, sigma, bias, rotor)
-    start = _vector("omega", omega)
-    fit = _information(times, start, inertia, known)
+    inertia, known = _before_a_throw(body, sigma, bias, rotor, torque)
+    still = None if attitude_sigma is None else np.tile([0.0, 0.0, 0.0, 1.0], (len(times), 1))
+    zero = None if specific_force_sigma is None else np.zeros((len(times), 3))
+    every = np.ones(len(times), dtype=bool)
+    known |= _sensors(every, still, attitude_sigma, zero, specific_force_sigma, scale)
+    start, place = _vector("omega", omega), _vector("sensor_place", sensor_place)
+    fit = _information(times, start, inertia, known, place)
     if fit is None:
         turns = float(np.linalg.norm(start)) * float(np.diff(times).max())
         raise ValueError(
             f"t, omega: the body turns by {turns:.3g} rad from one time to the next, too far to be followed; "
             "give more times, or a slower throw"
         )
-    fit |= {"residuals": np.zeros((0, 3)), "chi2": 0.0}
-    return _result(fit, known, momentum, float(body.mass), bool(momentum.any()), {}, rows=len(times))
+    fit |= {"residuals": np.zeros((0, np.shape(fit["residuals"])[1])), "chi2": 0.0}
+    return _result(fit, known, float(body.mass), {}, rows=len(times))
 
 
 def best_throw(
@@ -285,7 +329,8 @@ def best_throw(
     >>> bool(best.body.sigma.principal_moments.max() < flat.body.sigma.principal_moments.max())
     True
     """
-    inertia, known, momentum = _before_a_throw(body, sigma, bias, rotor)
+    inertia, known = _before_a_throw(body, sigma, bias, rotor, None)
+    known |= _sensors(np.ones(0, dtype=bool), None, None, None, None, False)
     for name, x in (("energy", energy), ("end", end)):
         if not 0.0 < float(x) < 1e100:
             raise ValueError(f"{name}: expected a positive number, got {x!r}")
@@ -298,7 +343,7 @@ def best_throw(
             "a spin about this axis has no energy; give the body some thickness"
         )
     times = np.linspace(0.0, float(end), int(n))
-    scaled = bool(momentum.any())
+    scaled = _has_scale(known)
 
     def throw(direction: Floats) -> Floats:
         unit = direction / np.linalg.norm(direction)
@@ -337,26 +382,27 @@ def best_throw(
 
 
 def _before_a_throw(
-    body: RigidBody, sigma: ArrayLike, bias: bool | Uncertain, rotor: ArrayLike | None
-) -> tuple[Floats, dict[str, Any], Floats]:
-    """Return the tensor that is believed in, what else is known, and the momentum inside.
-
-    Without a rotor the tensor has the trace 1.
-    """
+    body: RigidBody,
+    sigma: ArrayLike,
+    bias: bool | Uncertain,
+    rotor: ArrayLike | None,
+    torque: ArrayLike | None,
+) -> tuple[Floats, dict[str, Any]]:
+    """Return the tensor that is believed in, of trace 1 if its scale does not matter, and what is known."""
     check_kind(body, "body", "RigidBody")
     if body.shape != ():
         raise ValueError(f"body: expected one body, got a stack of shape {body.shape}")
-    known, momentum = _known(sigma, bias, rotor, None, "gaussian")
+    known = _known(sigma, bias, rotor, torque, None, "gaussian") | {"starts": 0}
     inertia = np.asarray(body.inertia)
-    return inertia if momentum.any() else inertia / np.trace(inertia), known | {"starts": 0}, momentum
+    return inertia if _has_scale(known) else inertia / np.trace(inertia), known
 
 
 def _information(
-    times: Floats, start: Floats, inertia: Floats, known: dict[str, Any]
+    times: Floats, start: Floats, inertia: Floats, known: dict[str, Any], place: ArrayLike = (0.0, 0.0, 0.0)
 ) -> dict[str, Any] | None:
     """Compute what a throw would tell; None where the motion is not followed."""
     elements = [float(inertia[i, j]) for i, j in ELEMENTS]
-    return tumble_information(times, start.tolist(), elements, known)
+    return tumble_information(times, start.tolist(), elements, np.asarray(place).tolist(), known)
 
 
 def _times(t: ArrayLike) -> Floats:
@@ -375,12 +421,12 @@ def _times(t: ArrayLike) -> Floats:
     return times
 
 
-def _log(t: ArrayLike, omega: ArrayLike) -> tuple[Floats, Floats, dict[str, int]]:
+def _log(t: ArrayLike, omega: ArrayLike) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+    """Return the rows with finite numbers, and which they are."""
     times, rows = _times(t), np.asarray(omega, dtype=float)
     if rows.shape != (len(times), 3):
         raise ValueError(f"omega: expected shape ({len(times)}, 3), a row for each time, got {rows.shape}")
     good = np.isfinite(times) & np.isfinite(rows).all(axis=1)
-    dropped = {"not finite": int((~good).sum())} if not good.all() else {}
     times, rows = times[good], rows[good]
     if len(times) < _LEAST:
         raise IdentificationError(
@@ -395,7 +441,7 @@ def _log(t: ArrayLike, omega: ArrayLike) -> tuple[Floats, Floats, dict[str, int]
             "omega: all rows are zero; a body at rest tells nothing of its tensor; check the columns",
             kind="undetermined",
         )
-    return times, rows, dropped
+    return times, rows, good
 
 
 def _vector(name: str, given: ArrayLike) -> Floats:
@@ -409,16 +455,12 @@ def _known(
     sigma: ArrayLike | None,
     bias: bool | Uncertain,
     rotor: ArrayLike | None,
+    torque: ArrayLike | None,
     prior: RigidBody | None,
     loss: str,
-) -> tuple[dict[str, Any], Floats]:
-    """Return what the core is told beside the log, and the momentum inside."""
-    sigmas = None
-    if sigma is not None:
-        found = np.asarray(sigma, dtype=float)
-        if found.shape not in ((), (3,)) or not ((found > 1e-100) & (found < 1e100)).all():
-            raise ValueError(f"sigma: expected a positive number or three, got {sigma!r}")
-        sigmas = np.broadcast_to(found, 3).tolist()
+) -> dict[str, Any]:
+    """Return what is known of gyro and body beside the log."""
+    sigmas = None if sigma is None else _three_sigmas("sigma", sigma)
     if loss not in ("gaussian", "student"):
         raise ValueError(f"loss: expected 'gaussian' or 'student', got {loss!r}")
     offset: Any = bias
@@ -434,6 +476,7 @@ def _known(
     else:
         offset = bool(bias)
     momentum = np.zeros(3) if rotor is None else _vector("rotor", rotor)
+    turning = np.zeros(3) if torque is None else _vector("torque", torque)
     before = None
     if prior is not None:
         check_kind(prior, "prior", "RigidBody")
@@ -441,11 +484,59 @@ def _known(
             raise ValueError("prior: expected one body with a covariance; give it one by with_covariance")
         mean = [float(prior.inertia[i, j]) for i, j in ELEMENTS]
         before = (mean, _whitening("prior", np.asarray(prior.covariance)[4:, 4:]).tolist())
-    known = {
-        "sigma": sigmas, "bias": offset, "momentum": momentum.tolist(), "torque": [0.0] * 3,
+    return {
+        "sigma": sigmas, "bias": offset, "momentum": momentum.tolist(), "torque": turning.tolist(),
         "prior": before, "student": loss == "student",
     }  # fmt: skip
-    return known, momentum
+
+
+def _has_scale(known: dict[str, Any]) -> bool:
+    return any(known["momentum"]) or any(known["torque"]) or known["prior"] is not None
+
+
+def _three_sigmas(name: str, sigma: ArrayLike) -> list[float]:
+    found = np.asarray(sigma, dtype=float)
+    if found.shape not in ((), (3,)) or not ((found > 1e-100) & (found < 1e100)).all():
+        raise ValueError(f"{name}: expected a positive number or three, got {sigma!r}")
+    return [float(one) for one in np.broadcast_to(found, 3)]
+
+
+def _sensors(
+    good: NDArray[np.bool_],
+    attitude: ArrayLike | SupportsQuaternion | None,
+    attitude_sigma: ArrayLike | None,
+    specific_force: ArrayLike | None,
+    specific_force_sigma: ArrayLike | None,
+    scale: bool,
+) -> dict[str, Any]:
+    """Return what further sensors measured in the rows that are kept."""
+    found: dict[str, Any] = {"attitude": None, "specific_force": None, "scale": bool(scale)}
+    for name, given, sigma in (
+        ("attitude", attitude, attitude_sigma),
+        ("specific_force", specific_force, specific_force_sigma),
+    ):
+        if given is None and sigma is None:
+            continue
+        if given is None or sigma is None:
+            missing = name if given is None else f"{name}_sigma"
+            raise ValueError(f"{missing}: it is needed beside {name if sigma is None else f'{name}_sigma'}")
+        rows = (
+            read_quaternions(attitude, len(good), None)  # type: ignore[arg-type]  # it is given
+            if name == "attitude"
+            else read_vectors(given, len(good), name)  # type: ignore[arg-type]  # it is given
+        )
+        kept = rows[good]
+        if len(good) and not np.isfinite(kept).all(axis=1).any():
+            raise IdentificationError(
+                f"{name}: no row is finite where the gyro has one; leave {name} out", kind="undetermined"
+            )
+        found[name] = (np.ascontiguousarray(kept), _three_sigmas(f"{name}_sigma", sigma))
+    if scale and found["attitude"] is None:
+        raise ValueError(
+            "scale: the scales of a gyro follow only beside attitude=; three scales and two ratios of moments"
+            " do not follow from a gyro alone; measure attitudes too, or leave it out"
+        )
+    return found
 
 
 def _whitening(name: str, covariance: Floats) -> Floats:
@@ -477,7 +568,7 @@ def _check_saturation(rows: Floats) -> None:
 
 def _misfit(times: Floats, rows: Floats, fit: dict[str, Any], known: dict[str, Any]) -> bool:
     """Return whether noise does not explain the residuals."""
-    count = 3 * len(times)
+    count = _measured(known, len(times))
     if known["sigma"] is not None:
         return not known["student"] and p_value_of(fit["chi2"], count - _unknowns(known)) < _NEVER
     level = white_noise(times, rows)
@@ -486,9 +577,18 @@ def _misfit(times: Floats, rows: Floats, fit: dict[str, Any], known: dict[str, A
     return bool(fit["sigma"][0] > 2.0 * max(level, floor))
 
 
+def _measured(known: dict[str, Any], rows: int) -> int:
+    """Count the numbers that were measured."""
+    count = 3 * rows
+    for name in ("attitude", "specific_force"):
+        if known[name] is not None:
+            count += 3 * int(np.isfinite(known[name][0]).all(axis=1).sum())
+    return count
+
+
 def _unknowns(known: dict[str, Any]) -> int:
-    scaled = any(known["momentum"]) or known["prior"] is not None
-    free = 8 + scaled + 3 * (known["bias"] is not False)
+    free: int = 8 + _has_scale(known) + 3 * (known["bias"] is not False)
+    free += 3 * (known["scale"] + (known["attitude"] is not None) + (known["specific_force"] is not None))
     return free - 6 * (known["prior"] is not None) - 3 * isinstance(known["bias"], tuple)
 
 
@@ -502,6 +602,8 @@ def _check_fit(times: Floats, rows: Floats, known: dict[str, Any], fit: dict[str
     if isinstance(known["bias"], tuple):
         mean, white = known["bias"]
         again["bias"] = ((by * np.array(mean)).tolist(), (np.array(white) / by).tolist())
+    # The gyro alone tells its unit.
+    again |= {"attitude": None, "specific_force": None, "scale": False}
     in_degrees = fit_tumble(times, by * rows, again)
     if in_degrees and not _misfit(times, by * rows, in_degrees[0], again):
         raise IdentificationError(
@@ -512,11 +614,12 @@ def _check_fit(times: Floats, rows: Floats, known: dict[str, Any], fit: dict[str
     if known["sigma"] is None:
         misfit = f"the residuals have a sigma of {fit['sigma'][0]:.3g}, far more than the noise of the log; "
     else:
-        misfit = f"chi2 is {fit['chi2']:.6g} with {3 * len(times) - _unknowns(known)} degrees of freedom; "
+        freedom = _measured(known, len(times)) - _unknowns(known)
+        misfit = f"chi2 is {fit['chi2']:.6g} with {freedom} degrees of freedom; "
     raise IdentificationError(
         f"omega: {misfit}",
         "no free motion explains the log; cut off the rows of throw and catch, estimate the offset by ",
-        'bias=True, take loss="student" for outliers, or enlarge sigma',
+        'bias=True, take loss="student" for outliers, or enlarge the sigmas',
         kind="no fit",
     )
 
@@ -565,7 +668,7 @@ def _marginal(triangle: Floats) -> Floats:
 def _directions(triangle: Floats, inertia: Floats, scaled: bool) -> tuple[Direction, ...]:
     """Find the directions of the tensor that the log hardly determines, the worst first.
 
-    Their parameters are those of the triangle: start, tensor and offset.
+    Their parameters are those of the triangle: start, tensor and what else is unknown.
     """
     space, size = _allowed(inertia, scaled, False), float(np.trace(inertia)) / 3.0
     jacobian = _marginal(triangle) @ space * size
@@ -642,47 +745,68 @@ def _mixed(vector: Floats) -> str:
 def _result(
     fit: dict[str, Any],
     known: dict[str, Any],
-    momentum: Floats,
     mass: float,
-    scaled: bool,
     dropped: dict[str, int],
     rows: int | None = None,
 ) -> Identified:
-    omega, elements, offset = (np.array(fit[one]) for one in ("omega", "inertia", "bias"))
+    omega, elements = (np.array(fit[one]) for one in ("omega", "inertia"))
+    momentum, scaled = np.array(known["momentum"]), _has_scale(known)
     triangle, edge = np.array(fit["triangle"]), bool(fit["at_edge"])
-    has_bias = len(triangle) > 9
     inertia = np.asarray(tensor_of(elements))
     bound = _covariance(triangle, _allowed(inertia, scaled, False))
     covariance = _covariance(triangle, _allowed(inertia, scaled, True)) if edge else bound
     nothing = np.full((len(triangle), len(triangle)), np.nan)
-    names = (
-        [f"omega_{one}" for one in _AXES] + list(NUMBERS[4:]) + [f"bias_{one}" for one in _AXES] * has_bias
-    )
+    names = [f"omega_{one}" for one in _AXES] + list(NUMBERS[4:])
+    values = [omega, elements]
+    further: dict[str, Uncertain] = {}
+    for name, key, is_there in (
+        ("bias", "bias", known["bias"] is not False),
+        ("scale", "gyro_scale", known["scale"]),
+        ("turn", "attitude", known["attitude"] is not None),
+        ("sensor_place", "place", known["specific_force"] is not None),
+    ):
+        if not is_there:
+            continue
+        # The small turn from the most likely first attitude is zero.
+        value = np.zeros(3) if name == "turn" else np.array(fit[key])
+        own = slice(len(names), len(names) + 3)
+        names += [f"{name}_{one}" for one in _AXES]
+        values.append(value)
+        if covariance is not None:
+            spread = covariance[own, own]
+            further[name] = Uncertain(value, covariance=0.5 * (spread + spread.T))
     bare = body = RigidBody(mass=mass, inertia=inertia)
     if covariance is not None:
         whole = np.zeros((10, 10))
         whole[4:, 4:] = covariance[3:9, 3:9]
         body = body.with_covariance(0.5 * (whole + whole.T))
     estimated = known["sigma"] is None
-    count = 3 * (len(fit["residuals"]) if rows is None else rows)
+    logged = len(fit["residuals"]) if rows is None else rows
+    count = _measured(known, logged)
     freedom = count - _unknowns(known)
     chi2 = float(fit["chi2"])
     has_p = rows is None and not estimated and not known["student"]
     sigmas = np.array(fit["sigma"])
-    bias = None
-    if has_bias and covariance is not None:
-        bias = Uncertain(offset, covariance=0.5 * (covariance[9:, 9:] + covariance[9:, 9:].T))
-    still = np.zeros(3)
-    # A gyrostat's motion carries no sigmas.
-    motion = bare.gyrostat(momentum).free_motion(omega) if momentum.any() else body.free_motion(omega)
+    still, attitude = np.zeros(3), np.array(fit["attitude"])
+    motion: FreeMotion | GyrostatMotion | None
+    if any(known["torque"]):
+        motion = None
+    elif momentum.any():
+        # A gyrostat's motion carries no sigmas.
+        motion = bare.gyrostat(momentum).free_motion(omega, attitude)
+    else:
+        motion = body.free_motion(omega, attitude)
+    sensors = ["omega", *(name for name in ("attitude", "specific_force") if known[name] is not None)]
     return Identified(
-        body=body, parameters=tuple(names), estimate=np.concatenate([omega, elements, offset])[: len(names)],
+        body=body, parameters=tuple(names), estimate=np.concatenate(values),
         covariance=nothing if covariance is None else covariance, crlb=nothing if bound is None else bound,
         residuals=np.asarray(fit["residuals"]), chi2=chi2, degrees_of_freedom=freedom,
         p_value=p_value_of(chi2, freedom) if has_p else math.nan,
-        noise=Uncertain(sigmas, sigmas / math.sqrt(2.0 * count)) if estimated and rows is None else None,
-        bias=bias, at_edge=edge, linear=not edge, gap=0.0,
+        noise=Uncertain(sigmas, sigmas / math.sqrt(6.0 * logged)) if estimated and rows is None else None,
+        bias=further.get("bias"), scale=further.get("scale"), sensor_place=further.get("sensor_place"),
+        columns=tuple(f"{name} {axis}" for name in sensors for axis in _AXES),
+        at_edge=edge, linear=not edge, gap=0.0,
         observability=_directions(triangle, inertia, scaled), scale_known=scaled, dropped=dropped,
-        start=State(omega, np.array([0.0, 0.0, 0.0, 1.0]), still, still),
+        start=State(omega, attitude, still, still),
         start_covariance=None if covariance is None else covariance[:3, :3], motion=motion,
     )  # fmt: skip

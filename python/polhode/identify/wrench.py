@@ -706,4 +706,5 @@ class _Fit:
             residuals=white, chi2=chi2, degrees_of_freedom=freedom, p_value=p_value, noise=noise,
             bias=offsets, at_edge=edge, linear=not edge, gap=gap, observability=observability,
             scale_known=True, dropped=dropped, window=window,
+            columns=tuple(f"{name} {axis}" for name in ("force", "torque") for axis in "xyz"),
         )  # fmt: skip

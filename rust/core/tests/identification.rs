@@ -33,6 +33,9 @@ fn a_known_torque_tells_the_scale_of_a_tumble() {
         momentum: [0.0; 3],
         torque: torque.into(),
         prior: None,
+        attitude: None,
+        specific_force: None,
+        gyro_scale: false,
         student: false,
         starts: 2,
     };
@@ -64,12 +67,16 @@ fn a_motion_that_turns_too_far_has_no_information() {
             momentum: [0.0; 3],
             torque: [0.0; 3],
             prior: None,
+            attitude: None,
+            specific_force: None,
+            gyro_scale: false,
             student: false,
             starts: 0,
         };
         let start = (
             [rate, 2.0 * rate, 0.5 * rate],
             [0.2, 0.35, 0.45, 0.0, 0.0, 0.0],
+            [0.0; 3],
         );
         information(&tumble, start, &mut |_| ControlFlow::Continue(())).expect("no stop")
     };

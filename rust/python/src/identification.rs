@@ -3,7 +3,7 @@
 use numpy::{PyArrayMethods, PyReadonlyArrayDyn};
 use polhode::Error;
 use polhode::motion::identification::{
-    Bias, Fit, Tumble, fit_tumble as fit_of, information as information_of,
+    Bias, Fit, Sensor, Tumble, fit_tumble as fit_of, information as information_of,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -20,8 +20,37 @@ struct Known {
     momentum: [f64; 3],
     torque: [f64; 3],
     prior: Option<([f64; 6], [[f64; 6]; 6])>,
+    attitude: Option<Measured<4>>,
+    specific_force: Option<Measured<3>>,
+    gyro_scale: bool,
     student: bool,
     starts: usize,
+}
+
+/// Rows of a sensor, and the standard deviations of its noise.
+struct Measured<const N: usize> {
+    rows: Vec<[f64; N]>,
+    sigma: [f64; 3],
+}
+
+impl<const N: usize> Measured<N> {
+    /// Read a pair of an array (n, N) and three numbers, or None.
+    fn of(given: &Bound<'_, PyAny>, name: &str) -> PyResult<Option<Self>> {
+        if given.is_none() {
+            return Ok(None);
+        }
+        let (rows, sigma): (Bound<'_, PyAny>, _) = given.extract()?;
+        let rows = floats(&rows, name)?;
+        let rows = rows.as_slice()?.as_chunks().0.to_vec();
+        Ok(Some(Self { rows, sigma }))
+    }
+
+    fn sensor(&self) -> Sensor<'_, N> {
+        Sensor {
+            rows: &self.rows,
+            sigma: self.sigma,
+        }
+    }
 }
 
 impl Known {
@@ -42,13 +71,26 @@ impl Known {
             momentum: item("momentum")?.extract()?,
             torque: item("torque")?.extract()?,
             prior: item("prior")?.extract()?,
+            attitude: Measured::of(&item("attitude")?, "attitude")?,
+            specific_force: Measured::of(&item("specific_force")?, "specific_force")?,
+            gyro_scale: item("scale")?.extract()?,
             student: item("student")?.extract()?,
             starts: item("starts")?.extract()?,
         })
     }
 
-    fn with<'a>(&self, t: &'a [f64], omega: &'a [[f64; 3]]) -> Tumble<'a> {
-        Tumble {
+    /// Return the log; every sensor has a row for each time.
+    fn with<'a>(&'a self, t: &'a [f64], omega: &'a [[f64; 3]]) -> PyResult<Tumble<'a>> {
+        let counts = [
+            self.attitude.as_ref().map(|one| one.rows.len()),
+            self.specific_force.as_ref().map(|one| one.rows.len()),
+        ];
+        if counts.iter().flatten().any(|count| *count != t.len()) {
+            return Err(PyValueError::new_err(
+                "known: expected a row of each sensor for each time",
+            ));
+        }
+        Ok(Tumble {
             t,
             omega,
             sigma: self.sigma,
@@ -56,9 +98,12 @@ impl Known {
             momentum: self.momentum,
             torque: self.torque,
             prior: self.prior,
+            attitude: self.attitude.as_ref().map(Measured::sensor),
+            specific_force: self.specific_force.as_ref().map(Measured::sensor),
+            gyro_scale: self.gyro_scale,
             student: self.student,
             starts: self.starts,
-        }
+        })
     }
 }
 
@@ -101,19 +146,23 @@ fn check(t: &[f64]) -> PyResult<()> {
     Err(PyValueError::new_err("t: expected finite, ascending times"))
 }
 
-fn dict<'py>(py: Python<'py>, fit: &Fit) -> PyResult<Bound<'py, PyDict>> {
+fn dict<'py>(py: Python<'py>, fit: &Fit, rows: usize) -> PyResult<Bound<'py, PyDict>> {
     let found = PyDict::new(py);
     found.set_item("omega", fit.omega)?;
     found.set_item("inertia", fit.inertia)?;
     found.set_item("bias", fit.bias)?;
+    found.set_item("gyro_scale", fit.gyro_scale)?;
+    found.set_item("attitude", fit.attitude)?;
+    found.set_item("place", fit.place)?;
     found.set_item("sigma", fit.sigma)?;
     found.set_item("cost", fit.cost)?;
     found.set_item("chi2", fit.chi2)?;
     found.set_item("triangle", fit.triangle.clone())?;
     found.set_item("at_edge", fit.at_edge)?;
     found.set_item("converged", fit.converged)?;
-    let rows = numpy::PyArray1::from_vec(py, fit.residuals.as_flattened().to_vec());
-    found.set_item("residuals", rows.reshape([fit.residuals.len(), 3])?)?;
+    let residuals = numpy::PyArray1::from_vec(py, fit.residuals.as_flattened().to_vec());
+    let width = 3 * fit.residuals.len() / rows;
+    found.set_item("residuals", residuals.reshape([rows, width])?)?;
     Ok(found)
 }
 
@@ -130,7 +179,7 @@ pub(crate) fn fit_tumble<'py>(
     let known = Known::of(known)?;
     let (t, omega) = (floats(t, "t")?, floats(omega, "omega")?);
     let (t, omega) = log(&t, &omega, 3)?;
-    let tumble = known.with(t, omega);
+    let tumble = known.with(t, omega)?;
     let interrupt = Interrupt::new(progress);
     let found = py.detach(|| fit_of(&tumble, &mut |done| interrupt.poll(Some(done))));
     interrupt.finish(py, found.is_ok())?;
@@ -138,18 +187,20 @@ pub(crate) fn fit_tumble<'py>(
     let found = found.map_err(|error| to_py(py, &error))?;
     let found: Vec<_> = found
         .iter()
-        .map(|fit| dict(py, fit))
+        .map(|fit| dict(py, fit, t.len()))
         .collect::<PyResult<_>>()?;
     PyList::new(py, found)
 }
 
-/// What the motion from `omega` of a body with the elements `inertia` would tell at the times t (n,); None where it is not followed.
+/// What the motion from `omega` of a body with the elements `inertia` would tell at the times t (n,), with an accelerometer at
+/// `place`; None where it is not followed.
 #[pyfunction]
 pub(crate) fn tumble_information<'py>(
     py: Python<'py>,
     t: &Bound<'py, PyAny>,
     omega: &Bound<'py, PyAny>,
     inertia: &Bound<'py, PyAny>,
+    place: [f64; 3],
     known: &Bound<'py, PyDict>,
 ) -> PyResult<Option<Bound<'py, PyDict>>> {
     let known = Known::of(known)?;
@@ -162,11 +213,14 @@ pub(crate) fn tumble_information<'py>(
     }
     check(t)?;
     let still = vec![[0.0; 3]; t.len()];
-    let tumble = known.with(t, &still);
+    let tumble = known.with(t, &still)?;
     let interrupt = Interrupt::new(None);
-    let found =
-        py.detach(|| information_of(&tumble, (omega, inertia), &mut |_| interrupt.poll(None)));
+    let found = py.detach(|| {
+        information_of(&tumble, (omega, inertia, place), &mut |_| {
+            interrupt.poll(None)
+        })
+    });
     interrupt.finish(py, found.is_ok())?;
     let found = found.map_err(|error| to_py(py, &error))?;
-    found.map(|fit| dict(py, &fit)).transpose()
+    found.map(|fit| dict(py, &fit, t.len())).transpose()
 }

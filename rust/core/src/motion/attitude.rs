@@ -127,9 +127,47 @@ pub fn rate(q: &Quaternion<f64>, omega: &Vector3<f64>) -> Quaternion<f64> {
     q * Quaternion::from_imag(omega * 0.5)
 }
 
+/// Return the shortest rotation that takes one unit vector to another; None where they are opposite, so that there are many.
+///
+/// Its vector part is that of a × b, so that small angles keep their digits; the cosine alone would lose half of them.
+pub(crate) fn shortest_turn(from: &Vector3<f64>, to: &Vector3<f64>) -> Option<UnitQuaternion<f64>> {
+    let (across, along) = (from.cross(to), from.dot(to));
+    // 1 + cos = sin²/(1 − cos).
+    let scalar = if along >= 0.0 {
+        1.0 + along
+    } else {
+        across.norm_squared() / (1.0 - along)
+    };
+    let turn = Quaternion::from_parts(scalar, across);
+    (turn.norm() > 0.0).then(|| UnitQuaternion::new_normalize(turn))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Small and large angles about several axes: the vector arrives to rounding.
+    #[test]
+    fn shortest_turns_keep_the_digits_of_small_angles() {
+        let from = Vector3::new(0.3, -0.5, 0.8).normalize();
+        let axis = from.cross(&Vector3::x()).normalize();
+        let side = axis.cross(&from);
+        for angle in [
+            0.0, 1e-300, 1e-12, 1e-8, 1e-4, 0.1, 1.0, 1.5, 1.6, 3.0, 3.141,
+        ] {
+            let (sin, cos) = f64::sin_cos(angle);
+            let to = from * cos + side * sin;
+            let turn = shortest_turn(&from, &to).expect("a rotation");
+            assert!((turn * from - to).norm() < 5e-16, "{angle}");
+            let across = turn.vector().into_owned() - axis * (0.5 * angle).sin();
+            assert!(across.norm() < 3e-16, "{angle}");
+        }
+        let z = Vector3::z();
+        assert!(shortest_turn(&z, &-z).is_none());
+        let nearly = Vector3::new(1e-9, 0.0, -1.0).normalize();
+        let turn = shortest_turn(&z, &nearly).expect("a rotation");
+        assert!((turn * z - nearly).norm() < 1e-15);
+    }
 
     #[test]
     fn quarter_turn_about_z_takes_x_to_y() {

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use super::Mode;
 use super::invariants::Invariants;
 use crate::error::{Error, MotionFault, all_finite};
-use crate::motion::attitude::from_axes;
+use crate::motion::attitude::{from_axes, shortest_turn};
 use crate::numerics::elliptic::complete_first;
 use crate::numerics::jacobi::jacobi;
 
@@ -140,7 +140,7 @@ pub fn attitude_about(
         });
     }
     let up = (direction / size).normalize();
-    let turn = UnitQuaternion::rotation_between(&Vector3::z(), &up).unwrap_or_else(|| {
+    let turn = shortest_turn(&Vector3::z(), &up).unwrap_or_else(|| {
         UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(0.0, 1.0, 0.0, 0.0))
     });
     let node = turn * Vector3::x();

@@ -15,4 +15,4 @@ mod series;
 mod triangle;
 mod tumble;
 
-pub use tumble::{Bias, ELEMENTS, Fit, Tumble, fit_tumble, information};
+pub use tumble::{Bias, ELEMENTS, Fit, Sensor, Tumble, fit_tumble, information};

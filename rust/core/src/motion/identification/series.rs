@@ -7,7 +7,12 @@
 //! I δω̇ = −δω × (Iω + h) − ω × (I δω) − (δI ω̇ + ω × δI ω) .
 //! ```
 //!
-//! Both are quadratic, so all coefficients follow from sums of products, and a step of order 20 is good to rounding.
+//! Both are quadratic, so all coefficients follow from sums of products, and a step of order 20 is good to rounding. The attitude and the
+//! small turns of it, δR = R [δθ]×, follow by
+//!
+//! ```text
+//! q̇ = ½ q∘ω ,        δθ̇ = δω − ω × δθ .
+//! ```
 
 use std::ops::ControlFlow;
 
@@ -41,6 +46,15 @@ pub(super) struct Sample<'a, const C: usize> {
     pub(super) row: usize,
     pub(super) omega: &'a [f64; 3],
     pub(super) columns: &'a [[f64; C]; 3],
+    /// If it is followed: the attitude (x, y, z, w) relative to that at the start, and its derivatives, in principal axes.
+    pub(super) turn: Option<&'a Turn<C>>,
+}
+
+/// An attitude relative to the first one, in principal axes, and its derivatives as small turns in body axes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Turn<const C: usize> {
+    pub(super) quaternion: [f64; 4],
+    pub(super) columns: [[f64; C]; 3],
 }
 
 /// Where a motion is, and its derivatives, in B.
@@ -111,8 +125,19 @@ impl<const C: usize> Follower<C> {
                 sources,
                 x: [[0.0; 3]; ORDER + 1],
                 d: [[[0.0; C]; 3]; ORDER + 1],
+                turns: None,
             },
         })
+    }
+
+    /// Follow the attitude too, from the start of each run.
+    pub(super) fn with_attitude(mut self) -> Self {
+        let still = Turn {
+            quaternion: [0.0; 4],
+            columns: [[0.0; C]; 3],
+        };
+        self.series.turns = Some(Box::new([still; ORDER + 1]));
+        self
     }
 
     /// Follows the motion from a place at the time `start` to the time `end`, and hands out what is at the ascending times `t`
@@ -127,6 +152,12 @@ impl<const C: usize> Follower<C> {
         let inside = from.turned(&self.axes.transpose());
         self.series.x[0] = inside.omega.into();
         self.series.d[0] = inside.columns;
+        if let Some(turns) = &mut self.series.turns {
+            turns[0] = Turn {
+                quaternion: [0.0, 0.0, 0.0, 1.0],
+                columns: [[0.0; C]; 3],
+            };
+        }
         let reached = dispatch(Run {
             series: &mut self.series,
             start,
@@ -169,6 +200,8 @@ struct Series<const C: usize> {
     /// Coefficients of ω and of its derivatives.
     x: [[f64; 3]; ORDER + 1],
     d: [[[f64; C]; 3]; ORDER + 1],
+    /// Coefficients of the attitude and of its derivatives.
+    turns: Option<Box<[Turn<C>; ORDER + 1]>>,
 }
 
 struct Run<'a, F, const C: usize> {
@@ -191,6 +224,7 @@ impl<const C: usize, F: FnMut(&Sample<'_, C>) -> ControlFlow<()>> Kernel for Run
         let (mut now, mut row) = (self.start, 0);
         loop {
             self.series.expand();
+            self.series.expand_attitude();
             let step = self.series.step();
             if !(step > 0.0 && left > 0.0 && now + step > now) {
                 return None;
@@ -198,10 +232,12 @@ impl<const C: usize, F: FnMut(&Sample<'_, C>) -> ControlFlow<()>> Kernel for Run
             left -= 1.0;
             while row < self.t.len() && self.t[row] <= now + step {
                 let (omega, columns) = self.series.at(self.t[row] - now);
+                let turn = self.series.turn_at(self.t[row] - now);
                 let one = Sample {
                     row,
                     omega: &omega,
                     columns: &columns,
+                    turn: turn.as_ref(),
                 };
                 if (self.sample)(&one).is_break() {
                     return None;
@@ -210,6 +246,11 @@ impl<const C: usize, F: FnMut(&Sample<'_, C>) -> ControlFlow<()>> Kernel for Run
             }
             if end <= now + step {
                 return Some(self.series.at(end - now));
+            }
+            if let Some(turn) = self.series.turn_at(step)
+                && let Some(turns) = &mut self.series.turns
+            {
+                turns[0] = turn;
             }
             (self.series.x[0], self.series.d[0]) = self.series.at(step);
             now += step;
@@ -288,6 +329,55 @@ impl<const C: usize> Series<C> {
         }
     }
 
+    /// Fill the coefficients of the attitude, if it is followed, from its first ones.
+    fn expand_attitude(&mut self) {
+        let Some(turns) = &mut self.turns else {
+            return;
+        };
+        for k in 0..ORDER {
+            let (mut q, mut small) = ([0.0; 4], self.d[k]);
+            for m in 0..=k {
+                let ([a, b, c, w], [x, y, z]) = (turns[m].quaternion, self.x[k - m]);
+                q[0] += w * x + b * z - c * y;
+                q[1] += w * y + c * x - a * z;
+                q[2] += w * z + a * y - b * x;
+                q[3] -= a * x + b * y + c * z;
+                for i in 0..3 {
+                    let (j, l) = ((i + 1) % 3, (i + 2) % 3);
+                    let (own, other) = (self.x[k - m][j], self.x[k - m][l]);
+                    for column in 0..C {
+                        small[i][column] -=
+                            own * turns[m].columns[l][column] - other * turns[m].columns[j][column];
+                    }
+                }
+            }
+            let share = 1.0 / (k + 1) as f64;
+            turns[k + 1] = Turn {
+                quaternion: q.map(|one| one * (0.5 * share)),
+                columns: small.map(|row| row.map(|one| one * share)),
+            };
+        }
+    }
+
+    /// The attitude and its derivatives at this time after the first.
+    fn turn_at(&self, s: f64) -> Option<Turn<C>> {
+        let turns = self.turns.as_ref()?;
+        let mut found = turns[ORDER];
+        for one in turns[..ORDER].iter().rev() {
+            for (x, own) in found.quaternion.iter_mut().zip(one.quaternion) {
+                *x = *x * s + own;
+            }
+            for (row, own) in found.columns.iter_mut().zip(&one.columns) {
+                for (x, own) in row.iter_mut().zip(own) {
+                    *x = *x * s + own;
+                }
+            }
+        }
+        let size = found.quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
+        found.quaternion = found.quaternion.map(|x| x / size);
+        Some(found)
+    }
+
     /// The step at which the last terms are those of rounding. Derivatives have the same singularities, but higher poles.
     #[inline(always)]
     fn step(&self) -> f64 {
@@ -296,10 +386,27 @@ impl<const C: usize> Series<C> {
         for k in [ORDER - 1, ORDER] {
             step = step.min(reach(length(&self.x[k]) / size, k));
         }
-        for group in [0..C.min(3), C.min(3)..C] {
+        if let Some(turns) = &self.turns {
+            for k in [ORDER - 1, ORDER] {
+                let most = turns[k]
+                    .quaternion
+                    .iter()
+                    .fold(0.0_f64, |most, x| most.max(x.abs()));
+                step = step.min(reach(most, k));
+            }
+        }
+        let groups = [0..C.min(3), C.min(3)..C];
+        let attitude = self.turns.iter().flat_map(|_| groups.clone());
+        for (group, is_attitude) in
+            (groups.iter().cloned().map(|one| (one, false))).chain(attitude.map(|one| (one, true)))
+        {
             let most = |k: usize| {
+                let rows = match &self.turns {
+                    Some(turns) if is_attitude => &turns[k].columns,
+                    _ => &self.d[k],
+                };
                 let mut most = 0.0_f64;
-                for row in &self.d[k] {
+                for row in rows {
                     for x in &row[group.clone()] {
                         most = most.max(x.abs());
                     }
@@ -391,6 +498,86 @@ mod tests {
             for i in 0..3 {
                 assert!((slope[i] - here.columns[i][c]).abs() < 1e-6 * slope.norm().max(1.0));
             }
+        }
+    }
+
+    /// The attitude turns as ω says, and small turns of it are differences of attitudes.
+    #[test]
+    fn attitudes_and_their_derivatives() {
+        use nalgebra::{Quaternion, UnitQuaternion};
+        let body = Spinning {
+            inertia: Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45)),
+            momentum: Vector3::new(0.1, -0.2, 0.05),
+            torque: Vector3::new(0.01, 0.02, -0.03),
+        };
+        let directions = [
+            Matrix3::from_diagonal(&Vector3::new(1.0, 0.0, 0.0)),
+            Matrix3::new(0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        ];
+        let at = |body: &Spinning, omega: Vector3<f64>, t: f64| {
+            let follower = Follower::<5>::of(body, &directions).expect("a tensor");
+            let mut follower = follower.with_attitude();
+            let axes = follower.axes;
+            let (mut end, mut columns) = (UnitQuaternion::identity(), [[0.0; 5]; 3]);
+            let run = follower.run(&Place::start(omega), (0.0, t), &[t], |sample| {
+                let turn = sample.turn.expect("an attitude");
+                let [x, y, z, w] = turn.quaternion;
+                end = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
+                for c in 0..5 {
+                    let own = axes * Vector3::from_fn(|i, _| turn.columns[i][c]);
+                    for i in 0..3 {
+                        columns[i][c] = own[i];
+                    }
+                }
+                ControlFlow::Continue(())
+            });
+            let axes = UnitQuaternion::from_matrix(&axes);
+            (axes * end * axes.inverse(), columns, run.expect("a motion"))
+        };
+        let omega = Vector3::new(1.0, 2.0, 0.5);
+        let (here, columns, place) = at(&body, omega, 5.0);
+        let h = 1e-5;
+        let (before, after) = (at(&body, omega, 5.0 - h).0, at(&body, omega, 5.0 + h).0);
+        let rate = (before.inverse() * after).scaled_axis() / (2.0 * h);
+        assert!((rate - place.omega).norm() < 1e-8);
+        for c in 0..5 {
+            let moved = |s: f64| {
+                let (mut body, mut omega) = (body, omega);
+                if c < 3 {
+                    omega[c] += s;
+                } else {
+                    body.inertia += directions[c - 3] * s;
+                }
+                at(&body, omega, 5.0).0
+            };
+            let slope = (moved(-h).inverse() * moved(h)).scaled_axis() / (2.0 * h);
+            for i in 0..3 {
+                assert!((slope[i] - columns[i][c]).abs() < 1e-6 * slope.norm().max(1.0));
+            }
+        }
+        assert!(here.angle() > 0.1);
+    }
+
+    /// A spin about an axis has no end to its series of ω, but one to that of its attitude.
+    #[test]
+    fn the_attitude_of_a_steady_spin() {
+        let body = Spinning {
+            inertia: Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45)),
+            momentum: Vector3::zeros(),
+            torque: Vector3::zeros(),
+        };
+        let follower = Follower::<0>::of(&body, &[]).expect("a tensor");
+        let mut follower = follower.with_attitude();
+        let spin = Place::start(Vector3::new(0.0, 0.0, 2.0));
+        let mut angles = Vec::new();
+        let run = follower.run(&spin, (0.0, 100.0), &[1.0, 100.0], |sample| {
+            let [_, _, z, w] = sample.turn.expect("an attitude").quaternion;
+            angles.push(2.0 * z.atan2(w));
+            ControlFlow::Continue(())
+        });
+        assert!(run.is_some());
+        for (angle, exact) in angles.iter().zip([2.0_f64, 200.0]) {
+            assert!((0.5 * (angle - exact)).sin().abs() < 1e-13);
         }
     }
 

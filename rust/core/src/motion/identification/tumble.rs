@@ -6,12 +6,19 @@
 //! y_i = ω(t_i; ω₀, I) + b + n_i ,        I ω̇ + ω × (I ω + h) = N .
 //! ```
 //!
-//! Without a known h or N the log has only ratios of the tensor; its trace is 1 then.
+//! Without a known h or N the log has only ratios of the tensor; its trace is 1 then. Further sensors may be beside the gyro: attitudes, the
+//! specific force at an unknown place r in free flight, and the gyro may have errors s of its scales,
+//!
+//! ```text
+//! M_i = R(t_i) exp([n]×) ,        f_i = ω̇ × r + ω × (ω × r) + n ,        y_i = (1 + s) ω(t_i) + b + n .
+//! ```
+//!
+//! They are taken in after the gyro alone was fitted.
 
 use std::cell::{Cell, RefCell};
 use std::ops::ControlFlow;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use super::momentum_balance::{Balanced, Question, estimates, is_tensor};
 use super::series::{Follower, Place, Sample, Spinning};
@@ -52,6 +59,15 @@ pub enum Bias {
     Prior([f64; 3], [[f64; 3]; 3]),
 }
 
+/// What a further sensor measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Sensor<'a, const N: usize> {
+    /// A row for each time of the log; not finite where there is none.
+    pub rows: &'a [[f64; N]],
+    /// Standard deviations of white noise along the axes of B; for attitudes, angles.
+    pub sigma: [f64; 3],
+}
+
 /// A log of a tumble and what is known of the body.
 #[derive(Clone, Copy, Debug)]
 pub struct Tumble<'a> {
@@ -69,6 +85,12 @@ pub struct Tumble<'a> {
     pub torque: [f64; 3],
     /// The elements of the tensor beforehand, and the rows that make errors of unit variance of their deviations.
     pub prior: Option<([f64; 6], [[f64; 6]; 6])>,
+    /// Attitudes R_NB, as unit quaternions (x, y, z, w).
+    pub attitude: Option<Sensor<'a, 4>>,
+    /// What an accelerometer at an unknown place reads in free flight, in B.
+    pub specific_force: Option<Sensor<'a, 3>>,
+    /// Whether the gyro's scales are unknown; only attitudes tell them.
+    pub gyro_scale: bool,
     /// Whether noise follows Student's distribution with 4 degrees of freedom, not the normal one.
     pub student: bool,
     /// Number of further starts, at most.
@@ -84,15 +106,22 @@ pub struct Fit {
     pub inertia: [f64; 6],
     /// Offset of the gyro.
     pub bias: [f64; 3],
-    /// Standard deviations of the noise.
+    /// Errors of its scales.
+    pub gyro_scale: [f64; 3],
+    /// Attitude R_NB at the first time (x, y, z, w); the identity where nothing tells it.
+    pub attitude: [f64; 4],
+    /// Place of the accelerometer from the centre of mass, in B.
+    pub place: [f64; 3],
+    /// Standard deviations of the noise of the gyro.
     pub sigma: [f64; 3],
     /// −2 log L, but for a constant.
     pub cost: f64,
     /// Sum of squares of the residuals of log and priors in units of sigma.
     pub chi2: f64,
-    /// Measured minus predicted, in units of sigma.
+    /// Measured minus predicted, in units of sigma: for each time those of the gyro and of each further sensor, NaN where it has no row.
     pub residuals: Vec<[f64; 3]>,
-    /// The triangle of the derivatives of all predictions by ω₀ (3), tensor (6) and, unless it is zero, bias (3), in units of sigma; rows.
+    /// The triangle of the derivatives of all predictions by ω₀ (3), tensor (6) and what else is unknown, three numbers each: bias, scales
+    /// of the gyro, the first attitude as a small turn in B, the place of the accelerometer; in units of sigma; rows.
     pub triangle: Vec<Vec<f64>>,
     /// Whether the tensor is the best on the edge of those of bodies.
     pub at_edge: bool,
@@ -106,6 +135,20 @@ struct Point {
     omega: Vector3<f64>,
     inertia: Matrix3<f64>,
     bias: Vector3<f64>,
+    scale: Vector3<f64>,
+    /// R_NB at the first time.
+    attitude: UnitQuaternion<f64>,
+    place: Vector3<f64>,
+}
+
+/// The first columns of what is unknown beside ω₀ and the tensor.
+#[derive(Clone, Copy, Debug)]
+struct Layout {
+    bias: Option<usize>,
+    scale: Option<usize>,
+    attitude: Option<usize>,
+    place: Option<usize>,
+    unknowns: usize,
 }
 
 /// Parameters with the angular velocity at the start of each piece of the log, not only of the first.
@@ -141,6 +184,8 @@ struct Scaled<'a> {
     has_scale: bool,
     /// The noise that the log seems to have.
     level: f64,
+    /// Whether further sensors are taken in.
+    all: Cell<bool>,
     watch: &'a dyn Fn(f64) -> ControlFlow<()>,
     stopped: Cell<bool>,
     /// The fraction done.
@@ -174,6 +219,9 @@ struct Scaled<'a> {
 ///     momentum: [0.0; 3],
 ///     torque: [0.0; 3],
 ///     prior: None,
+///     attitude: None,
+///     specific_force: None,
+///     gyro_scale: false,
 ///     student: false,
 ///     starts: 4,
 /// };
@@ -182,7 +230,8 @@ struct Scaled<'a> {
 /// assert!((found[0].inertia[0] - 0.2).abs() < 1e-9);
 ///
 /// // What the same throw tells could be known before.
-/// let before = information(&tumble, ([1.0, 2.0, 0.5], [0.2, 0.35, 0.45, 0.0, 0.0, 0.0]), go_on)?;
+/// let throw = ([1.0, 2.0, 0.5], [0.2, 0.35, 0.45, 0.0, 0.0, 0.0], [0.0; 3]);
+/// let before = information(&tumble, throw, go_on)?;
 /// let before = before.expect("a motion that can be followed");
 /// assert!((before.triangle[0][0] / found[0].triangle[0][0] - 1.0).abs() < 1e-6);
 /// # Ok::<(), polhode::Error>(())
@@ -207,9 +256,9 @@ pub fn fit_tumble(tumble: &Tumble<'_>, watch: &mut Watch<'_>) -> Result<Vec<Fit>
     Ok(found)
 }
 
-/// Compute what a log of the motion from `omega` would tell of the tensor `inertia`: the derivatives of its predictions by ω₀, tensor and
-/// offset, in units of `tumble.sigma`. The measured values do not matter. None where the motion turns by so much from row to row that
-/// it is not followed.
+/// Compute what a log of the motion from `omega` would tell of the tensor `inertia`, with an accelerometer at `place`: the derivatives of
+/// its predictions by ω₀, tensor and what else is unknown, in units of their sigmas. The measured values do not matter. None where the
+/// motion turns by so much from row to row that it is not followed.
 ///
 /// # Errors
 /// [`Error::Stopped`] if `watch` said so.
@@ -218,23 +267,40 @@ pub fn fit_tumble(tumble: &Tumble<'_>, watch: &mut Watch<'_>) -> Result<Vec<Fit>
 /// If there are no times.
 pub fn information(
     tumble: &Tumble<'_>,
-    (omega, inertia): ([f64; 3], [f64; 6]),
+    (omega, inertia, place): ([f64; 3], [f64; 6], [f64; 3]),
     watch: &mut Watch<'_>,
 ) -> Result<Option<Fit>, Error> {
     assert!(!tumble.t.is_empty(), "times");
     let watch = RefCell::new(watch);
     let watch = |done: f64| (watch.borrow_mut())(done);
     let scaled = Scaled::new(tumble, Vector3::from(omega).norm(), 0.0, &watch);
+    scaled.all.set(true);
     let point = Point {
-        omega: Vector3::from(omega) / scaled.rate,
-        inertia: tensor(&inertia) / scaled.unit,
-        bias: Vector3::zeros(),
+        place: place.into(),
+        ..Point::new(
+            Vector3::from(omega) / scaled.rate,
+            tensor(&inertia) / scaled.unit,
+            Vector3::zeros(),
+        )
     };
     let fit = scaled.fit_at(&point, false, true);
     if scaled.stopped.get() {
         return Err(Error::Stopped);
     }
     Ok(fit)
+}
+
+impl Point {
+    fn new(omega: Vector3<f64>, inertia: Matrix3<f64>, bias: Vector3<f64>) -> Self {
+        Self {
+            omega,
+            inertia,
+            bias,
+            scale: Vector3::zeros(),
+            attitude: UnitQuaternion::identity(),
+            place: Vector3::zeros(),
+        }
+    }
 }
 
 fn tensor(elements: &[f64; 6]) -> Matrix3<f64> {
@@ -323,6 +389,7 @@ impl<'a> Scaled<'a> {
             rate,
             unit,
             level,
+            all: Cell::new(false),
             watch,
             stopped: Cell::new(false),
             done: Cell::new(0.0),
@@ -337,6 +404,7 @@ impl<'a> Scaled<'a> {
             t: self.t[..head].iter().step_by(stride).copied().collect(),
             omega: self.omega[..head].iter().step_by(stride).copied().collect(),
             sigma: self.sigma.clone(),
+            all: Cell::new(false),
             stopped: Cell::new(false),
             done: self.done.clone(),
             ..*self
@@ -349,6 +417,51 @@ impl<'a> Scaled<'a> {
 
     fn has_bias(&self) -> bool {
         self.tumble.bias != Bias::Zero
+    }
+
+    fn has_more(&self) -> bool {
+        let tumble = self.tumble;
+        tumble.gyro_scale || tumble.attitude.is_some() || tumble.specific_force.is_some()
+    }
+
+    /// The columns beside ω₀ and so many directions of the tensor.
+    fn layout(&self, directions: usize) -> Layout {
+        let (all, mut unknowns) = (self.all.get(), 3 + directions);
+        let mut three = |there: bool| {
+            there.then(|| {
+                unknowns += 3;
+                unknowns - 3
+            })
+        };
+        let bias = three(self.has_bias());
+        let scale = three(all && self.tumble.gyro_scale);
+        let attitude = three(all && self.tumble.attitude.is_some());
+        let place = three(all && self.tumble.specific_force.is_some());
+        Layout {
+            bias,
+            scale,
+            attitude,
+            place,
+            unknowns,
+        }
+    }
+
+    /// Return the point after a step.
+    fn step_from(&self, at: &Point, step: &[f64], directions: &[Matrix3<f64>]) -> Point {
+        let layout = self.layout(directions.len());
+        let three = |first: usize| Vector3::new(step[first], step[first + 1], step[first + 2]);
+        let mut next = *at;
+        next.omega += three(0);
+        for (x, direction) in step[3..].iter().zip(directions) {
+            next.inertia += direction * *x;
+        }
+        next.bias += layout.bias.map_or(Vector3::zeros(), three);
+        next.scale += layout.scale.map_or(Vector3::zeros(), three);
+        next.place += layout.place.map_or(Vector3::zeros(), three);
+        if let Some(first) = layout.attitude {
+            next.attitude *= UnitQuaternion::from_scaled_axis(three(first));
+        }
+        next
     }
 
     /// Changes of the tensor that keep its scale, if nothing tells it.
@@ -377,7 +490,19 @@ impl<'a> Scaled<'a> {
         answer
     }
 
-    /// The cost of the first rows at a place, and its derivatives by ω₀, the tensor along the directions, and bias.
+    /// What residuals of three components cost, and the root of the weight of their rows.
+    ///
+    /// `expected` asks for the weight that is expected, not that of these residuals.
+    fn loss(&self, square: f64, expected: bool) -> (f64, f64) {
+        if self.tumble.student {
+            let root = ((NU + 3.0) / if expected { NU + 5.0 } else { NU + square }).sqrt();
+            ((NU + 3.0) * (square / NU).ln_1p(), root)
+        } else {
+            (square, 1.0)
+        }
+    }
+
+    /// The cost of the first rows at a place, and its derivatives by ω₀, the tensor along the directions, and what else is unknown.
     ///
     /// With a place to keep the residuals the derivatives have the weights that are expected, not those of these residuals.
     fn evaluate<const C: usize>(
@@ -391,13 +516,31 @@ impl<'a> Scaled<'a> {
         if self.look().is_break() {
             return None;
         }
-        let inner = 3 + directions.len();
-        let unknowns = inner + if self.has_bias() { 3 } else { 0 };
+        let (inner, layout) = (3 + directions.len(), self.layout(directions.len()));
+        let unknowns = layout.unknowns;
+        let (bias, scale) = (
+            layout.bias.unwrap_or(unknowns),
+            layout.scale.unwrap_or(unknowns),
+        );
         let mut triangle = Triangle::new(unknowns);
         let mut cost = self.prior_rows(at, directions, &mut triangle);
         let weights = Vector3::from(self.sigma.get().map(f64::recip));
-        let mut follower = Follower::<C>::of(&self.spinning(at), directions)?;
+        let spinning = self.spinning(at);
+        let mut follower = Follower::<C>::of(&spinning, directions)?;
+        if layout.attitude.is_some() {
+            follower = follower.with_attitude();
+        }
         let axes = follower.axes;
+        let others = Others::<C> {
+            log: self,
+            at,
+            layout,
+            axes,
+            turned: UnitQuaternion::from_matrix(&axes),
+            inverse: spinning.inertia.try_inverse()?,
+            spinning,
+            directions,
+        };
         let whole = follower.run(
             &Place::start(at.omega),
             (0.0, self.t[rows - 1]),
@@ -406,18 +549,12 @@ impl<'a> Scaled<'a> {
                 if sample.row % LOOK == LOOK - 1 {
                     self.look()?;
                 }
-                let predicted = axes * Vector3::from(*sample.omega) + at.bias;
+                let own = axes * Vector3::from(*sample.omega);
+                let predicted = own + at.scale.component_mul(&own) + at.bias;
                 let rest =
                     (Vector3::from(self.omega[sample.row]) - predicted).component_mul(&weights);
-                let square = rest.norm_squared();
-                let mut root = 1.0;
-                if self.tumble.student {
-                    cost += (NU + 3.0) * (square / NU).ln_1p();
-                    let expected = rests.is_some();
-                    root = ((NU + 3.0) / if expected { NU + 5.0 } else { NU + square }).sqrt();
-                } else {
-                    cost += square;
-                }
+                let (loss, root) = self.loss(rest.norm_squared(), rests.is_some());
+                cost += loss;
                 if let Some(rests) = rests.as_deref_mut() {
                     rests.push(rest.into());
                 }
@@ -426,12 +563,23 @@ impl<'a> Scaled<'a> {
                 }
                 for i in 0..3 {
                     let share = weights[i] * root;
-                    let a = [0, 1, 2].map(|k| axes[(i, k)] * share);
+                    let by_motion = share * (1.0 + at.scale[i]);
+                    let a = [0, 1, 2].map(|k| axes[(i, k)] * by_motion);
                     let [x, y, z] = sample.columns;
                     let motion = (0..inner).map(|c| a[0] * x[c] + a[1] * y[c] + a[2] * z[c]);
-                    let offset =
-                        (inner..unknowns).map(|c| if c == inner + i { share } else { 0.0 });
-                    triangle.push(motion.chain(offset), rest[i] * root);
+                    let beside = (inner..unknowns).map(|c| {
+                        if c == bias + i {
+                            share
+                        } else if c == scale + i {
+                            share * own[i]
+                        } else {
+                            0.0
+                        }
+                    });
+                    triangle.push(motion.chain(beside), rest[i] * root);
+                }
+                if layout.attitude.is_some() || layout.place.is_some() {
+                    cost += others.take(sample, &mut triangle, rests.as_deref_mut());
                 }
                 ControlFlow::Continue(())
             },
@@ -486,7 +634,7 @@ impl<'a> Scaled<'a> {
             }
         };
         descend(*start, stop, evaluate, |at, step| {
-            let next = step_from(at, step, &directions);
+            let next = self.step_from(at, step, &directions);
             is_tensor(&next.inertia).then_some(next)
         })
     }
@@ -529,11 +677,7 @@ impl<'a> Scaled<'a> {
     fn chain(&self, start: &Balanced, rows: usize) -> Chain {
         let omega = |row| self.smoothed(row, rows) - start.bias;
         Chain {
-            point: Point {
-                omega: omega(0),
-                inertia: start.inertia,
-                bias: start.bias,
-            },
+            point: Point::new(omega(0), start.inertia, start.bias),
             nodes: self.cuts(rows).into_iter().map(omega).collect(),
         }
     }
@@ -633,7 +777,7 @@ impl<'a> Scaled<'a> {
             while share > 0.05 && !taken {
                 let scaled: Vec<f64> = step.iter().map(|x| x * share).collect();
                 let mut next = Chain {
-                    point: step_from(&here.point, &scaled, &directions),
+                    point: self.step_from(&here.point, &scaled, &directions),
                     nodes: here.nodes.clone(),
                 };
                 for (node, place) in next.nodes.iter_mut().zip(&linked.follows) {
@@ -683,7 +827,7 @@ impl<'a> Scaled<'a> {
             self.evaluate::<8>(at, self.rows(), limit, &directions(at), None)
         };
         descend(self.flatten(start), stop, evaluate, |at, step| {
-            let next = self.flatten(&step_from(at, step, &directions(at)));
+            let next = self.flatten(&self.step_from(at, step, &directions(at)));
             is_tensor(&next.inertia).then_some(next)
         })
     }
@@ -723,7 +867,8 @@ impl<'a> Scaled<'a> {
             (0.0, self.t[self.rows() - 1]),
             &self.t,
             |sample: &Sample<'_, 0>| {
-                let predicted = axes * Vector3::from(*sample.omega) + at.bias;
+                let own = axes * Vector3::from(*sample.omega);
+                let predicted = own + at.scale.component_mul(&own) + at.bias;
                 let rest = Vector3::from(self.omega[sample.row]) - predicted;
                 found.push(rest.component_mul(&weights).into());
                 ControlFlow::Continue(())
@@ -759,7 +904,7 @@ impl<'a> Scaled<'a> {
                 }
             }
         } else {
-            let unknowns = 3 + self.directions().len() + if self.has_bias() { 3 } else { 0 };
+            let unknowns = self.layout(self.directions().len()).unknowns;
             square = squares.iter().sum::<f64>() / (count - unknowns as f64).max(1.0);
         }
         let new = (old * square.sqrt()).max(1e-15);
@@ -816,12 +961,27 @@ impl<'a> Scaled<'a> {
             passes: 60,
         };
         let n = self.rows();
+        let some = self.thin_out();
+        let count = some.rows();
         let mut best: Option<(Point, Linear, bool)> = None;
         let mut used = 0;
         for start in starts.iter().take(self.tumble.starts + 1) {
             used += 1;
-            let joined = self.join(start, n, JOINS);
-            let found = joined.and_then(|(point, _)| self.refine(&point, n, &stop));
+            // Of a log that is not long, some rows mostly lead near enough to the maximum.
+            let mut found = None;
+            if count < n && n <= HEAD {
+                found = some
+                    .join(start, count, JOINS)
+                    .and_then(|(point, _)| self.refine(&point, n, &stop))
+                    .filter(|(_, linear, _)| linear.cost < 2.0 * usual);
+            }
+            if found.is_none() && !some.stopped.get() {
+                let joined = self.join(start, n, JOINS);
+                found = joined.and_then(|(point, _)| self.refine(&point, n, &stop));
+            }
+            if some.stopped.get() {
+                self.stopped.set(true);
+            }
             if self.stopped.get() {
                 return Vec::new();
             }
@@ -852,8 +1012,7 @@ impl<'a> Scaled<'a> {
             (point, linear, converged) = found;
         }
         let mut all = vec![(point, linear.cost, converged)];
-        let some = self.thin_out();
-        let count = some.rows();
+        some.sigma.set(self.sigma.get());
         let Some((here, headed, _)) = some.refine(&point, count, &stop) else {
             return Vec::new();
         };
@@ -895,12 +1054,103 @@ impl<'a> Scaled<'a> {
                 all.push((other, own.cost, converged));
             }
         }
+        if self.has_more() {
+            self.all.set(true);
+            all = self.take_all_in(&all, &stop);
+        }
+        if all.is_empty() {
+            return Vec::new();
+        }
         all.sort_by(|a, b| a.1.total_cmp(&b.1));
         let least = all[0].1;
         all.retain(|(_, cost, _)| cost - least < 2.0 * WITHIN);
         all.iter()
             .filter_map(|(point, _, converged)| self.fit_of_body(point, *converged))
             .collect()
+    }
+
+    /// The maxima of the likelihood of all sensors that are near those of the gyro alone.
+    fn take_all_in(&self, found: &[(Point, f64, bool)], stop: &Stop) -> Vec<(Point, f64, bool)> {
+        let n = self.rows();
+        let short = Stop {
+            passes: 10,
+            ..*stop
+        };
+        let mut all: Vec<(Point, f64, bool)> = Vec::new();
+        let mut triangles: Vec<Triangle> = Vec::new();
+        for (at, ..) in found {
+            let mut point = Point {
+                attitude: self.first_attitude(at),
+                ..*at
+            };
+            // A small error of the rate makes a large one of an attitude that is far.
+            let mut end = PIECE;
+            loop {
+                let rows = self.t.partition_point(|t| *t <= end);
+                if rows >= n {
+                    break;
+                }
+                if let Some((next, ..)) = self.refine(&point, rows.max(4), &short) {
+                    point = next;
+                }
+                end *= 2.0;
+            }
+            let mut next = self.refine(&point, n, stop);
+            // The sigma is that of the best maximum.
+            for _ in 0..if all.is_empty() { 50 } else { 0 } {
+                let Some((point, ..)) = &next else {
+                    break;
+                };
+                if self.set_sigma(point) < 1e-9 {
+                    break;
+                }
+                next = self.refine(&point.clone(), n, stop);
+            }
+            if self.stopped.get() {
+                return Vec::new();
+            }
+            let Some((point, linear, converged)) = next else {
+                continue;
+            };
+            let is_new = (all.iter().zip(&triangles))
+                .all(|((one, ..), triangle)| triangle.square(&self.between(one, &point)) > 0.1);
+            if is_new {
+                all.push((point, linear.cost, converged));
+                triangles.push(linear.triangle);
+            }
+        }
+        all
+    }
+
+    /// The attitude at the first time that a motion has beside the first one that was measured.
+    fn first_attitude(&self, at: &Point) -> UnitQuaternion<f64> {
+        let mut found = UnitQuaternion::identity();
+        let Some(attitude) = self.tumble.attitude else {
+            return found;
+        };
+        let first = attitude
+            .rows
+            .iter()
+            .position(|row| quaternion(row).is_some());
+        let Some((first, follower)) = first.zip(Follower::<0>::of(&self.spinning(at), &[])) else {
+            return found;
+        };
+        let mut follower = follower.with_attitude();
+        let axes = UnitQuaternion::from_matrix(&follower.axes);
+        let start = Place::start(at.omega);
+        follower.run(
+            &start,
+            (0.0, self.t[first]),
+            &self.t[first..=first],
+            |sample| {
+                if let Some((measured, turn)) = quaternion(&attitude.rows[first]).zip(sample.turn) {
+                    found =
+                        measured * (axes * relative(&turn.quaternion) * axes.inverse()).inverse();
+                }
+                ControlFlow::Continue(())
+            },
+        );
+        found
     }
 
     /// Starts with other tensors than a fit has: the estimates that are left, and pairs of moments exchanged, where the motion is on the
@@ -965,12 +1215,16 @@ impl<'a> Scaled<'a> {
             &elements,
             Some(&mut residuals),
         )?;
-        let unknowns = linear.triangle.unknowns();
+        let (unknowns, layout) = (linear.triangle.unknowns(), self.layout(elements.len()));
         let by = |column: usize| {
+            // Of turns, scales and places, 1.
+            let of_rate = column < 3 || layout.bias.is_some_and(|b| (b..b + 3).contains(&column));
             if (3..9).contains(&column) {
                 self.unit
-            } else {
+            } else if of_rate {
                 self.rate
+            } else {
+                1.0
             }
         };
         let triangle = (0..unknowns)
@@ -985,11 +1239,15 @@ impl<'a> Scaled<'a> {
             + residuals
                 .iter()
                 .map(|r| Vector3::from(*r).norm_squared())
+                .filter(|square| !square.is_nan())
                 .sum::<f64>();
         Some(Fit {
             omega: (at.omega * self.rate).into(),
             inertia: ELEMENTS.map(|place| at.inertia[place] * self.unit),
             bias: (at.bias * self.rate).into(),
+            gyro_scale: at.scale.into(),
+            attitude: at.attitude.into_inner().coords.into(),
+            place: at.place.into(),
             sigma: self.sigma.get().map(|x| x * self.rate),
             cost: linear.cost,
             chi2,
@@ -1002,27 +1260,149 @@ impl<'a> Scaled<'a> {
 
     /// The step that leads from one point to another.
     fn between(&self, from: &Point, to: &Point) -> Vec<f64> {
-        let (change, bias) = (to.inertia - from.inertia, to.bias - from.bias);
+        let directions = self.directions();
+        let (change, layout) = (to.inertia - from.inertia, self.layout(directions.len()));
         let mut step: Vec<f64> = (to.omega - from.omega).iter().copied().collect();
-        step.extend(self.directions().iter().map(|one| one.dot(&change)));
-        if self.has_bias() {
-            step.extend(bias.iter());
+        step.extend(directions.iter().map(|one| one.dot(&change)));
+        let turn = (from.attitude.inverse() * to.attitude).scaled_axis();
+        for (first, change) in [
+            (layout.bias, to.bias - from.bias),
+            (layout.scale, to.scale - from.scale),
+            (layout.attitude, turn),
+            (layout.place, to.place - from.place),
+        ] {
+            if first.is_some() {
+                step.extend(change.iter());
+            }
         }
         step
     }
 }
 
-/// Return the point after a step.
-fn step_from(at: &Point, step: &[f64], directions: &[Matrix3<f64>]) -> Point {
-    let mut next = *at;
-    for i in 0..3 {
-        next.omega[i] += step[i];
+/// The attitude of a row that has one.
+fn quaternion(row: &[f64; 4]) -> Option<UnitQuaternion<f64>> {
+    let [x, y, z, w] = *row;
+    let found = Quaternion::new(w, x, y, z);
+    (found.norm().is_finite() && found.norm() > 0.0).then(|| UnitQuaternion::from_quaternion(found))
+}
+
+fn relative(turn: &[f64; 4]) -> UnitQuaternion<f64> {
+    let [x, y, z, w] = *turn;
+    UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z))
+}
+
+/// The rows of the sensors beside the gyro, at a place.
+struct Others<'a, const C: usize> {
+    log: &'a Scaled<'a>,
+    at: &'a Point,
+    layout: Layout,
+    axes: Matrix3<f64>,
+    /// The same rotation.
+    turned: UnitQuaternion<f64>,
+    /// I⁻¹.
+    inverse: Matrix3<f64>,
+    spinning: Spinning,
+    directions: &'a [Matrix3<f64>],
+}
+
+impl<const C: usize> Others<'_, C> {
+    /// Add the rows at a time, and return what they cost.
+    fn take(
+        &self,
+        sample: &Sample<'_, C>,
+        triangle: &mut Triangle,
+        mut rests: Option<&mut Vec<[f64; 3]>>,
+    ) -> f64 {
+        let mut cost = 0.0;
+        let tumble = self.log.tumble;
+        if let Some(sensor) = tumble.attitude {
+            let found = self.of_attitude(sample, &sensor.rows[sample.row]);
+            cost += self.add(found, &sensor.sigma, triangle, rests.as_deref_mut());
+        }
+        if let Some(sensor) = tumble.specific_force {
+            let found = self.of_force(sample, &sensor.rows[sample.row]);
+            let square = self.log.rate.powi(2);
+            let sigma = sensor.sigma.map(|x| x / square);
+            cost += self.add(found, &sigma, triangle, rests);
+        }
+        cost
     }
-    for (x, direction) in step[3..].iter().zip(directions) {
-        next.inertia += direction * *x;
+
+    /// Measured minus predicted, and its derivatives, from a row of attitudes.
+    fn of_attitude(&self, sample: &Sample<'_, C>, row: &[f64; 4]) -> Option<Rests> {
+        let (measured, turn) = (quaternion(row)?, sample.turn?);
+        let turned = self.turned * relative(&turn.quaternion) * self.turned.inverse();
+        let rest = ((self.at.attitude * turned).inverse() * measured).scaled_axis();
+        let inner = 3 + self.directions.len();
+        let mut columns = vec![Vector3::zeros(); self.layout.unknowns];
+        for (c, column) in columns[..inner].iter_mut().enumerate() {
+            *column = self.axes * Vector3::from_fn(|i, _| turn.columns[i][c]);
+        }
+        let by_first = turned.inverse().to_rotation_matrix();
+        for i in 0..3 {
+            columns[self.layout.attitude? + i] = by_first.matrix().column(i).into_owned();
+        }
+        Some(Rests { rest, columns })
     }
-    for (i, x) in step[3 + directions.len()..].iter().enumerate() {
-        next.bias[i] += x;
+
+    /// The same of the specific force: f = ω̇ × r + ω × (ω × r).
+    fn of_force(&self, sample: &Sample<'_, C>, row: &[f64; 3]) -> Option<Rests> {
+        if !row.iter().all(|x| x.is_finite()) {
+            return None;
+        }
+        let measured = Vector3::from(*row) / self.log.rate.powi(2);
+        let (body, r) = (&self.spinning, self.at.place);
+        let omega = self.axes * Vector3::from(*sample.omega);
+        let inverse = &self.inverse;
+        let momentum = body.inertia * omega + body.momentum;
+        let alpha = inverse * (body.torque - omega.cross(&momentum));
+        let rest = measured - alpha.cross(&r) - omega.cross(&omega.cross(&r));
+        let mut columns = vec![Vector3::zeros(); self.layout.unknowns];
+        for c in 0..3 + self.directions.len() {
+            let change = self.axes * Vector3::from_fn(|i, _| sample.columns[i][c]);
+            let mut torque = -change.cross(&momentum) - omega.cross(&(body.inertia * change));
+            if c >= 3 {
+                let by = self.directions[c - 3];
+                torque -= by * alpha + omega.cross(&(by * omega));
+            }
+            columns[c] = (inverse * torque).cross(&r)
+                + change.cross(&omega.cross(&r))
+                + omega.cross(&change.cross(&r));
+        }
+        for i in 0..3 {
+            let axis = Vector3::ith(i, 1.0);
+            columns[self.layout.place? + i] = alpha.cross(&axis) + omega.cross(&omega.cross(&axis));
+        }
+        Some(Rests { rest, columns })
     }
-    next
+
+    fn add(
+        &self,
+        found: Option<Rests>,
+        sigma: &[f64; 3],
+        triangle: &mut Triangle,
+        rests: Option<&mut Vec<[f64; 3]>>,
+    ) -> f64 {
+        let weights = Vector3::from(sigma.map(f64::recip));
+        let expected = rests.is_some();
+        let own = found.as_ref().map(|one| one.rest.component_mul(&weights));
+        if let Some(rests) = rests {
+            rests.push(own.map_or([f64::NAN; 3], Into::into));
+        }
+        let Some((Rests { columns, .. }, rest)) = found.zip(own) else {
+            return 0.0;
+        };
+        let (cost, root) = self.log.loss(rest.norm_squared(), expected);
+        for i in 0..3 {
+            let row = columns.iter().map(|column| column[i] * weights[i] * root);
+            triangle.push(row, rest[i] * root);
+        }
+        cost
+    }
+}
+
+/// Measured minus predicted, and the derivatives of what is predicted.
+struct Rests {
+    rest: Vector3<f64>,
+    columns: Vec<Vector3<f64>>,
 }

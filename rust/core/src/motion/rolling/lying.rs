@@ -23,6 +23,7 @@ use super::contact::{RollingState, TOUCHES, pressing};
 use super::ruled::{Kind, RuledSurface};
 use crate::error::{Error, MotionFault};
 use crate::mass::RigidBody;
+use crate::motion::attitude::shortest_turn;
 use crate::motion::heavy_top::{HeavyTop, PivotedTop};
 
 /// How far a body may roll, in radians: beyond, no digit of the angle is left.
@@ -309,7 +310,7 @@ fn lie(
         };
         let about_y = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), -aim.z.atan2(aim.x));
         // From the axis to x, and on to where it is to be.
-        let to_x = UnitQuaternion::rotation_between(&axis, &Vector3::x()).unwrap_or_else(|| {
+        let to_x = shortest_turn(&axis, &Vector3::x()).unwrap_or_else(|| {
             UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::PI)
         });
         return Ok(about_y * to_x);

@@ -19,6 +19,7 @@ use super::equations::{ContactState, Equations, Motion};
 use super::surface::{Surface, axes_of};
 use crate::error::{Error, MotionFault, all_finite, finite};
 use crate::mass::RigidBody;
+use crate::motion::attitude::shortest_turn;
 use crate::numerics::jet::Jet;
 use crate::principal::SymmetricTop;
 
@@ -282,9 +283,9 @@ pub fn steady(
         let pressed = lift.dot(&normal);
         Steady {
             omega,
-            attitude: UnitQuaternion::rotation_between(&normal, &Vector3::z()).unwrap_or_else(
-                || UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI),
-            ),
+            attitude: shortest_turn(&normal, &Vector3::z()).unwrap_or_else(|| {
+                UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI)
+            }),
             turn,
             spin,
             radius: (axis.cross(&arm) * spin).norm() / turn.abs(),

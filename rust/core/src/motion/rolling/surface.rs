@@ -1,9 +1,10 @@
 //! A convex surface in the body: where it touches a plane, and how it is curved there.
 
-use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
+use nalgebra::{Matrix3, Unit, Vector3};
 
 use super::{disk, ellipsoid, paraboloid, sphere, torus};
 use crate::error::{Error, all_finite, finite};
+use crate::motion::attitude::shortest_turn;
 use crate::numerics::power_series::{Arithmetic, transformed};
 
 /// How near the axis of a disk or torus may come to the normal of the plane, as the sine of the angle between them: nearer it lies
@@ -357,8 +358,8 @@ fn axes_about(axis: &Vector3<f64>) -> Result<Matrix3<f64>, Error> {
 
 /// Return the identity turned on the shortest way so that its third axis is `axis`.
 pub(super) fn axes_of(axis: &Unit<Vector3<f64>>) -> Matrix3<f64> {
-    match Rotation3::rotation_between(&Vector3::z(), axis) {
-        Some(turn) => turn.into_inner(),
+    match shortest_turn(&Vector3::z(), axis) {
+        Some(turn) => turn.to_rotation_matrix().into_inner(),
         None => Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)),
     }
 }
