@@ -48,6 +48,7 @@ GROUP = 6
 """Motions of one kind of surface that are computed side by side."""
 LEAST_MARGIN = 0.05
 """Motions that come nearer to lying flat, or to the rim of their surface, are left out."""
+KINDS = ("sphere", "ellipsoid", "disk", "torus", "paraboloid")
 SHORT, LONGER = 50, 70
 """How many motions are drawn of less than about 5 rotations, and of 5 to 60; some are not known."""
 SLIPPING, LONGER_SLIPPING = 50, 40
@@ -285,7 +286,7 @@ class Extended:
         for name, value in list(vars(self).items()):
             if isinstance(value, np.ndarray):
                 setattr(self, name, np.concatenate([value, value]))
-        self.start[len(self.start) // 2 :, :7] += move * LONG([0.3, -0.5, 0.4, 0.6, 0.5, -0.6, 0.7])
+        self.start[len(self.start) // 2 :, :7] += move * np.array([0.3, -0.5, 0.4, 0.6, 0.5, -0.6, 0.7], LONG)
 
     def rates(self, state: Wide) -> Wide:
         """Return the rates of (q, ω in space, C); that of the contact by a complex step."""
@@ -487,7 +488,7 @@ def motion(case: dict[str, Any], steps: int = 256) -> Wide:
 
 def draw(number: int, rng: random.Random) -> dict[str, Any]:
     """Draw a case: every surface in turn, every second plane tilted, every third a turntable."""
-    kind = ("sphere", "ellipsoid", "disk", "torus", "paraboloid")[number % 5]
+    kind = KINDS[number % 5]
 
     def near(size: float, *middle: float) -> list[float]:
         return [x + size * rng.uniform(-1, 1) for x in middle]
@@ -547,6 +548,12 @@ def longer(number: int, count: int, rng: random.Random, least: float = 5.0) -> d
     return case | {"t": t, "normal": [*tilt, case["normal"][2]]}
 
 
+def is_body(case: dict[str, Any]) -> bool:
+    """Return whether some distribution of mass has these moments."""
+    moments = np.linalg.eigvalsh(np.array(case["inertia"]))
+    return bool(moments[2] < moments[0] + moments[1])
+
+
 def rotations_of(case: dict[str, Any]) -> float:
     return float(case["t"] * math.hypot(*case["omega"]) / (2 * math.pi))
 
@@ -567,7 +574,7 @@ def slipping(number: int, case: dict[str, Any], rng: random.Random) -> dict[str,
     return case | {"friction": friction, "velocity": velocity}
 
 
-def known(drawn: list[dict[str, Any]], kind: type[Extended]) -> None:
+def add_ends(drawn: list[dict[str, Any]], kind: type[Extended]) -> None:
     """Add the ends of cases with one kind of surface, as far as they are known.
 
     A case beside each, whose start is turned and spun up a little, shows how much changes of the start grow.
@@ -599,7 +606,7 @@ def known(drawn: list[dict[str, Any]], kind: type[Extended]) -> None:
 
 
 def main() -> None:
-    """Write the tables, or the one that is named, which takes most of an hour."""
+    """Write the tables, or the one that is named, which takes half an hour each."""
     for name in sys.argv[1:] or ("rolling", "sliding"):
         rng = random.Random(47)
         if name == "rolling":
@@ -613,10 +620,11 @@ def main() -> None:
             # Half the spin is left of these.
             more = [longer(number, LONGER_SLIPPING, rng, 10.0) for number in range(LONGER_SLIPPING)]
             drawn += [slipping(number, case, rng) for number, case in enumerate(more)]
-        for kind in range(5):
-            alike = sorted(drawn[kind::5], key=rotations_of)
+        for kind in KINDS:
+            alike = [case for case in drawn if case["surface"]["kind"] == kind and is_body(case)]
+            alike.sort(key=rotations_of)
             for first in range(0, len(alike), GROUP):
-                known(alike[first : first + GROUP], Extended if name == "rolling" else ExtendedSliding)
+                add_ends(alike[first : first + GROUP], Extended if name == "rolling" else ExtendedSliding)
             found = [case for case in drawn if "end" in case]
             (TABLES / f"{name}.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
 

@@ -203,7 +203,7 @@ struct Scaled<'a> {
 /// use std::ops::ControlFlow;
 /// use polhode::RigidBody;
 /// use polhode::motion::free::FreeMotion;
-/// use polhode::motion::identification::{Bias, Fit, Tumble, fit_tumble, information};
+/// use polhode::motion::identification::{Bias, Fit, Sensor, Tumble, fit_tumble, information};
 /// use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
 ///
 /// let tensor = Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45));
@@ -211,6 +211,10 @@ struct Scaled<'a> {
 /// let motion = FreeMotion::of(&body, &Vector3::new(1.0, 2.0, 0.5), &UnitQuaternion::identity())?;
 /// let t: Vec<f64> = (0..300).map(|i| 0.02 * f64::from(i)).collect();
 /// let omega: Vec<[f64; 3]> = t.iter().map(|&t| motion.at(t).omega.into()).collect();
+/// let seen: Vec<[f64; 4]> = t
+///     .iter()
+///     .map(|&t| motion.at(t).attitude.into_inner().coords.into())
+///     .collect();
 /// let tumble = Tumble {
 ///     t: &t,
 ///     omega: &omega,
@@ -219,7 +223,7 @@ struct Scaled<'a> {
 ///     momentum: [0.0; 3],
 ///     torque: [0.0; 3],
 ///     prior: None,
-///     attitude: None,
+///     attitude: Some(Sensor { rows: &seen, sigma: [1e-2; 3] }),
 ///     specific_force: None,
 ///     gyro_scale: false,
 ///     student: false,
@@ -973,7 +977,7 @@ impl<'a> Scaled<'a> {
                 found = some
                     .join(start, count, JOINS)
                     .and_then(|(point, _)| self.refine(&point, n, &stop))
-                    .filter(|(_, linear, _)| linear.cost < 2.0 * usual);
+                    .filter(|(_, linear, converged)| *converged && linear.cost < 2.0 * usual);
             }
             if found.is_none() && !some.stopped.get() {
                 let joined = self.join(start, n, JOINS);
