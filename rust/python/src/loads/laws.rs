@@ -3,8 +3,8 @@
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::Error;
 use polhode::motion::loads::{
-    AttitudeTarget, Damping, Feedback, GravityGradient, Magnetic, MagneticField, Rotor, Sampled,
-    Slug, Term,
+    AttitudeTarget, Damping, Feedback, GravityGradient, Magnetic, MagneticField, Moment, Rotor,
+    Sampled, Slug, Term,
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -15,6 +15,7 @@ use super::callbacks::{self, Callback, ReturnKind, WithStates, check_name};
 use super::load::{LoadPart, PyLoad, schedule_load};
 use super::pickle_recipe::recipe;
 use super::registry::register;
+use super::wheel::controller_terms;
 use crate::arrays::{
     as_array, list_floats, read, read_scalar, samples, try_rows, try_series, write, write_of,
 };
@@ -274,8 +275,10 @@ register!(GravityGradient by gravity_gradient);
 ///
 /// Parameters
 /// ----------
-/// dipole : array_like, shape (..., 3)
-///     Magnetic moment that is fixed in the body, components in the body frame.
+/// dipole : array_like, shape (..., 3) or (..., n, 3), or Load
+///     Magnetic moment in the body frame, of a magnet or of coils: constant; known at `dipole_times`, where each value
+///     holds until the next time; or a controller, as :func:`wheel` takes it. Of the torque N that the
+///     controller asks for the coils exert the part across the field: ``m = B × N/|B|**2``.
 /// field : array_like, shape (..., 3) or (..., n, 3), or DipoleField
 ///     B, components in space: uniform; known at `times`, with a cubic spline in between; or along an orbit,
 ///     as :meth:`polhode.orbits.Orbit.dipole_field` makes it.
@@ -284,6 +287,11 @@ register!(GravityGradient by gravity_gradient);
 ///     body frame. It slows the rotation of the body down.
 /// times : array_like, shape (n,), optional
 ///     Times of `field`, ascending.
+/// dipole_times : array_like, shape (n,), optional
+///     Times of `dipole`, ascending.
+/// max_dipole : float or array_like, shape (..., 3), optional
+///     Largest moment of the three coils, along the axes of the body frame: each component of m is clipped to it.
+///     :meth:`polhode.Event.dipole_limit` finds when that begins and ends. Coils along other axes are loads of their own.
 ///
 /// Returns
 /// -------
@@ -306,27 +314,74 @@ register!(GravityGradient by gravity_gradient);
 /// >>> quarter = needle.simulate([0, period / 4], (0, 0, 0), (0, 0, 1e-4, 1), load=earth)
 /// >>> bool(abs(quarter.quaternion[-1, 2]) < 1e-11)
 /// True
+///
+/// Three coils of 0.2 A m² damp a rotation. The part along the field stays:
+///
+/// >>> satellite = RigidBody.from_principal(10.0, (0.3, 0.4, 0.5))
+/// >>> coils = loads.magnetic(loads.feedback(K=0, D=1e-3), field=(0, 0, 4e-5), max_dipole=0.2)
+/// >>> satellite.simulate([0, 1e5], (0.03, 0, 0), load=coils).omega[-1].round(6) + 0.0
+/// array([0., 0., 0.])
 #[pyfunction]
-#[pyo3(signature = (dipole, field, *, gain=None, times=None))]
+#[pyo3(signature = (dipole, field, *, gain=None, times=None, dipole_times=None, max_dipole=None))]
 pub(crate) fn magnetic(
     py: Python<'_>,
     dipole: &Bound<'_, PyAny>,
     field: &Bound<'_, PyAny>,
     gain: Option<&Bound<'_, PyAny>>,
     times: Option<&Bound<'_, PyAny>>,
+    dipole_times: Option<&Bound<'_, PyAny>>,
+    max_dipole: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyLoad> {
-    let moments: Stack<Vector3<f64>> = read(dipole, "dipole")?;
+    let controller = dipole.cast::<PyLoad>().ok();
+    let moments: Stack<(Moment, Vec<Term>)> = match (&controller, dipole_times) {
+        (Some(load), None) => controller_terms(py, load.get())?
+            .map(py, |row| (Moment::Commanded(1.0), row.clone()))?,
+        (Some(_), Some(_)) => {
+            return Err(PyTypeError::new_err(
+                "dipole_times: not beside a controller; loads.schedule(...) makes one that acts at times",
+            ));
+        }
+        (None, Some(times)) => {
+            let (times, values) = samples([times, dipole], ["dipole_times", "dipole"])?;
+            try_series(py, &values, |series, _| {
+                Ok((Moment::table(&times, series)?, Vec::new()))
+            })?
+        }
+        (None, None) => {
+            let moments: Stack<Vector3<f64>> = read(dipole, "dipole")?;
+            moments.map(py, |moment| (Moment::Fixed(*moment), Vec::new()))?
+        }
+    };
     let gains: Stack<Option<f64>> = match gain {
         None => Stack::one(None),
         Some(gain) => read::<f64>(gain, "gain")?.map(py, |&gain| Some(gain))?,
     };
+    let limits: Stack<Option<Vector3<f64>>> = match max_dipole {
+        None => Stack::one(None),
+        Some(given) => vectors(given, "max_dipole")?.map(py, |most| Some(*most))?,
+    };
     let fields = fields(py, field, times)?;
-    let shapes = [&moments.shape[..], &gains.shape, &fields.shape];
-    let grid = Broadcast::of(["dipole", "gain", "field"], shapes)?;
-    let terms = grid.try_map(py, |[d, k, b]| {
-        Magnetic::new(&moments[d], gains[k], fields[b].clone()).map(Term::Magnetic)
+    let shapes = [
+        &moments.shape[..],
+        &gains.shape,
+        &fields.shape,
+        &limits.shape,
+    ];
+    let grid = Broadcast::of(["dipole", "gain", "field", "max_dipole"], shapes)?;
+    let is_controlled = controller.is_some();
+    let terms = grid.try_map(py, |[d, k, b, l]| {
+        let (moment, asks) = moments[d].clone();
+        let mut coils = Magnetic::of(moment, gains[k], fields[b].clone())?;
+        if let Some(most) = &limits[l] {
+            coils = coils.with_max_dipole(most)?;
+        }
+        if is_controlled {
+            Term::controlled_coils(coils, asks)
+        } else {
+            Ok(Term::Magnetic(coils))
+        }
     })?;
-    // Arrays are copied; a field along an orbit never changes.
+    // Arrays are copied; a field along an orbit never changes, nor does a controller.
     let numpy = crate::arrays::numpy(py)?;
     let kept = |given: &Bound<'_, PyAny>| -> PyResult<Py<PyAny>> {
         Ok(numpy.call_method1("array", (given, "float64"))?.unbind())
@@ -336,12 +391,24 @@ pub(crate) fn magnetic(
     } else {
         kept(field)?
     };
+    let dipole = if controller.is_some() {
+        dipole.clone().unbind()
+    } else {
+        kept(dipole)?
+    };
     let options = PyDict::new(py);
     options.set_item("gain", gain.map(&kept).transpose()?)?;
-    options.set_item("times", times.map(kept).transpose()?)?;
-    let arguments = (write(py, &moments)?, field, options);
-    let recipe = recipe(py, "magnetic", arguments)?;
-    Ok(PyLoad::one(LoadPart::Term(terms), recipe))
+    options.set_item("times", times.map(&kept).transpose()?)?;
+    options.set_item("dipole_times", dipole_times.map(&kept).transpose()?)?;
+    options.set_item("max_dipole", max_dipole.map(kept).transpose()?)?;
+    let recipe = recipe(py, "magnetic", (dipole, field, options))?;
+    let mut load = PyLoad::one(LoadPart::Term(terms), recipe);
+    if let Some(controller) = controller.filter(|one| !one.get().is_analytic())
+        && let Some(part) = load.parts.first_mut()
+    {
+        part.controller = Some(controller.clone().unbind());
+    }
+    Ok(load)
 }
 
 register!(Magnetic by magnetic);
@@ -827,6 +894,19 @@ pub(crate) fn schedule(
     windows: &Bound<'_, PyAny>,
 ) -> PyResult<PyLoad> {
     schedule_load(py, load.get(), windows)
+}
+
+/// Vectors (..., 3), or a number for all components.
+fn vectors(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Stack<Vector3<f64>>> {
+    let is_number = as_array(object, name)?
+        .getattr("ndim")?
+        .extract::<usize>()?
+        == 0;
+    if !is_number {
+        return read(object, name);
+    }
+    let number: Stack<f64> = read(object, name)?;
+    number.map(object.py(), |&x| Vector3::repeat(x))
 }
 
 /// Matrices (..., 3, 3), or a number times the identity.

@@ -37,15 +37,37 @@ impl<E> Run<E> {
             load.enter(from, to)?; // where the functions of events are looked at first
         }
         let (start, end) = (task.times[0], bounds[bounds.len() - 1]);
-        let over_limit = |state| load.over_limit(state, start, &task.initial);
+        let over_limit = |wheel| load.over_limit(wheel, start, &task.initial);
         let mut detector =
             EventDetector::new(events, start, &task.initial, end - start, &over_limit)?;
         let mut carry = Carry::default();
-        for pair in bounds.windows(2) {
-            let [mut from, to] = [pair[0], pair[1]];
+        // The ends of the spans to come, the next one last: what the load does at the start of a span may cut it.
+        let mut ends: Vec<f64> = bounds.iter().skip(1).rev().copied().collect();
+        let mut begin = start;
+        while let Some(mut to) = ends.pop() {
+            let mut from = begin;
+            let fired = load.firing(from, true, &self.phase);
             load.enter(from, to)?;
             load.jump(from, &mut self.phase)?;
+            if let Some(&cut) = load.cuts(from, to, &self.phase).first() {
+                ends.push(to);
+                to = cut;
+                load.enter(from, to)?;
+            }
+            begin = to;
             load.settle(from, &self.phase);
+            let mut is_last = false;
+            for (before, (state, fires)) in
+                fired.into_iter().zip(load.firing(from, false, &self.phase))
+            {
+                if before.1 != fires {
+                    is_last |= detector.note_pulse(state, fires, from, &self.phase);
+                }
+            }
+            if is_last {
+                self.crossings = detector.crossings;
+                return Ok(End::Event);
+            }
             // Where the law of the load changes with the state, by what.
             let mut flip: Option<(LawSwitch, f64)> = None;
             let mut flips_at_once = 0_usize;
