@@ -145,6 +145,7 @@ __all__ = [
     "surface_sphere",
     "surface_torus",
     "tetrahedron",
+    "thrusters",
     "to_log_cholesky",
     "to_parameters",
     "to_positive_products",
@@ -862,6 +863,19 @@ def local_frames(orbit: object, t: ArrayLike) -> tuple[_Floats, _Floats]: ...
 def sampled_states(times: ArrayLike, position: ArrayLike, t: ArrayLike) -> tuple[_Floats, _Floats]: ...
 
 # loads: written by rust/python/declared.py
+def thrusters(
+    positions: ArrayLike,
+    directions: ArrayLike,
+    forces: ArrayLike,
+    *,
+    command: ArrayLike | _WithStates,
+    period: float,
+    min_on: float | None = None,
+    max_on: float | None = None,
+    deadband: float | None = None,
+    times: ArrayLike | None = None,
+    name: str = "thrusters",
+) -> Load: ...
 def feedback(
     K: ArrayLike,  # noqa: N803
     D: ArrayLike,  # noqa: N803
@@ -878,11 +892,13 @@ def gravity_gradient(
     epoch: float | None = None,
 ) -> Load: ...
 def magnetic(
-    dipole: ArrayLike,
+    dipole: ArrayLike | Load,
     field: ArrayLike | DipoleField,
     *,
     gain: ArrayLike | None = None,
     times: ArrayLike | None = None,
+    dipole_times: ArrayLike | None = None,
+    max_dipole: ArrayLike | None = None,
 ) -> Load: ...
 def torque_callback(function: Callable[[float, _Floats, _Floats], ArrayLike]) -> Load: ...
 def callback(

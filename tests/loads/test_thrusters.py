@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import pickle
 from typing import Any
 
@@ -17,7 +18,9 @@ ARM, FORCE, I3 = 0.4, 0.3, 2.5
 PAIR: Any = ([(ARM, 0, 0), (ARM, 0, 0)], [(0, 1, 0), (0, -3, 0)])
 TIGHT: Any = {"method": "DOP853", "rtol": 3e-14, "atol": 1e-14}
 
-PLACES = np.array([(1.0, 0.2, 0), (-1.0, 0.1, 0.3), (0, 1.0, -0.2), (0.1, -1.0, 0), (0.3, 0, 1.0), (0, 0.2, -1.0)])
+PLACES = np.array(
+    [(1.0, 0.2, 0), (-1.0, 0.1, 0.3), (0, 1.0, -0.2), (0.1, -1.0, 0), (0.3, 0, 1.0), (0, 0.2, -1.0)]
+)
 ALONG = np.array([(0, 1.0, 0.2), (0.1, 1.0, 0), (0, 0.3, 1.0), (0.2, 0, -1.0), (1.0, 0, 0), (-1.0, 0.4, 0)])
 UNIT = ALONG / np.linalg.norm(ALONG, axis=1, keepdims=True)
 FORCES = np.array([0.2, 0.3, 0.25, 0.15, 0.3, 0.2])
@@ -41,7 +44,9 @@ class TestClosedForms:
         run = PLAIN.simulate(t, (0, 0, 0), load=load, events=[Event.pulse(0), Event.pulse(1)])
         fired = np.array([0.0, 0.25, 0.25, 0.25, 0.45, 1.25])
         assert run.omega[:, 2] == pytest.approx(ARM * FORCE / I3 * fired, abs=1e-14)
-        assert run.states["thrusters"] == pytest.approx(np.column_stack([FORCE * fired, 0 * fired]), abs=1e-14)
+        assert run.states["thrusters"] == pytest.approx(
+            np.column_stack([FORCE * fired, 0 * fired]), abs=1e-14
+        )
         assert np.array_equal(pulses(run), np.sort(np.concatenate([np.arange(5.0), np.arange(5) + 0.25])))
         assert not len(pulses(run, 1))
 
@@ -109,7 +114,7 @@ class TestClosedForms:
             assert run.states["thrusters"][-1, 0] == pytest.approx(fires * 2 * 0.6 * FORCE, abs=1e-14)
 
     def test_a_sampled_controller(self) -> None:
-        """It asks at the start of each period for the duty that takes the rate away, as far as one period can."""
+        """Its duty takes the rate away, as far as one period can."""
         calls: list[float] = []
 
         def command(t: float, omega: np.ndarray, *_: Any) -> Any:
@@ -128,7 +133,7 @@ class TestClosedForms:
         assert run.states["thrusters"][-1, 1] * ARM == pytest.approx(0.2 * I3, abs=1e-12)
 
     def test_a_limit_cycle_of_a_deadband(self) -> None:
-        """With a torque from outside, a thruster fires when the controller sees a rate above its threshold."""
+        """Under a torque from outside a thruster fires when the controller sees too high a rate."""
         push = 0.02
 
         def command(_t: float, omega: np.ndarray, *_: Any) -> Any:
@@ -171,7 +176,7 @@ def by_pieces(body: RigidBody, law: Any, period: float, count: int, min_on: floa
         impulse += length * FORCES
         edges = np.unique(np.concatenate([[0, period], length]))
         switches.append(length)
-        for low, high in zip(edges[:-1], edges[1:], strict=True):
+        for low, high in itertools.pairwise(edges):
             thrust = (UNIT * FORCES[:, None])[length > low]
             push, turn = thrust.sum(axis=0), np.cross(arms[length > low], thrust).sum(axis=0)
 
@@ -303,18 +308,22 @@ class TestEvents:
 
     def test_refused(self) -> None:
         load = one(command=[0.25, 0])
-        with pytest.raises(ValueError, match="asks for the thruster 2 of 'thrusters', which has those from 0 to 1|thruster 2"):
+        with pytest.raises(ValueError, match="the thruster 2 of .*, which has those from 0 to 1"):
             PLAIN.simulate([0, 1], (0, 0, 0), load=load, events=Event.pulse(2))
         with pytest.raises(ValueError, match="asks for thrusters with the name"):
             PLAIN.simulate([0, 1], (0, 0, 0), load=load, events=Event.pulse(0, "jets"))
         with pytest.raises(ValueError, match="asks for thrusters with the name"):
-            PLAIN.simulate([0, 1], (0, 0, 0), load=loads.wheel((0, 0, 1), 0.1), events=Event.pulse(0, "wheel"))
+            PLAIN.simulate(
+                [0, 1], (0, 0, 0), load=loads.wheel((0, 0, 1), 0.1), events=Event.pulse(0, "wheel")
+            )
 
 
 class TestAsALoad:
     def test_pickle_and_repr(self) -> None:
         for command in (Law(BODY), [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]):
-            load = loads.thrusters(PLACES, ALONG, FORCES, command=command, period=0.7, min_on=0.1, name="jets")
+            load = loads.thrusters(
+                PLACES, ALONG, FORCES, command=command, period=0.7, min_on=0.1, name="jets"
+            )
             again = pickle.loads(pickle.dumps(load))
             runs = [BODY.simulate([0, 2], OMEGA, ATTITUDE, load=one) for one in (load, again)]
             assert np.array_equal(runs[0].omega, runs[1].omega)
@@ -379,7 +388,7 @@ class TestAsALoad:
         with pytest.raises(PolhodeError, match="a motor exerts a torque alone"):
             loads.wheel((0, 0, 1), 0.1, torque=one(**good))
         for change in (lambda load: 2 * load, lambda load: loads.schedule(load, [(0, 1)])):
-            with pytest.raises(PolhodeError, match="cannot be|states"):
+            with pytest.raises(PolhodeError, match="states"):
                 change(one(**good))
 
     def test_refused_in_a_run(self) -> None:
@@ -389,7 +398,9 @@ class TestAsALoad:
             PLAIN.simulate([0, 1], (0, 0, 0), load=one(command=[[0.5, 0]], times=[0.5]))
         with pytest.raises(ValueError, match="expected 2, as many as there are thrusters, got 1"):
             PLAIN.simulate([0, 1], (0, 0, 0), load=one(command=lambda *_: [0.5]))
-        with pytest.raises(PolhodeError, match="duties that command returned must be finite, got nan at t = 0"):
+        with pytest.raises(
+            PolhodeError, match="duties that command returned must be finite, got NaN at t = 0"
+        ):
             PLAIN.simulate([0, 1], (0, 0, 0), load=one(command=lambda *_: [np.nan, 0]))
 
         def breaks(*_: Any) -> Any:

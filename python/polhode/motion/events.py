@@ -140,9 +140,9 @@ class Event:
 
     @classmethod
     def dipole_limit(cls, *, direction: float = 0.0, terminal: bool | int = False) -> Event:
-        """Make the event that the moment demanded of coils passes their limit, the `max_dipole` of `loads.magnetic`.
+        """Make the event that the moment demanded of coils passes their limit, `max_dipole`.
 
-        The coils saturate as long as one of the three does, of any load with a limit.
+        The coils saturate as long as one of the three does, of any :func:`polhode.loads.magnetic` with a limit.
 
         Parameters
         ----------
@@ -175,8 +175,8 @@ class Event:
     ) -> Event:
         """Make the event that a thruster is switched on or off.
 
-        These times are known at the start of each period, and are exact. A thruster that fires in two periods without a
-        pause is not switched in between.
+        These times are known at the start of each period, and are exact. A thruster that fires in two periods
+        without a pause is not switched in between.
 
         Parameters
         ----------
@@ -243,7 +243,9 @@ def after_event(events: Any, last: Any, number: int) -> Any:
 
 
 def _never_called(*_: Any) -> float:
-    raise TypeError("an event of a wheel, of coils or of a thruster is found by simulate, and has no function to call")
+    raise TypeError(
+        "an event of a wheel, of coils or of a thruster is found by simulate, and has no function to call"
+    )
 
 
 _KINDS: Final = np.array(["function", "lift-off", "slip", "roll", "landing", "rest"])
