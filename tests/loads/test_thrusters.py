@@ -308,7 +308,7 @@ class TestEvents:
 
     def test_refused(self) -> None:
         load = one(command=[0.25, 0])
-        with pytest.raises(ValueError, match="the thruster 2 of .*, which has those from 0 to 1"):
+        with pytest.raises(ValueError, match=r"the thruster 2 of .*, which has those from 0 to 1"):
             PLAIN.simulate([0, 1], (0, 0, 0), load=load, events=Event.pulse(2))
         with pytest.raises(ValueError, match="asks for thrusters with the name"):
             PLAIN.simulate([0, 1], (0, 0, 0), load=load, events=Event.pulse(0, "jets"))

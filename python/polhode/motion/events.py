@@ -142,7 +142,7 @@ class Event:
     def dipole_limit(cls, *, direction: float = 0.0, terminal: bool | int = False) -> Event:
         """Make the event that the moment demanded of coils passes their limit, `max_dipole`.
 
-        The coils saturate as long as one of the three does, of any :func:`polhode.loads.magnetic` with a limit.
+        The coils saturate as long as one of them does, of any :func:`polhode.loads.magnetic` with a limit.
 
         Parameters
         ----------

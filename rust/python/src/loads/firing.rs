@@ -1,22 +1,17 @@
-//! Thrusters as a part of a load, and the function that makes them, with its documentation.
+//! Thrusters as a part of a load, and what they are told.
 
-use nalgebra::Vector3;
 use numpy::PyUntypedArrayMethods;
-use polhode::motion::loads::{BodyAtPoint, PiecewiseSignal, Pulses, Thrusters, Wrench};
+use polhode::motion::loads::{BodyAtPoint, PiecewiseSignal, Thrusters, Wrench};
 use polhode::motion::state::Phase;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use pyo3::{PyTraverseError, PyVisit};
 
-use super::callbacks::{MOST_STATES, Named, arguments, check_name, numbers};
+use super::callbacks::{Named, arguments, numbers};
 use super::clock::Clock;
-use super::load::{LoadPart, PyLoad};
-use super::pickle_recipe::recipe;
-use crate::arrays::{floats, list_floats, numpy, read, read_list, read_scalar, write};
+use crate::arrays::{floats, list_floats};
 use crate::errors::to_py;
 use crate::shape::tuple;
-use crate::stack::Stack;
 
 /// Thrusters, and what they are told.
 pub(super) struct Firing {
@@ -37,6 +32,22 @@ enum Command {
 }
 
 impl Firing {
+    /// # Errors
+    /// Where `command` is neither a function nor duties of the right shape, for a period that is not positive.
+    pub(super) fn new(
+        thrusters: Thrusters,
+        command: &Bound<'_, PyAny>,
+        times: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        Ok(Self {
+            initial: thrusters.begin(),
+            scale: thrusters.sizes(),
+            clock: Clock::new(thrusters.pulses().period())?,
+            command: read_command(command, times, thrusters.count())?,
+            thrusters,
+        })
+    }
+
     pub(super) fn clone_ref(&self, py: Python<'_>) -> Self {
         Self {
             thrusters: self.thrusters.clone(),
@@ -166,155 +177,6 @@ impl Firing {
     }
 }
 
-/// Thrusters that fire in pulses: in each period from its start on, for a part of it.
-///
-/// Each exerts a force at a point of the body, so that it turns the body and pushes it. The duty of a thruster
-/// is the part of a period in which it fires, from 0 to 1. The duties are known at the start of a period, and
-/// with them the times at which the thrusters are switched off. A simulation ends a step at each switch, so the
-/// times are exact.
-///
-/// Parameters
-/// ----------
-/// positions : array_like, shape (n, 3)
-///     Points where the forces act, in the body frame. At most 25 thrusters.
-/// directions : array_like, shape (n, 3)
-///     Directions of the forces on the body, against the exhaust, in the body frame. The lengths do not count.
-/// forces : array_like, shape () or (n,)
-///     Force of a thruster that fires.
-/// command : array_like, shape (n,) or (k, n), or callable
-///     Duties. An array of shape (n,) is for all periods. Of an array of shape (k, n) each row is for the periods
-///     that start at the same one of `times`, or later. A function
-///     ``command(t, omega, quaternion, position, velocity, states)`` returns n numbers. It is called at the
-///     start of each period, with the arguments of the functions of :func:`with_states`. Duties below 0 count
-///     as 0, and those above 1 as 1.
-/// period : float
-///     Time from the start of one period to the next one. The first period starts with the motion.
-/// min_on : float, optional
-///     Shortest time for which a thruster can fire. If a pulse would be shorter, the thruster does not fire.
-/// max_on : float, optional
-///     Longest time for which a thruster can fire in a period; the period by default.
-/// deadband : float, optional
-///     With it the thrusters are on or off: one with a duty of `deadband` or more fires for `max_on`, one with
-///     less does not fire.
-/// times : array_like, shape (k,), optional
-///     Times of a `command` of shape (k, n), ascending.
-/// name : str, optional
-///     Name of the states.
-///
-/// Returns
-/// -------
-/// Load
-///     Its states in ``states`` of a trajectory are the impulses of the thrusters since the start, force times
-///     time of firing, shape (n,), under `name`; and the lengths of the pulses of the period under way under
-///     `name` with ``_pulse``.
-///
-/// Notes
-/// -----
-/// The mass of the propellant that a thruster has used is its impulse divided by its specific impulse (a
-/// speed; of a value in seconds, that times 9.80665 m/s²). The mass of the body does not change.
-///
-/// :meth:`polhode.Event.pulse` finds when a thruster is switched on and off.
-///
-/// Examples
-/// --------
-/// A pair of thrusters turns a satellite. A controller asks every 0.1 s for the torque ``-0.4 ω``, of which each
-/// thruster can do one sign:
-///
-/// >>> import numpy as np
-/// >>> from polhode import RigidBody, loads
-/// >>> body = RigidBody.from_principal(90.0, (8.0, 9.0, 10.0))
-/// >>> def duties(t, omega, *_):
-/// ...     return np.array([-0.4, 0.4]) * omega[2] / (0.5 * 0.02)
-/// >>> arms, along = [(0.5, 0, 0), (0.5, 0, 0)], [(0, 1, 0), (0, -1, 0)]
-/// >>> jets = loads.thrusters(arms, along, 0.02, command=duties, period=0.1, min_on=0.01)
-/// >>> motion = body.simulate([0, 120], omega=(0, 0, 0.05), load=jets)
-/// >>> bool(abs(motion.omega[-1, 2]) < 0.0026)
-/// True
-/// >>> impulse = motion.states["thrusters"][-1]
-/// >>> bool(np.isclose(0.5 * (impulse[1] - impulse[0]), 10.0 * (0.05 - motion.omega[-1, 2])))
-/// True
-/// >>> propellant = impulse.sum() / (70 * 9.80665)  # in kg, for a specific impulse of 70 s
-#[pyfunction]
-#[pyo3(signature = (positions, directions, forces, *, command, period, min_on=None, max_on=None, deadband=None, times=None,
-                   name="thrusters"))]
-#[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
-pub(crate) fn thrusters(
-    py: Python<'_>,
-    positions: &Bound<'_, PyAny>,
-    directions: &Bound<'_, PyAny>,
-    forces: &Bound<'_, PyAny>,
-    command: &Bound<'_, PyAny>,
-    #[pyo3(from_py_with = read_scalar)] period: f64,
-    #[pyo3(from_py_with = read_scalar)] min_on: Option<f64>,
-    #[pyo3(from_py_with = read_scalar)] max_on: Option<f64>,
-    #[pyo3(from_py_with = read_scalar)] deadband: Option<f64>,
-    times: Option<&Bound<'_, PyAny>>,
-    #[pyo3(from_py_with = read_scalar)] name: &str,
-) -> PyResult<PyLoad> {
-    check_name(name)?;
-    let at: Stack<Vector3<f64>> = read_list(positions, "positions", "n")?;
-    let along: Stack<Vector3<f64>> = read_list(directions, "directions", "n")?;
-    let count = at.rows.len();
-    let most = MOST_STATES / 2;
-    if count == 0 || count > most {
-        return Err(PyValueError::new_err(format!(
-            "positions: expected from 1 to {most} thrusters, got {count}; loads with more of them can be added"
-        )));
-    }
-    if along.rows.len() != count {
-        return Err(PyValueError::new_err(format!(
-            "directions: expected one for each of the {count} thrusters, got {}",
-            along.rows.len()
-        )));
-    }
-    let given: Stack<f64> = read(forces, "forces")?;
-    let each = match given.shape[..] {
-        [] => vec![given[0]; count],
-        [found] if found == count => given.rows.clone(),
-        _ => {
-            return Err(PyValueError::new_err(format!(
-                "forces: expected one number, or one for each of the {count} thrusters, got the shape {}",
-                tuple(&given.shape)
-            )));
-        }
-    };
-    let core = |error: &polhode::Error| to_py(py, error);
-    let pulses =
-        Pulses::new(period, min_on.unwrap_or(0.0), max_on, deadband).map_err(|e| core(&e))?;
-    let set = Thrusters::new(&at.rows, &along.rows, &each, pulses).map_err(|e| core(&e))?;
-    let told = read_command(command, times, count)?;
-    let firing = Firing {
-        initial: set.begin(),
-        scale: set.sizes(),
-        thrusters: set,
-        clock: Clock::new(period)?,
-        command: told,
-    };
-    let options = PyDict::new(py);
-    let copy = |given: &Bound<'_, PyAny>| -> PyResult<Py<PyAny>> {
-        let array = numpy(py)?.call_method1("array", (given, "float64"))?;
-        Ok(array.unbind())
-    };
-    if firing.calls_python() {
-        options.set_item("command", command)?;
-    } else {
-        options.set_item("command", copy(command)?)?;
-    }
-    options.set_item("period", period)?;
-    for (what, given) in [
-        ("min_on", min_on),
-        ("max_on", max_on),
-        ("deadband", deadband),
-    ] {
-        options.set_item(what, given)?;
-    }
-    options.set_item("times", times.map(copy).transpose()?)?;
-    options.set_item("name", name)?;
-    let arguments = (write(py, &at)?, write(py, &along)?, copy(forces)?, options);
-    let recipe = recipe(py, "thrusters", arguments)?;
-    Ok(PyLoad::one(LoadPart::Thrusters(firing), recipe).with_name(name))
-}
-
 /// A function, duties for all times, or a row of them for each of the times.
 fn read_command(
     command: &Bound<'_, PyAny>,
@@ -322,12 +184,6 @@ fn read_command(
     count: usize,
 ) -> PyResult<Command> {
     let py = command.py();
-    if command.is_instance_of::<PyLoad>() {
-        return Err(PyTypeError::new_err(
-            "command: a load asks for a torque, not for duties; give a function \
-             command(t, omega, quaternion, position, velocity, states) that returns the duty of each thruster",
-        ));
-    }
     if command.is_callable() {
         if times.is_some() {
             return Err(PyTypeError::new_err(

@@ -3,27 +3,30 @@
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::Error;
 use polhode::motion::loads::{
-    AttitudeTarget, Damping, Feedback, GravityGradient, Magnetic, MagneticField, Moment, Rotor,
-    Sampled, Slug, Term,
+    AttitudeTarget, Damping, Feedback, GravityGradient, Magnetic, MagneticField, Moment, Pulses,
+    Rotor, Sampled, Slug, Term, Thrusters,
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::address::Compiled;
-use super::callbacks::{self, Callback, ReturnKind, WithStates, check_name};
+use super::callbacks::{self, Callback, MOST_STATES, ReturnKind, WithStates, check_name};
+use super::firing::Firing;
 use super::load::{LoadPart, PyLoad, schedule_load};
 use super::pickle_recipe::recipe;
 use super::registry::register;
 use super::wheel::controller_terms;
 use crate::arrays::{
-    as_array, list_floats, read, read_scalar, samples, try_rows, try_series, write, write_of,
+    as_array, list_floats, read, read_list, read_scalar, samples, try_rows, try_series, write,
+    write_of,
 };
 use crate::attitudes::read_attitude;
 use crate::errors::to_py;
 use crate::interrupt::watched;
 use crate::kinematics::parse_frame;
 use crate::orbits::Orbits;
+use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
 
 // The function that makes the load of a controller.
@@ -139,7 +142,7 @@ fn aims(
                 "target: expected an attitude for each of the {} times, shape ({}, 4), got shape {}",
                 times.len(),
                 times.len(),
-                crate::shape::tuple(&[&samples.shape[..], &[4]].concat()),
+                tuple(&[&samples.shape[..], &[4]].concat()),
             )));
         }
         let aim = watched(py, |watch| {
@@ -440,6 +443,157 @@ fn fields(
     try_series(py, &values, |series, watch| {
         MagneticField::sampled_watched(&times, series, watch)
     })
+}
+
+// The function that makes thrusters.
+
+/// Thrusters that fire in pulses: in each period from its start on, for a part of it.
+///
+/// Each exerts a force at a point of the body, so that it turns the body and pushes it. The duty of a thruster
+/// is the part of a period in which it fires, from 0 to 1. The duties are known at the start of a period, and
+/// with them the times at which the thrusters are switched off. A simulation ends a step at each switch, so the
+/// times are exact.
+///
+/// Parameters
+/// ----------
+/// positions : array_like, shape (n, 3)
+///     Points where the forces act, in the body frame. At most 25 thrusters.
+/// directions : array_like, shape (n, 3)
+///     Directions of the forces on the body, against the exhaust, in the body frame. The lengths do not count.
+/// forces : array_like, shape () or (n,)
+///     Force of a thruster that fires.
+/// command : array_like, shape (n,) or (k, n), or callable
+///     Duties. An array of shape (n,) is for all periods. Of an array of shape (k, n) each row is for the periods
+///     that start at the same one of `times`, or later. A function
+///     ``command(t, omega, quaternion, position, velocity, states)`` returns n numbers. It is called at the
+///     start of each period, with the arguments of the functions of :func:`with_states`. Duties below 0 count
+///     as 0, and those above 1 as 1.
+/// period : float
+///     Time from the start of one period to the next one. The first period starts with the motion.
+/// min_on : float, optional
+///     Shortest time for which a thruster can fire. If a pulse would be shorter, the thruster does not fire.
+/// max_on : float, optional
+///     Longest time for which a thruster can fire in a period; the period by default.
+/// deadband : float, optional
+///     With it the thrusters are on or off: one with a duty of `deadband` or more fires for `max_on`, one with
+///     less does not fire.
+/// times : array_like, shape (k,), optional
+///     Times of a `command` of shape (k, n), ascending.
+/// name : str, optional
+///     Name of the states.
+///
+/// Returns
+/// -------
+/// Load
+///     Its states in ``states`` of a trajectory are the impulses of the thrusters since the start, force times
+///     time of firing, shape (n,), under `name`; and the lengths of the pulses of the period under way under
+///     `name` with ``_pulse``.
+///
+/// Notes
+/// -----
+/// The mass of the propellant that a thruster has used is its impulse divided by its specific impulse (a
+/// speed; of a value in seconds, that times 9.80665 m/s²). The mass of the body does not change.
+///
+/// :meth:`polhode.Event.pulse` finds when a thruster is switched on and off.
+///
+/// Examples
+/// --------
+/// A pair of thrusters turns a satellite. A controller asks every 0.1 s for the torque ``-0.4 ω``, of which each
+/// thruster can do one sign:
+///
+/// >>> import numpy as np
+/// >>> from polhode import RigidBody, loads
+/// >>> body = RigidBody.from_principal(90.0, (8.0, 9.0, 10.0))
+/// >>> def duties(t, omega, *_):
+/// ...     return np.array([-0.4, 0.4]) * omega[2] / (0.5 * 0.02)
+/// >>> arms, along = [(0.5, 0, 0), (0.5, 0, 0)], [(0, 1, 0), (0, -1, 0)]
+/// >>> jets = loads.thrusters(arms, along, 0.02, command=duties, period=0.1, min_on=0.01)
+/// >>> motion = body.simulate([0, 120], omega=(0, 0, 0.05), load=jets)
+/// >>> bool(abs(motion.omega[-1, 2]) < 0.0026)
+/// True
+/// >>> impulse = motion.states["thrusters"][-1]
+/// >>> bool(np.isclose(0.5 * (impulse[1] - impulse[0]), 10.0 * (0.05 - motion.omega[-1, 2])))
+/// True
+/// >>> propellant = impulse.sum() / (70 * 9.80665)  # in kg, for a specific impulse of 70 s
+#[pyfunction]
+#[pyo3(signature = (positions, directions, forces, *, command, period, min_on=None, max_on=None, deadband=None, times=None,
+                   name="thrusters"))]
+#[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
+#[expect(clippy::doc_link_with_quotes, reason = "the name of a state in Python")]
+pub(crate) fn thrusters(
+    py: Python<'_>,
+    positions: &Bound<'_, PyAny>,
+    directions: &Bound<'_, PyAny>,
+    forces: &Bound<'_, PyAny>,
+    command: &Bound<'_, PyAny>,
+    #[pyo3(from_py_with = read_scalar)] period: f64,
+    #[pyo3(from_py_with = read_scalar)] min_on: Option<f64>,
+    #[pyo3(from_py_with = read_scalar)] max_on: Option<f64>,
+    #[pyo3(from_py_with = read_scalar)] deadband: Option<f64>,
+    times: Option<&Bound<'_, PyAny>>,
+    #[pyo3(from_py_with = read_scalar)] name: &str,
+) -> PyResult<PyLoad> {
+    check_name(name)?;
+    let at: Stack<Vector3<f64>> = read_list(positions, "positions", "n")?;
+    let along: Stack<Vector3<f64>> = read_list(directions, "directions", "n")?;
+    let count = at.rows.len();
+    let most = MOST_STATES / 2;
+    if count == 0 || count > most {
+        return Err(PyValueError::new_err(format!(
+            "positions: expected from 1 to {most} thrusters, got {count}; loads with more of them can be added"
+        )));
+    }
+    if along.rows.len() != count {
+        return Err(PyValueError::new_err(format!(
+            "directions: expected one for each of the {count} thrusters, got {}",
+            along.rows.len()
+        )));
+    }
+    let given: Stack<f64> = read(forces, "forces")?;
+    let each = match given.shape[..] {
+        [] => vec![given[0]; count],
+        [found] if found == count => given.rows.clone(),
+        _ => {
+            return Err(PyValueError::new_err(format!(
+                "forces: expected one number, or one for each of the {count} thrusters, got the shape {}",
+                tuple(&given.shape)
+            )));
+        }
+    };
+    let core = |error: &Error| to_py(py, error);
+    let pulses =
+        Pulses::new(period, min_on.unwrap_or(0.0), max_on, deadband).map_err(|e| core(&e))?;
+    let set = Thrusters::new(&at.rows, &along.rows, &each, pulses).map_err(|e| core(&e))?;
+    if command.is_instance_of::<PyLoad>() {
+        return Err(PyTypeError::new_err(
+            "command: a load asks for a torque, not for duties; give a function \
+             command(t, omega, quaternion, position, velocity, states) that returns the duty of each thruster",
+        ));
+    }
+    let firing = Firing::new(set, command, times)?;
+    let options = PyDict::new(py);
+    let copy = |given: &Bound<'_, PyAny>| -> PyResult<Py<PyAny>> {
+        let array = crate::arrays::numpy(py)?.call_method1("array", (given, "float64"))?;
+        Ok(array.unbind())
+    };
+    if firing.calls_python() {
+        options.set_item("command", command)?;
+    } else {
+        options.set_item("command", copy(command)?)?;
+    }
+    options.set_item("period", period)?;
+    for (what, given) in [
+        ("min_on", min_on),
+        ("max_on", max_on),
+        ("deadband", deadband),
+    ] {
+        options.set_item(what, given)?;
+    }
+    options.set_item("times", times.map(copy).transpose()?)?;
+    options.set_item("name", name)?;
+    let arguments = (write(py, &at)?, write(py, &along)?, copy(forces)?, options);
+    let recipe = recipe(py, "thrusters", arguments)?;
+    Ok(PyLoad::one(LoadPart::Thrusters(firing), recipe).with_name(name))
 }
 
 // The functions that make loads of functions: of Python's and of compiled ones.

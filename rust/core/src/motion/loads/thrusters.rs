@@ -126,12 +126,16 @@ impl Pulses {
 /// let set = Thrusters::new(&arms, &[Vector3::y(), -Vector3::y()], &[2.0, 2.0], Pulses::new(0.1, 0.0, None, None)?)?;
 /// let mut states = set.begin();
 /// set.command(&[1.0, 0.3], &mut states);
+/// assert_eq!((set.count(), set.pulses().period(), set.sizes()), (2, 0.1, vec![0.2, 0.2, 0.1, 0.1]));
 /// assert_eq!(set.switches(5.0, &states), [5.1, 5.03]);
 /// assert_eq!(set.fires(5.0, 5.04, &states), [true, false]);
 /// let body = BodyAtPoint::free(&solids::sphere(1.0, Amount::Mass(5.0))?, 0.0);
 /// let rest = Phase::in_place(&State { attitude: UnitQuaternion::identity(), omega: Vector3::zeros() });
 /// let both = set.wrench(&set.fires(5.0, 5.01, &states), &body, &rest);
 /// assert_eq!((both.force, both.torque.z), (Vector3::zeros(), 4.0));
+/// let mut rates = set.begin();
+/// set.rates(&[true, false], &mut rates);
+/// assert_eq!(rates, [2.0, 0.0, 0.0, 0.0]);
 /// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]

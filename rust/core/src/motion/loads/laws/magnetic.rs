@@ -209,11 +209,16 @@ impl Moment {
 ///
 /// // A compass needle of 0.1 A m² across a field of 50 µT: m × B.
 /// let field = MagneticField::uniform(&Vector3::new(0.0, 5e-5, 0.0))?;
-/// let needle: Term = Magnetic::new(&Vector3::new(0.1, 0.0, 0.0), None, field)?.into();
+/// let needle: Term = Magnetic::new(&Vector3::new(0.1, 0.0, 0.0), None, field.clone())?.into();
 /// let body = solids::cuboid(&[0.05, 0.002, 0.001], Amount::Mass(0.001))?;
 /// let rest = Phase::in_place(&State { attitude: UnitQuaternion::identity(), omega: Vector3::zeros() });
 /// let torque = needle.wrench(&BodyAtPoint::free(&body, 0.0), 0.0, &rest).torque;
 /// assert!((torque.z - 5e-6).abs() < 1e-20);
+/// // Of coils with a limit each component of the moment is clipped.
+/// let coils = Magnetic::new(&Vector3::new(0.1, 0.0, 0.0), None, field.clone())?.with_max_dipole(&Vector3::repeat(0.02))?;
+/// assert!(coils.has_limit());
+/// let torque = Term::from(coils).wrench(&BodyAtPoint::free(&body, 0.0), 0.0, &rest).torque;
+/// assert!((torque.z - 1e-6).abs() < 1e-20);
 ///
 /// // The field along an orbit about a dipole, twice as strong above its pole as above its equator, or through samples.
 /// let orbit = OrbitModel::kepler(&Orbit::new(1.0, &Vector3::x(), &Vector3::z())?, None)?;
