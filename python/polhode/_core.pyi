@@ -863,19 +863,6 @@ def local_frames(orbit: object, t: ArrayLike) -> tuple[_Floats, _Floats]: ...
 def sampled_states(times: ArrayLike, position: ArrayLike, t: ArrayLike) -> tuple[_Floats, _Floats]: ...
 
 # loads: written by rust/python/declared.py
-def thrusters(
-    positions: ArrayLike,
-    directions: ArrayLike,
-    forces: ArrayLike,
-    *,
-    command: ArrayLike | _WithStates,
-    period: float,
-    min_on: float | None = None,
-    max_on: float | None = None,
-    deadband: float | None = None,
-    times: ArrayLike | None = None,
-    name: str = "thrusters",
-) -> Load: ...
 def feedback(
     K: ArrayLike,  # noqa: N803
     D: ArrayLike,  # noqa: N803
@@ -899,6 +886,19 @@ def magnetic(
     times: ArrayLike | None = None,
     dipole_times: ArrayLike | None = None,
     max_dipole: ArrayLike | None = None,
+) -> Load: ...
+def thrusters(
+    positions: ArrayLike,
+    directions: ArrayLike,
+    forces: ArrayLike,
+    *,
+    command: ArrayLike | _WithStates,
+    period: float,
+    min_on: float | None = None,
+    max_on: float | None = None,
+    deadband: float | None = None,
+    times: ArrayLike | None = None,
+    name: str = "thrusters",
 ) -> Load: ...
 def torque_callback(function: Callable[[float, _Floats, _Floats], ArrayLike]) -> Load: ...
 def callback(

@@ -28,10 +28,10 @@ FORCES = np.array([0.2, 0.3, 0.25, 0.15, 0.3, 0.2])
 
 def one(**options: Any) -> Any:
     """Make a thruster that turns PLAIN about its third axis, beside one the other way."""
-    return loads.thrusters(*PAIR, FORCE, **({"period": 1.0} | options))
+    return loads.thrusters(PAIR[0], PAIR[1], FORCE, **({"period": 1.0} | options))
 
 
-def pulses(run: Any, number: int = 0) -> np.ndarray:
+def pulses(run: Any, number: int = 0) -> Any:
     return run.events.t[run.events.event == number]
 
 
@@ -64,9 +64,10 @@ class TestClosedForms:
     def test_about_a_pivot_the_arm_is_from_the_origin(self) -> None:
         body = RigidBody.from_principal(2.0, (1.0, 2.0, 2.5), center_of_mass=(0, 0, 0.5))
         load = loads.thrusters([(0.4, 0, 0.7)], [(0, 1, 0)], FORCE, command=[1.0], period=1.0)
-        run = {"t": 0.0, "omega": (0, 0, 0), "quaternion": (0, 0, 0, 1), "body": body}
+        run: Any = {"t": 0.0, "omega": (0, 0, 0), "quaternion": (0, 0, 0, 1), "body": body}
         states = {"thrusters": [0.0], "thrusters_pulse": [1.0]}
-        for about, arm in (("origin", (0.4, 0, 0.7)), ("center_of_mass", (0.4, 0, 0.2))):
+        arms: Any = (("origin", (0.4, 0, 0.7)), ("center_of_mass", (0.4, 0, 0.2)))
+        for about, arm in arms:
             torque = load.torque(**run, about=about, states=states)
             assert torque == pytest.approx(np.cross(arm, (0, FORCE, 0)), abs=1e-16)
         assert np.array_equal(load.force(**run, states=states), [0, FORCE, 0])
@@ -233,6 +234,7 @@ class TestAgainstSciPy:
             state = stepper.state()
             assert np.array_equal(state.omega, chain.omega[-1])
             for name, values in chain.states.items():
+                assert state.states is not None
                 assert np.array_equal(state.states[name], values[-1])
                 assert np.abs(values[-1] - whole.states[name][k]).max() < 1e-10
             assert np.abs(chain.omega[-1] - whole.omega[k]).max() < 1e-10
@@ -380,7 +382,7 @@ class TestAsALoad:
             (([(np.nan, 0, 0), (0, 0, 0)], PAIR[1], FORCE), "positions must be finite"),
         ):
             with pytest.raises((PolhodeError, ValueError), match=words):
-                loads.thrusters(*arguments, command=np.zeros(len(arguments[0])), period=1.0)  # type: ignore[misc]
+                loads.thrusters(*arguments, command=np.zeros(len(arguments[0])), period=1.0)
         with pytest.raises(TypeError, match="a load asks for a torque, not for duties"):
             one(command=loads.feedback(1, 1))
         with pytest.raises(TypeError, match="times: not beside a function"):

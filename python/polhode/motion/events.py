@@ -153,14 +153,14 @@ class Event:
 
         Examples
         --------
-        A body turns in a field; the moment of the B-dot control falls below its limit as the body slows down:
+        A controller asks for a torque that rises with time, across a field of 2:
 
         >>> from polhode import Event, RigidBody, loads
         >>> body = RigidBody.from_principal(1.0, (1.0, 1.0, 1.0))
-        >>> coils = loads.magnetic((0, 0, 0), (0, 0, 1), gain=1.0, max_dipole=0.5)
-        >>> motion = body.simulate([0, 5], (1, 0, 0), load=coils, events=Event.dipole_limit())
-        >>> motion.events.omega.round(6) + 0.0
-        array([[0.5, 0. , 0. ]])
+        >>> rising = loads.torque_callback(lambda t, *_: (0, 0, 0.1 * t))
+        >>> coils = loads.magnetic(rising, (2, 0, 0), max_dipole=0.01)
+        >>> body.simulate([0, 1], (0, 0, 0), load=coils, events=Event.dipole_limit()).events.t.round(6)
+        array([0.2])
         """
         return cls._of_kind("dipole limit", "", direction, terminal)
 
