@@ -410,3 +410,12 @@ class TestAsALoad:
 
         with pytest.raises(KeyError, match="sensor"):
             PLAIN.simulate([0, 1], (0, 0, 0), load=one(command=breaks))
+
+
+def test_how_a_motion_depends_on_thrusters() -> None:
+    """By differences: with the thrust of one pulse the rate is r F t/I."""
+    load = one(command=[0.25, 0.0])
+    run = PLAIN.simulate([0, 0.9, 2.6], (0, 0, 0), load=load, rtol=1e-12)
+    by = run.sensitivity(method="differences").load[0]
+    assert by["forces"][1, 5] == pytest.approx(ARM * 0.25 / I3, abs=1e-9)
+    assert by["command"][2, 5, 0] == pytest.approx(3 * ARM * FORCE / I3, abs=1e-9)

@@ -5,6 +5,7 @@ The search itself is in the compiled core: ``rust/core/src/motion/simulate/event
 
 from __future__ import annotations
 
+import operator
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
@@ -198,7 +199,7 @@ class Event:
         array([0.  , 0.25, 1.  , 1.25])
         """
         event = cls._of_kind("pulse", name, direction, terminal)
-        object.__setattr__(event, "_thruster", int(thruster))
+        object.__setattr__(event, "_thruster", operator.index(thruster))
         return event
 
     @classmethod
