@@ -145,6 +145,7 @@ __all__ = [
     "surface_sphere",
     "surface_torus",
     "tetrahedron",
+    "thrusters",
     "to_log_cholesky",
     "to_parameters",
     "to_positive_products",
@@ -878,11 +879,26 @@ def gravity_gradient(
     epoch: float | None = None,
 ) -> Load: ...
 def magnetic(
-    dipole: ArrayLike,
+    dipole: ArrayLike | Load,
     field: ArrayLike | DipoleField,
     *,
     gain: ArrayLike | None = None,
     times: ArrayLike | None = None,
+    dipole_times: ArrayLike | None = None,
+    max_dipole: ArrayLike | None = None,
+) -> Load: ...
+def thrusters(
+    positions: ArrayLike,
+    directions: ArrayLike,
+    forces: ArrayLike,
+    *,
+    command: ArrayLike | _WithStates,
+    period: float,
+    min_on: float | None = None,
+    max_on: float | None = None,
+    deadband: float | None = None,
+    times: ArrayLike | None = None,
+    name: str = "thrusters",
 ) -> Load: ...
 def torque_callback(function: Callable[[float, _Floats, _Floats], ArrayLike]) -> Load: ...
 def callback(

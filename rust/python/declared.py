@@ -60,6 +60,7 @@ CALLED = {
     "torque_callback": "Callable[[float, _Floats, _Floats], ArrayLike]",
     "callback": "Callable[[float, _Floats, _Floats, _Floats, _Floats], tuple[ArrayLike, ArrayLike]]",
     "with_states": "_WithStates",
+    "thrusters": "_WithStates",
 }
 
 
@@ -97,7 +98,7 @@ def typed(module: str, function: str, parameter: inspect.Parameter, words: str) 
         if module != "loads" and "of int" not in words:
             kinds = ["_Numbers" if kind == "ArrayLike" else kind for kind in kinds]
     if "callable" in words:
-        kinds = [CALLED[function]]
+        kinds.append(CALLED[function])
     if "object" in kinds:
         kinds = ["object"]
     if "ArrayLike" in kinds:

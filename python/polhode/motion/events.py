@@ -5,6 +5,7 @@ The search itself is in the compiled core: ``rust/core/src/motion/simulate/event
 
 from __future__ import annotations
 
+import operator
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
@@ -54,6 +55,7 @@ class Event:
     direction: float = 0.0
     terminal: bool | int = False
     _of_wheel: tuple[str, str] | None = field(default=None, init=False, repr=False)
+    _thruster: int | None = field(default=None, init=False, repr=False)
     _is_at_start: bool = field(default=False, init=False, repr=False)
 
     @classmethod
@@ -138,6 +140,69 @@ class Event:
         return cls._of_kind("momentum limit", wheel, direction, terminal)
 
     @classmethod
+    def dipole_limit(cls, *, direction: float = 0.0, terminal: bool | int = False) -> Event:
+        """Make the event that the moment demanded of coils passes their limit, `max_dipole`.
+
+        The coils saturate as long as one of them does, of any :func:`polhode.loads.magnetic` with a limit.
+
+        Parameters
+        ----------
+        direction : float
+            Positive: only when the coils begin to saturate; negative: only when they cease to; zero: both.
+        terminal : bool or int
+            As for the class.
+
+        Examples
+        --------
+        A controller asks for a torque that rises with time, across a field of 2:
+
+        >>> from polhode import Event, RigidBody, loads
+        >>> body = RigidBody.from_principal(1.0, (1.0, 1.0, 1.0))
+        >>> rising = loads.torque_callback(lambda t, *_: (0, 0, 0.1 * t))
+        >>> coils = loads.magnetic(rising, (2, 0, 0), max_dipole=0.01)
+        >>> body.simulate([0, 1], (0, 0, 0), load=coils, events=Event.dipole_limit()).events.t.round(6)
+        array([0.2])
+        """
+        return cls._of_kind("dipole limit", "", direction, terminal)
+
+    @classmethod
+    def pulse(
+        cls,
+        thruster: int = 0,
+        name: str = "thrusters",
+        *,
+        direction: float = 0.0,
+        terminal: bool | int = False,
+    ) -> Event:
+        """Make the event that a thruster is switched on or off.
+
+        These times are known at the start of each period, and are exact. A thruster that fires in two periods
+        without a pause is not switched in between.
+
+        Parameters
+        ----------
+        thruster : int
+            Number of the thruster, from 0 on.
+        name : str
+            Name of the thrusters in ``states`` of the trajectory.
+        direction : float
+            Positive: only when it is switched on; negative: only when it is switched off; zero: both.
+        terminal : bool or int
+            As for the class.
+
+        Examples
+        --------
+        >>> from polhode import Event, RigidBody, loads
+        >>> body = RigidBody.from_principal(1.0, (1.0, 2.0, 3.0))
+        >>> jet = loads.thrusters([(1, 0, 0)], [(0, 1, 0)], 0.5, command=[0.25], period=1.0)
+        >>> body.simulate([0, 2], (0, 0, 0), load=jet, events=Event.pulse()).events.t
+        array([0.  , 0.25, 1.  , 1.25])
+        """
+        event = cls._of_kind("pulse", name, direction, terminal)
+        object.__setattr__(event, "_thruster", operator.index(thruster))
+        return event
+
+    @classmethod
     def _of_kind(cls, kind: str, wheel: str, direction: float, terminal: bool | int) -> Event:
         event = cls(_never_called, direction, terminal)
         object.__setattr__(event, "_of_wheel", (kind, str(wheel)))
@@ -166,9 +231,10 @@ def after_event(events: Any, last: Any, number: int) -> Any:
     def skip_start(index: int, event: Any) -> Any:
         if (index != number) if last is None else (event is not last):
             return event
-        of_wheel = getattr(event, "_of_wheel", None)
+        of_wheel, thruster = getattr(event, "_of_wheel", None), getattr(event, "_thruster", None)
         again = Event(event, getattr(event, "direction", 0.0), getattr(event, "terminal", False))
         object.__setattr__(again, "_of_wheel", of_wheel)
+        object.__setattr__(again, "_thruster", thruster)
         object.__setattr__(again, "_is_at_start", True)
         return again
 
@@ -178,7 +244,9 @@ def after_event(events: Any, last: Any, number: int) -> Any:
 
 
 def _never_called(*_: Any) -> float:
-    raise TypeError("an event of a wheel is found by simulate, and has no function to call")
+    raise TypeError(
+        "an event of a wheel, of coils or of a thruster is found by simulate, and has no function to call"
+    )
 
 
 _KINDS: Final = np.array(["function", "lift-off", "slip", "roll", "landing", "rest"])

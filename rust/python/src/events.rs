@@ -2,7 +2,7 @@
 
 use numpy::PyArray1;
 use polhode::motion::attitude::components;
-use polhode::motion::loads::{CarriedMomentum, Term};
+use polhode::motion::loads::{CarriedMomentum, Magnetic, Term};
 use polhode::motion::simulate::{Crossing, Direction, EventTrigger, Events, Rule};
 use polhode::motion::state::Phase;
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -175,6 +175,12 @@ fn read_event(
     load: &PyLoad,
     terms: &[&[Term]],
 ) -> PyResult<EventTrigger> {
+    if let Some(number) = event
+        .getattr_opt("_thruster")?
+        .filter(|given| !given.is_none())
+    {
+        return read_pulse(event, number.extract()?, load);
+    }
     let Some(of) = event
         .getattr_opt("_of_wheel")?
         .filter(|given| !given.is_none())
@@ -182,6 +188,15 @@ fn read_event(
         return Ok(EventTrigger::Function);
     };
     let (kind, name): (String, String) = of.extract()?;
+    if kind == "dipole limit" {
+        let has_limit = |term: &Term| term.coils().is_some_and(Magnetic::has_limit);
+        if terms.iter().any(|row| row.iter().any(has_limit)) {
+            return Ok(EventTrigger::DipoleLimit);
+        }
+        return Err(PyValueError::new_err(
+            "events: Event.dipole_limit asks for coils with a limit; give loads.magnetic(..., max_dipole=) in the load",
+        ));
+    }
     let slots = load.slots();
     let Some(slot) = slots.iter().find(|slot| slot.name == name) else {
         let known: Vec<_> = slots
@@ -233,6 +248,26 @@ fn read_event(
         )));
     }
     Ok(trigger)
+}
+
+/// The thruster of a load that an event asks for.
+fn read_pulse(event: &Bound<'_, PyAny>, number: i64, load: &PyLoad) -> PyResult<EventTrigger> {
+    let (_, name): (String, String) = event.getattr("_of_wheel")?.extract()?;
+    let (slots, pulses) = (load.slots(), format!("{name}_pulse"));
+    let find = |name: &str| slots.iter().find(|slot| slot.name == name);
+    let (Some(slot), Some(_)) = (find(&name), find(&pulses)) else {
+        return Err(PyValueError::new_err(format!(
+            "events: Event.pulse asks for thrusters with the name {name:?}; the load has none, as loads.thrusters(..., name={name:?}) \
+             makes them"
+        )));
+    };
+    match usize::try_from(number) {
+        Ok(number) if number < slot.count => Ok(EventTrigger::Pulse(slot.first + number)),
+        _ => Err(PyValueError::new_err(format!(
+            "events: Event.pulse asks for the thruster {number} of {name:?}, which has those from 0 to {}",
+            slot.count - 1
+        ))),
+    }
 }
 
 fn has_bearing(carried: &dyn CarriedMomentum) -> bool {

@@ -119,7 +119,8 @@ mod _core {
     use crate::laminae::{annulus, disk, ellipse, polygon, rectangle, triangle};
     #[pymodule_export]
     use crate::loads::{
-        PyLoad, PyWheel, callback, compiled, schedule, torque_callback, wheels, with_states,
+        PyLoad, PyWheel, callback, compiled, schedule, thrusters, torque_callback, wheels,
+        with_states,
     };
     #[pymodule_export]
     use crate::orbits::{

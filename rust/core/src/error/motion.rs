@@ -91,7 +91,7 @@ pub enum MotionFault {
     },
     /// What a motor is to follow does more than a torque.
     #[error(
-        "a motor exerts a torque alone, and carries nothing along: what this one is to follow has a force, a wheel or a slug"
+        "a motor exerts a torque alone, and carries nothing along, and so do coils: what this one is to follow has a force, a wheel or a slug"
     )]
     NoController,
     /// The centre of mass is not on the symmetry axis through the pivot.

@@ -1,5 +1,7 @@
 //! A load at work on a body.
 
+use std::ops::Range;
+
 use nalgebra::Vector3;
 use numpy::PyArrayDyn;
 use polhode::Error;
@@ -14,6 +16,7 @@ use pyo3::types::PyDict;
 
 use super::address::Compiled;
 use super::callbacks::{Callback, Named, Slot, WithStates};
+use super::firing::Firing;
 use super::load::PyLoad;
 use crate::arrays::{read, write_of};
 use crate::errors::to_py;
@@ -60,6 +63,7 @@ struct LoadFunctions<'a> {
     /// Those that are switched on.
     compiled: Vec<&'a Compiled>,
     callbacks: Vec<&'a Callback>,
+    thrusters: Vec<&'a Firing>,
 }
 
 /// What functions are called with.
@@ -70,6 +74,10 @@ struct Call<'a, 'py> {
     terms: &'a [Term],
     t: f64,
     phase: &'a Phase,
+    /// What it acts on, a time within the span last entered, and where the run begins.
+    body: &'a BodyAtPoint,
+    middle: f64,
+    start: f64,
 }
 
 impl<'a> LoadFunctions<'a> {
@@ -79,6 +87,7 @@ impl<'a> LoadFunctions<'a> {
             with_states: load.with_states().collect(),
             compiled: load.compiled_functions().collect(),
             callbacks: load.callbacks().collect(),
+            thrusters: load.thrusters().collect(),
         }
     }
 
@@ -86,7 +95,19 @@ impl<'a> LoadFunctions<'a> {
     fn states(&self) -> usize {
         let called = self.with_states.iter().map(|one| one.initial.len());
         let compiled = self.load.compiled_functions().map(|one| one.initial.len());
-        called.chain(compiled).sum()
+        let fired = self.thrusters.iter().map(|firing| firing.initial.len());
+        called.chain(compiled).chain(fired).sum()
+    }
+
+    /// The thrusters, and which of the states are theirs, where the first of all is number `first`.
+    fn firing(&self, first: usize) -> impl Iterator<Item = (&'a Firing, Range<usize>)> + '_ {
+        let own: usize = self.thrusters.iter().map(|one| one.initial.len()).sum();
+        let mut first = first + self.states() - own;
+        self.thrusters.iter().map(move |firing| {
+            let own = first..first + firing.initial.len();
+            first = own.end;
+            (*firing, own)
+        })
     }
 
     /// Times at which something begins or ends to act.
@@ -96,6 +117,7 @@ impl<'a> LoadFunctions<'a> {
         let windows = called.chain(compiled).flatten();
         let mut breaks: Vec<f64> = windows.flat_map(Windows::switches).collect();
         breaks.extend(self.with_states.iter().flat_map(|one| one.times(from, to)));
+        breaks.extend(self.thrusters.iter().flat_map(|one| one.times(from, to)));
         breaks
     }
 
@@ -120,6 +142,13 @@ impl<'a> LoadFunctions<'a> {
     ) -> Result<(), Fault> {
         let Call { t, phase, .. } = *call;
         let asked = !rates.is_empty();
+        for (firing, own) in self.firing(first) {
+            let fires = firing.fires(call.middle, call.start, &phase.internal_state[own.clone()]);
+            if asked {
+                firing.rates(&fires, &mut rates[own]);
+            }
+            *sum += firing.wrench(&fires, call.body, phase);
+        }
         if let Some(py) = call.py
             && !self.with_states.is_empty()
         {
@@ -168,6 +197,8 @@ pub(crate) struct ActingLoad<'a, 'py> {
     slots: Vec<Slot>,
     /// Where the run begins, as far as it has been told.
     start: f64,
+    /// A time within the span last entered.
+    middle: f64,
 }
 
 impl<'a, 'py> ActingLoad<'a, 'py> {
@@ -180,7 +211,9 @@ impl<'a, 'py> ActingLoad<'a, 'py> {
     ) -> Self {
         let (controllers, follows) = load.controllers();
         let has_states = |load: &PyLoad| load.with_states().next().is_some();
-        let names_states = has_states(load) || controllers.iter().any(|one| has_states(one));
+        let names_states = has_states(load)
+            || load.thrusters().any(Firing::calls_python)
+            || controllers.iter().any(|one| has_states(one));
         Self {
             controllers: controllers.into_iter().map(LoadFunctions::new).collect(),
             follows,
@@ -194,6 +227,7 @@ impl<'a, 'py> ActingLoad<'a, 'py> {
                 Vec::new()
             },
             start: subject.start,
+            middle: subject.start,
         }
     }
 
@@ -213,8 +247,8 @@ impl<'a, 'py> ActingLoad<'a, 'py> {
             if sum.force != Vector3::zeros() {
                 let [x, y, z] = sum.force.into();
                 return Err(Fault::Python(PyValueError::new_err(format!(
-                    "torque: a motor exerts a torque alone; its controller asks for the force [{x:?}, {y:?}, {z:?}] at t = {t:?}. Return \
-                     a force of zero there, and add a load with the force to the wheel"
+                    "torque: a motor exerts a torque alone, and so do coils; its controller asks for the force [{x:?}, {y:?}, {z:?}] at t = \
+                     {t:?}. Return a force of zero there, and add a load with the force to the wheel or to the coils"
                 ))));
             }
             all.push(sum.torque);
@@ -234,6 +268,9 @@ impl<'a, 'py> ActingLoad<'a, 'py> {
             terms: self.analytic.terms(),
             t,
             phase,
+            body: self.analytic.body(),
+            middle: self.middle,
+            start: self.start,
         }
     }
 
@@ -246,7 +283,7 @@ impl<'a, 'py> ActingLoad<'a, 'py> {
         }
     }
 
-    /// The states of the analytic terms come first, then those of functions of Python, then those of compiled ones.
+    /// The states of the analytic terms come first, then those of functions of Python, then those of compiled ones, then those of thrusters.
     fn first_of_functions(&self) -> usize {
         self.analytic
             .terms()
@@ -272,12 +309,14 @@ impl Load for ActingLoad<'_, '_> {
                 .iter()
                 .any(|one| one.exerts_force())
             || self.load.compiled_functions().next().is_some()
+            || self.load.thrusters().next().is_some()
     }
 
     fn depends_on_rates(&self) -> bool {
         self.analytic.depends_on_rates()
             || self.load.calls_python()
             || self.load.compiled_functions().next().is_some()
+            || self.load.thrusters().next().is_some()
     }
 
     fn breaks(&self, from: f64, to: f64) -> Vec<f64> {
@@ -291,6 +330,7 @@ impl Load for ActingLoad<'_, '_> {
 
     fn enter(&mut self, from: f64, to: f64) -> Result<(), Fault> {
         let middle = from + 0.5 * (to - from);
+        self.middle = middle;
         self.functions.enter(middle);
         for one in &mut self.controllers {
             one.enter(middle);
@@ -314,9 +354,9 @@ impl Load for ActingLoad<'_, '_> {
         self.analytic.bearings()
     }
 
-    fn over_limit(&self, state: usize, t: f64, phase: &Phase) -> f64 {
+    fn over_limit(&self, wheel: Option<usize>, t: f64, phase: &Phase) -> f64 {
         if self.controllers.is_empty() {
-            return self.analytic.over_limit(state, t, phase);
+            return self.analytic.over_limit(wheel, t, phase);
         }
         // What fails here fails in the equations too, which say so.
         let Ok(torques) = self.commands(t, phase, self.first_of_controllers(), &mut []) else {
@@ -328,7 +368,7 @@ impl Load for ActingLoad<'_, '_> {
                 analytic.command(term, torques[*number]);
             }
         }
-        analytic.over_limit(state, t, phase)
+        analytic.over_limit(wheel, t, phase)
     }
 
     #[inline]
@@ -361,32 +401,65 @@ impl Load for ActingLoad<'_, '_> {
         sizes
     }
 
-    fn jump(&mut self, t: f64, phase: &mut Phase) -> Result<(), Fault> {
-        let Some(py) = self.py.filter(|_| !self.slots.is_empty()) else {
-            return Ok(());
-        };
-        let now = (t, self.start);
-        let states = Named::of(&self.slots, self.analytic.terms(), phase);
-        let mut after = phase.internal_state.clone();
-        let own = (self.first_of_functions(), self.load);
-        let mut of_controllers = self.first_of_controllers();
-        let controllers = self.controllers.iter().map(|one| {
-            let first = of_controllers;
-            of_controllers += one.states();
-            (first, one.load)
+    fn cuts(&self, from: f64, to: f64, phase: &Phase) -> Vec<f64> {
+        let firing = self.functions.firing(self.first_of_functions());
+        let mut cuts: Vec<f64> = firing
+            .flat_map(|(one, own)| one.cuts((from, to), self.start, &phase.internal_state[own]))
+            .collect();
+        cuts.sort_by(f64::total_cmp);
+        cuts
+    }
+
+    fn firing(&self, t: f64, is_before: bool, phase: &Phase) -> Vec<(usize, bool)> {
+        let firing = self.functions.firing(self.first_of_functions());
+        let all = firing.flat_map(|(one, own)| {
+            let (first, states) = (own.start, &phase.internal_state[own]);
+            let fires = if is_before {
+                one.fired(t, self.start, states)
+            } else {
+                one.fires(self.middle, self.start, states)
+            };
+            (fires.into_iter().enumerate()).map(move |(k, fires)| (first + k, fires))
         });
-        let laws = std::iter::once(own)
-            .chain(controllers)
-            .flat_map(|(mut first, load)| {
-                load.with_states().map(move |law| {
-                    let own = first..first + law.initial.len();
-                    first = own.end;
-                    (own, law)
-                })
+        all.collect()
+    }
+
+    fn jump(&mut self, t: f64, phase: &mut Phase) -> Result<(), Fault> {
+        let py = self.py.filter(|_| !self.slots.is_empty());
+        if py.is_none() && self.functions.thrusters.is_empty() {
+            return Ok(());
+        }
+        let now = (t, self.start);
+        let states = py.map(|_| Named::of(&self.slots, self.analytic.terms(), phase));
+        let mut after = phase.internal_state.clone();
+        if let (Some(py), Some(states)) = (py, &states) {
+            let own = (self.first_of_functions(), self.load);
+            let mut of_controllers = self.first_of_controllers();
+            let controllers = self.controllers.iter().map(|one| {
+                let first = of_controllers;
+                of_controllers += one.states();
+                (first, one.load)
             });
-        for (own, one) in laws {
-            let updated = one.update(py, now, phase, &states);
-            if let Some(new) = updated.map_err(Fault::Python)? {
+            let laws = std::iter::once(own)
+                .chain(controllers)
+                .flat_map(|(mut first, load)| {
+                    load.with_states().map(move |law| {
+                        let own = first..first + law.initial.len();
+                        first = own.end;
+                        (own, law)
+                    })
+                });
+            for (own, one) in laws {
+                let updated = one.update(py, now, phase, states);
+                if let Some(new) = updated.map_err(Fault::Python)? {
+                    after[own].copy_from_slice(&new);
+                }
+            }
+        }
+        for (one, own) in self.functions.firing(self.first_of_functions()) {
+            let before = &phase.internal_state[own.clone()];
+            let begun = one.begin_period(py, now, phase, states.as_ref(), before);
+            if let Some(new) = begun.map_err(Fault::Python)? {
                 after[own].copy_from_slice(&new);
             }
         }

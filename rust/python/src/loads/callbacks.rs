@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyFloat, PyList, PyTuple};
 use pyo3::{PyTraverseError, PyVisit};
 
+use super::clock::Clock;
 use crate::arrays::{floats, list_floats, read};
 use crate::errors::new;
 use crate::shape::tuple;
@@ -165,10 +166,8 @@ pub(super) struct WithStates {
     rates: Option<Py<PyAny>>,
     wrench: Option<Py<PyAny>>,
     update: Option<Py<PyAny>>,
-    /// Between two updates.
-    period: f64,
-    /// When the first one is; where the run begins by default.
-    epoch: Option<f64>,
+    /// When updates are; none without `update`.
+    clock: Option<Clock>,
 }
 
 impl WithStates {
@@ -192,11 +191,6 @@ impl WithStates {
                 "update: give update= and period= together, or neither",
             ));
         }
-        if let Some(period) = period.filter(|period| !(*period > 0.0 && period.is_finite())) {
-            return Err(PyValueError::new_err(format!(
-                "period: must be positive, got {period}"
-            )));
-        }
         let kept = |function: Option<&Bound<'_, PyAny>>| function.map(|it| it.clone().unbind());
         Ok(Self {
             initial,
@@ -204,8 +198,7 @@ impl WithStates {
             rates: kept(rates),
             wrench: kept(wrench),
             update: kept(update),
-            period: period.unwrap_or(0.0),
-            epoch: None,
+            clock: period.map(Clock::new).transpose()?,
         })
     }
 
@@ -233,55 +226,30 @@ impl WithStates {
 
     /// Whether updates count from where the run begins.
     pub(super) fn needs_epoch(&self) -> bool {
-        self.update.is_some() && self.epoch.is_none()
+        self.clock.as_ref().is_some_and(Clock::needs_epoch)
     }
 
     pub(super) fn start_at(&mut self, t: f64) {
-        self.epoch.get_or_insert(t);
+        if let Some(clock) = &mut self.clock {
+            clock.start_at(t);
+        }
     }
 
     /// The times of updates after `from`, until `to`, of a run that begins at `from`.
     pub(super) fn times(&self, from: f64, to: f64) -> Vec<f64> {
-        if self.update.is_none() {
-            return Vec::new();
-        }
-        let epoch = self.epoch.unwrap_or(from);
-        let first = ((from - epoch) / self.period).floor().max(0.0);
-        let count = ((to - epoch) / self.period - first).max(0.0);
-        let mut times = Vec::new();
-        let mut k = 0.0;
-        while k <= count {
-            times.push(epoch + (first + k) * self.period);
-            k += 1.0;
-        }
-        times
+        (self.clock).map_or_else(Vec::new, |clock| clock.times(from, to))
     }
 
     /// Why a run from one time to another cannot be, if it cannot.
     pub(super) fn check(&self, from: f64, to: f64) -> PyResult<()> {
-        if self.update.is_none() {
-            return Ok(());
-        }
-        if to < from {
-            return Err(PyValueError::new_err(
-                "t: a load with update= cannot go backward in time: what its states were before an update is not known",
-            ));
-        }
-        let count = (to - from) / self.period;
-        if count > MOST_UPDATES {
-            return Err(PyValueError::new_err(format!(
-                "period: {:?} makes {count:.1e} updates in this run, more than {MOST_UPDATES:.0e}",
-                self.period
-            )));
-        }
-        Ok(())
+        self.clock.map_or(Ok(()), |clock| {
+            clock.check((from, to), "a load with update=", "an update")
+        })
     }
 
     /// Whether an update is due at time `t` of a run that began at `start`.
     fn is_due(&self, t: f64, start: f64) -> bool {
-        let epoch = self.epoch.unwrap_or(start);
-        let k = ((t - epoch) / self.period).round();
-        k >= 0.0 && t == epoch + k * self.period
+        self.clock.is_some_and(|clock| clock.is_due(t, start))
     }
 
     /// The states after an update that is due, if one is.
@@ -296,7 +264,13 @@ impl WithStates {
             return Ok(None);
         };
         let returned = update.bind(py).call1(arguments(py, t, phase, states)?)?;
-        numbers(&returned, "states that update", self.initial.len(), t).map(Some)
+        numbers(
+            &returned,
+            "states that update",
+            (self.initial.len(), "states"),
+            t,
+        )
+        .map(Some)
     }
 
     /// The rates of the states, into `rates`.
@@ -310,7 +284,12 @@ impl WithStates {
     ) -> PyResult<()> {
         if let Some(function) = &self.rates {
             let returned = function.bind(py).call1(arguments(py, t, phase, states)?)?;
-            rates.copy_from_slice(&numbers(&returned, "rates that rates", rates.len(), t)?);
+            rates.copy_from_slice(&numbers(
+                &returned,
+                "rates that rates",
+                (rates.len(), "states"),
+                t,
+            )?);
         }
         Ok(())
     }
@@ -344,10 +323,7 @@ impl WithStates {
     }
 }
 
-/// The most updates of a run: their times take 8 bytes each.
-const MOST_UPDATES: f64 = 1e8;
-
-type Arguments<'py> = (
+pub(super) type Arguments<'py> = (
     f64,
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
@@ -357,7 +333,7 @@ type Arguments<'py> = (
 );
 
 /// What every function is called with.
-fn arguments<'py>(
+pub(super) fn arguments<'py>(
     py: Python<'py>,
     t: f64,
     phase: &Phase,
@@ -374,14 +350,19 @@ fn arguments<'py>(
     ))
 }
 
-/// So many finite numbers from what a function returned.
-fn numbers(returned: &Bound<'_, PyAny>, what: &str, count: usize, t: f64) -> PyResult<Vec<f64>> {
+/// So many finite numbers from what a function returned, as many as there are `of`.
+pub(super) fn numbers(
+    returned: &Bound<'_, PyAny>,
+    what: &str,
+    (count, of): (usize, &str),
+    t: f64,
+) -> PyResult<Vec<f64>> {
     let what = format!("the {what} returned");
     let array = floats(returned, &what)?;
     let found = array.as_slice()?;
     if found.len() != count {
         return Err(PyValueError::new_err(format!(
-            "{what}: expected {count}, as many as there are states, got {}",
+            "{what}: expected {count}, as many as there are {of}, got {}",
             found.len()
         )));
     }

@@ -43,7 +43,7 @@ impl PyLoad {
         let terms = self.terms(py)?;
         let bodies = match body {
             Some(body) => &body.get().bodies,
-            None => &unit(py, &terms)?,
+            None => &unit(py, &terms, self.thrusters().next().is_some())?,
         };
         let pivoted = is_pivot(about)?;
         let t: Stack<f64> = read(t, "t")?;
@@ -358,8 +358,12 @@ fn on_locked(
 }
 
 /// The bodies it acts on; a load that does not depend on the body acts on any.
-fn unit(py: Python<'_>, terms: &Stack<Vec<Term>>) -> PyResult<Stack<RigidBody>> {
-    if terms.rows.iter().flatten().any(Term::needs_body) {
+fn unit(
+    py: Python<'_>,
+    terms: &Stack<Vec<Term>>,
+    has_thrusters: bool,
+) -> PyResult<Stack<RigidBody>> {
+    if has_thrusters || terms.rows.iter().flatten().any(Term::needs_body) {
         return Err(PyTypeError::new_err(
             "body: the weight, the point of a force and the gravity gradient depend on the body; pass body=",
         ));

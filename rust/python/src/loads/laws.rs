@@ -3,26 +3,30 @@
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::Error;
 use polhode::motion::loads::{
-    AttitudeTarget, Damping, Feedback, GravityGradient, Magnetic, MagneticField, Rotor, Sampled,
-    Slug, Term,
+    AttitudeTarget, Damping, Feedback, GravityGradient, Magnetic, MagneticField, Moment, Pulses,
+    Rotor, Sampled, Slug, Term, Thrusters,
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::address::Compiled;
-use super::callbacks::{self, Callback, ReturnKind, WithStates, check_name};
+use super::callbacks::{self, Callback, MOST_STATES, ReturnKind, WithStates, check_name};
+use super::firing::Firing;
 use super::load::{LoadPart, PyLoad, schedule_load};
 use super::pickle_recipe::recipe;
 use super::registry::register;
+use super::wheel::controller_terms;
 use crate::arrays::{
-    as_array, list_floats, read, read_scalar, samples, try_rows, try_series, write, write_of,
+    as_array, list_floats, read, read_list, read_scalar, samples, try_rows, try_series, write,
+    write_of,
 };
 use crate::attitudes::read_attitude;
 use crate::errors::to_py;
 use crate::interrupt::watched;
 use crate::kinematics::parse_frame;
 use crate::orbits::Orbits;
+use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
 
 // The function that makes the load of a controller.
@@ -138,7 +142,7 @@ fn aims(
                 "target: expected an attitude for each of the {} times, shape ({}, 4), got shape {}",
                 times.len(),
                 times.len(),
-                crate::shape::tuple(&[&samples.shape[..], &[4]].concat()),
+                tuple(&[&samples.shape[..], &[4]].concat()),
             )));
         }
         let aim = watched(py, |watch| {
@@ -274,8 +278,10 @@ register!(GravityGradient by gravity_gradient);
 ///
 /// Parameters
 /// ----------
-/// dipole : array_like, shape (..., 3)
-///     Magnetic moment that is fixed in the body, components in the body frame.
+/// dipole : array_like, shape (..., 3) or (..., n, 3), or Load
+///     Magnetic moment in the body frame, of a magnet or of coils: constant; known at `dipole_times`, where each value
+///     holds until the next time; or a controller, as :func:`wheel` takes it. Of the torque N that the
+///     controller asks for the coils exert the part across the field: ``m = B × N/|B|**2``.
 /// field : array_like, shape (..., 3) or (..., n, 3), or DipoleField
 ///     B, components in space: uniform; known at `times`, with a cubic spline in between; or along an orbit,
 ///     as :meth:`polhode.orbits.Orbit.dipole_field` makes it.
@@ -284,6 +290,11 @@ register!(GravityGradient by gravity_gradient);
 ///     body frame. It slows the rotation of the body down.
 /// times : array_like, shape (n,), optional
 ///     Times of `field`, ascending.
+/// dipole_times : array_like, shape (n,), optional
+///     Times of `dipole`, ascending.
+/// max_dipole : float or array_like, shape (..., 3), optional
+///     Largest moment of the three coils, along the axes of the body frame: each component of m is clipped to it.
+///     :meth:`polhode.Event.dipole_limit` finds when that begins and ends. Coils along other axes are loads of their own.
 ///
 /// Returns
 /// -------
@@ -306,27 +317,74 @@ register!(GravityGradient by gravity_gradient);
 /// >>> quarter = needle.simulate([0, period / 4], (0, 0, 0), (0, 0, 1e-4, 1), load=earth)
 /// >>> bool(abs(quarter.quaternion[-1, 2]) < 1e-11)
 /// True
+///
+/// Three coils of 0.2 A m² damp a rotation. The part along the field stays:
+///
+/// >>> satellite = RigidBody.from_principal(10.0, (0.3, 0.4, 0.5))
+/// >>> coils = loads.magnetic(loads.feedback(K=0, D=1e-3), field=(0, 0, 4e-5), max_dipole=0.2)
+/// >>> satellite.simulate([0, 1e5], (0.03, 0, 0), load=coils).omega[-1].round(6) + 0.0
+/// array([0., 0., 0.])
 #[pyfunction]
-#[pyo3(signature = (dipole, field, *, gain=None, times=None))]
+#[pyo3(signature = (dipole, field, *, gain=None, times=None, dipole_times=None, max_dipole=None))]
 pub(crate) fn magnetic(
     py: Python<'_>,
     dipole: &Bound<'_, PyAny>,
     field: &Bound<'_, PyAny>,
     gain: Option<&Bound<'_, PyAny>>,
     times: Option<&Bound<'_, PyAny>>,
+    dipole_times: Option<&Bound<'_, PyAny>>,
+    max_dipole: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyLoad> {
-    let moments: Stack<Vector3<f64>> = read(dipole, "dipole")?;
+    let controller = dipole.cast::<PyLoad>().ok();
+    let moments: Stack<(Moment, Vec<Term>)> = match (&controller, dipole_times) {
+        (Some(load), None) => controller_terms(py, load.get())?
+            .map(py, |row| (Moment::Commanded(1.0), row.clone()))?,
+        (Some(_), Some(_)) => {
+            return Err(PyTypeError::new_err(
+                "dipole_times: not beside a controller; loads.schedule(...) makes one that acts at times",
+            ));
+        }
+        (None, Some(times)) => {
+            let (times, values) = samples([times, dipole], ["dipole_times", "dipole"])?;
+            try_series(py, &values, |series, _| {
+                Ok((Moment::table(&times, series)?, Vec::new()))
+            })?
+        }
+        (None, None) => {
+            let moments: Stack<Vector3<f64>> = read(dipole, "dipole")?;
+            moments.map(py, |moment| (Moment::Fixed(*moment), Vec::new()))?
+        }
+    };
     let gains: Stack<Option<f64>> = match gain {
         None => Stack::one(None),
         Some(gain) => read::<f64>(gain, "gain")?.map(py, |&gain| Some(gain))?,
     };
+    let limits: Stack<Option<Vector3<f64>>> = match max_dipole {
+        None => Stack::one(None),
+        Some(given) => vectors(given, "max_dipole")?.map(py, |most| Some(*most))?,
+    };
     let fields = fields(py, field, times)?;
-    let shapes = [&moments.shape[..], &gains.shape, &fields.shape];
-    let grid = Broadcast::of(["dipole", "gain", "field"], shapes)?;
-    let terms = grid.try_map(py, |[d, k, b]| {
-        Magnetic::new(&moments[d], gains[k], fields[b].clone()).map(Term::Magnetic)
+    let shapes = [
+        &moments.shape[..],
+        &gains.shape,
+        &fields.shape,
+        &limits.shape,
+    ];
+    let grid = Broadcast::of(["dipole", "gain", "field", "max_dipole"], shapes)?;
+    let is_controlled = controller.is_some();
+    let terms = grid.try_map(py, |[d, k, b, l]| {
+        let (moment, asks) = moments[d].clone();
+        let mut coils = Magnetic::of(moment, gains[k], fields[b].clone())?;
+        if let Some(most) = &limits[l] {
+            coils = coils.with_max_dipole(most)?;
+        }
+        if is_controlled {
+            Term::controlled_coils(coils, asks)
+        } else {
+            Ok(Term::Magnetic(coils))
+        }
     })?;
-    // Arrays are copied; a field along an orbit never changes.
+    // Arrays are copied; a field along an orbit never changes, nor does a controller.
     let numpy = crate::arrays::numpy(py)?;
     let kept = |given: &Bound<'_, PyAny>| -> PyResult<Py<PyAny>> {
         Ok(numpy.call_method1("array", (given, "float64"))?.unbind())
@@ -336,12 +394,24 @@ pub(crate) fn magnetic(
     } else {
         kept(field)?
     };
+    let dipole = if controller.is_some() {
+        dipole.clone().unbind()
+    } else {
+        kept(dipole)?
+    };
     let options = PyDict::new(py);
     options.set_item("gain", gain.map(&kept).transpose()?)?;
-    options.set_item("times", times.map(kept).transpose()?)?;
-    let arguments = (write(py, &moments)?, field, options);
-    let recipe = recipe(py, "magnetic", arguments)?;
-    Ok(PyLoad::one(LoadPart::Term(terms), recipe))
+    options.set_item("times", times.map(&kept).transpose()?)?;
+    options.set_item("dipole_times", dipole_times.map(&kept).transpose()?)?;
+    options.set_item("max_dipole", max_dipole.map(kept).transpose()?)?;
+    let recipe = recipe(py, "magnetic", (dipole, field, options))?;
+    let mut load = PyLoad::one(LoadPart::Term(terms), recipe);
+    if let Some(controller) = controller.filter(|one| !one.get().is_analytic())
+        && let Some(part) = load.parts.first_mut()
+    {
+        part.controller = Some(controller.clone().unbind());
+    }
+    Ok(load)
 }
 
 register!(Magnetic by magnetic);
@@ -373,6 +443,157 @@ fn fields(
     try_series(py, &values, |series, watch| {
         MagneticField::sampled_watched(&times, series, watch)
     })
+}
+
+// The function that makes thrusters.
+
+/// Thrusters that fire in pulses: in each period from its start on, for a part of it.
+///
+/// Each exerts a force at a point of the body, so that it turns the body and pushes it. The duty of a thruster
+/// is the part of a period in which it fires, from 0 to 1. The duties are known at the start of a period, and
+/// with them the times at which the thrusters are switched off. A simulation ends a step at each switch, so the
+/// times are exact.
+///
+/// Parameters
+/// ----------
+/// positions : array_like, shape (n, 3)
+///     Points where the forces act, in the body frame. At most 25 thrusters.
+/// directions : array_like, shape (n, 3)
+///     Directions of the forces on the body, against the exhaust, in the body frame. The lengths do not count.
+/// forces : array_like, shape () or (n,)
+///     Force of a thruster that fires.
+/// command : array_like, shape (n,) or (k, n), or callable
+///     Duties. An array of shape (n,) is for all periods. Of an array of shape (k, n) each row is for the periods
+///     that start at the same one of `times`, or later. A function
+///     ``command(t, omega, quaternion, position, velocity, states)`` returns n numbers. It is called at the
+///     start of each period, with the arguments of the functions of :func:`with_states`. Duties below 0 count
+///     as 0, and those above 1 as 1.
+/// period : float
+///     Time from the start of one period to the next one. The first period starts with the motion.
+/// min_on : float, optional
+///     Shortest time for which a thruster can fire. If a pulse would be shorter, the thruster does not fire.
+/// max_on : float, optional
+///     Longest time for which a thruster can fire in a period; the period by default.
+/// deadband : float, optional
+///     With it the thrusters are on or off: one with a duty of `deadband` or more fires for `max_on`, one with
+///     less does not fire.
+/// times : array_like, shape (k,), optional
+///     Times of a `command` of shape (k, n), ascending.
+/// name : str, optional
+///     Name of the states.
+///
+/// Returns
+/// -------
+/// Load
+///     Its states in ``states`` of a trajectory are the impulses of the thrusters since the start, force times
+///     time of firing, shape (n,), under `name`; and the lengths of the pulses of the period under way under
+///     `name` with ``_pulse``.
+///
+/// Notes
+/// -----
+/// The mass of the propellant that a thruster has used is its impulse divided by its specific impulse (a
+/// speed; of a value in seconds, that times 9.80665 m/s²). The mass of the body does not change.
+///
+/// :meth:`polhode.Event.pulse` finds when a thruster is switched on and off.
+///
+/// Examples
+/// --------
+/// A pair of thrusters turns a satellite. A controller asks every 0.1 s for the torque ``-0.4 ω``, of which each
+/// thruster can do one sign:
+///
+/// >>> import numpy as np
+/// >>> from polhode import RigidBody, loads
+/// >>> body = RigidBody.from_principal(90.0, (8.0, 9.0, 10.0))
+/// >>> def duties(t, omega, *_):
+/// ...     return np.array([-0.4, 0.4]) * omega[2] / (0.5 * 0.02)
+/// >>> arms, along = [(0.5, 0, 0), (0.5, 0, 0)], [(0, 1, 0), (0, -1, 0)]
+/// >>> jets = loads.thrusters(arms, along, 0.02, command=duties, period=0.1, min_on=0.01)
+/// >>> motion = body.simulate([0, 120], omega=(0, 0, 0.05), load=jets)
+/// >>> bool(abs(motion.omega[-1, 2]) < 0.0026)
+/// True
+/// >>> impulse = motion.states["thrusters"][-1]
+/// >>> bool(np.isclose(0.5 * (impulse[1] - impulse[0]), 10.0 * (0.05 - motion.omega[-1, 2])))
+/// True
+/// >>> propellant = impulse.sum() / (70 * 9.80665)  # in kg, for a specific impulse of 70 s
+#[pyfunction]
+#[pyo3(signature = (positions, directions, forces, *, command, period, min_on=None, max_on=None, deadband=None, times=None,
+                   name="thrusters"))]
+#[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
+#[expect(clippy::doc_link_with_quotes, reason = "the name of a state in Python")]
+pub(crate) fn thrusters(
+    py: Python<'_>,
+    positions: &Bound<'_, PyAny>,
+    directions: &Bound<'_, PyAny>,
+    forces: &Bound<'_, PyAny>,
+    command: &Bound<'_, PyAny>,
+    #[pyo3(from_py_with = read_scalar)] period: f64,
+    #[pyo3(from_py_with = read_scalar)] min_on: Option<f64>,
+    #[pyo3(from_py_with = read_scalar)] max_on: Option<f64>,
+    #[pyo3(from_py_with = read_scalar)] deadband: Option<f64>,
+    times: Option<&Bound<'_, PyAny>>,
+    #[pyo3(from_py_with = read_scalar)] name: &str,
+) -> PyResult<PyLoad> {
+    check_name(name)?;
+    let at: Stack<Vector3<f64>> = read_list(positions, "positions", "n")?;
+    let along: Stack<Vector3<f64>> = read_list(directions, "directions", "n")?;
+    let count = at.rows.len();
+    let most = MOST_STATES / 2;
+    if count == 0 || count > most {
+        return Err(PyValueError::new_err(format!(
+            "positions: expected from 1 to {most} thrusters, got {count}; loads with more of them can be added"
+        )));
+    }
+    if along.rows.len() != count {
+        return Err(PyValueError::new_err(format!(
+            "directions: expected one for each of the {count} thrusters, got {}",
+            along.rows.len()
+        )));
+    }
+    let given: Stack<f64> = read(forces, "forces")?;
+    let each = match given.shape[..] {
+        [] => vec![given[0]; count],
+        [found] if found == count => given.rows.clone(),
+        _ => {
+            return Err(PyValueError::new_err(format!(
+                "forces: expected one number, or one for each of the {count} thrusters, got the shape {}",
+                tuple(&given.shape)
+            )));
+        }
+    };
+    let core = |error: &Error| to_py(py, error);
+    let pulses =
+        Pulses::new(period, min_on.unwrap_or(0.0), max_on, deadband).map_err(|e| core(&e))?;
+    let set = Thrusters::new(&at.rows, &along.rows, &each, pulses).map_err(|e| core(&e))?;
+    if command.is_instance_of::<PyLoad>() {
+        return Err(PyTypeError::new_err(
+            "command: a load asks for a torque, not for duties; give a function \
+             command(t, omega, quaternion, position, velocity, states) that returns the duty of each thruster",
+        ));
+    }
+    let firing = Firing::new(set, command, times)?;
+    let options = PyDict::new(py);
+    let copy = |given: &Bound<'_, PyAny>| -> PyResult<Py<PyAny>> {
+        let array = crate::arrays::numpy(py)?.call_method1("array", (given, "float64"))?;
+        Ok(array.unbind())
+    };
+    if firing.calls_python() {
+        options.set_item("command", command)?;
+    } else {
+        options.set_item("command", copy(command)?)?;
+    }
+    options.set_item("period", period)?;
+    for (what, given) in [
+        ("min_on", min_on),
+        ("max_on", max_on),
+        ("deadband", deadband),
+    ] {
+        options.set_item(what, given)?;
+    }
+    options.set_item("times", times.map(copy).transpose()?)?;
+    options.set_item("name", name)?;
+    let arguments = (write(py, &at)?, write(py, &along)?, copy(forces)?, options);
+    let recipe = recipe(py, "thrusters", arguments)?;
+    Ok(PyLoad::one(LoadPart::Thrusters(firing), recipe).with_name(name))
 }
 
 // The functions that make loads of functions: of Python's and of compiled ones.
@@ -827,6 +1048,19 @@ pub(crate) fn schedule(
     windows: &Bound<'_, PyAny>,
 ) -> PyResult<PyLoad> {
     schedule_load(py, load.get(), windows)
+}
+
+/// Vectors (..., 3), or a number for all components.
+fn vectors(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Stack<Vector3<f64>>> {
+    let is_number = as_array(object, name)?
+        .getattr("ndim")?
+        .extract::<usize>()?
+        == 0;
+    if !is_number {
+        return read(object, name);
+    }
+    let number: Stack<f64> = read(object, name)?;
+    number.map(object.py(), |&x| Vector3::repeat(x))
 }
 
 /// Matrices (..., 3, 3), or a number times the identity.

@@ -15,6 +15,7 @@ use pyo3::{PyTraverseError, PyVisit};
 
 use super::address::Compiled;
 use super::callbacks::{Callback, MOST_STATES, Slot, WithStates, report_states};
+use super::firing::Firing;
 use super::pickle_recipe::{describe, recipe, unfold};
 use crate::arrays::{floats, numpy, read_list, read_scalar, try_rows};
 use crate::errors::to_py;
@@ -134,6 +135,13 @@ impl PyLoad {
         })
     }
 
+    pub(super) fn thrusters(&self) -> impl Iterator<Item = &Firing> {
+        self.parts.iter().filter_map(|part| match &part.acts {
+            LoadPart::Thrusters(firing) => Some(firing),
+            _ => None,
+        })
+    }
+
     pub(super) fn compiled_functions(&self) -> impl Iterator<Item = &Compiled> {
         self.parts.iter().filter_map(|part| match &part.acts {
             LoadPart::Compiled(compiled) => Some(compiled),
@@ -169,6 +177,7 @@ impl PyLoad {
     pub(crate) fn calls_python(&self) -> bool {
         self.callbacks().next().is_some()
             || self.with_states().next().is_some()
+            || self.thrusters().any(Firing::calls_python)
             || self.controllers().0.into_iter().any(Self::calls_python)
     }
 
@@ -202,10 +211,18 @@ impl PyLoad {
                 part.recipe = recipe(py, "_with_epoch", (&part.recipe, t))?;
                 part.acts = LoadPart::Term(terms.map(py, |term| term.clone().with_epoch(t))?);
             }
-            if let LoadPart::WithStates(one) = &mut part.acts
-                && one.needs_epoch()
-            {
-                one.start_at(t);
+            let begins = match &mut part.acts {
+                LoadPart::WithStates(one) if one.needs_epoch() => {
+                    one.start_at(t);
+                    true
+                }
+                LoadPart::Thrusters(firing) if firing.needs_epoch() => {
+                    firing.start_at(t);
+                    true
+                }
+                _ => false,
+            };
+            if begins {
                 part.recipe = recipe(py, "_with_epoch", (&part.recipe, t))?;
             }
             Ok(part)
@@ -277,6 +294,7 @@ pub(super) enum LoadPart {
     Callback(Callback),
     Compiled(Compiled),
     WithStates(WithStates),
+    Thrusters(Firing),
 }
 
 impl Part {
@@ -289,6 +307,7 @@ impl Part {
             LoadPart::Callback(callback) => visit.call(callback.function()),
             LoadPart::Compiled(compiled) => visit.call(compiled.owner()),
             LoadPart::WithStates(one) => one.traverse(visit),
+            LoadPart::Thrusters(firing) => firing.traverse(visit),
         }
     }
 
@@ -299,6 +318,7 @@ impl Part {
                 LoadPart::Callback(callback) => LoadPart::Callback(callback.clone_ref(py)),
                 LoadPart::Compiled(compiled) => LoadPart::Compiled(compiled.clone_ref(py)),
                 LoadPart::WithStates(one) => LoadPart::WithStates(one.clone_ref(py)),
+                LoadPart::Thrusters(firing) => LoadPart::Thrusters(firing.clone_ref(py)),
             },
             recipe: self.recipe.clone_ref(py),
             name: self.name.clone(),
@@ -320,7 +340,7 @@ impl Part {
             LoadPart::Term(terms) => *terms = try_rows(py, terms, |term| term.scaled(factor))?,
             LoadPart::Callback(callback) => callback.factor *= factor,
             LoadPart::Compiled(compiled) => compiled.factor *= factor,
-            LoadPart::WithStates(_) => (),
+            LoadPart::WithStates(_) | LoadPart::Thrusters(_) => (),
         }
         scaled.recipe = recipe(py, "_scaled", (&self.recipe, factor))?;
         Ok(scaled)
@@ -330,7 +350,7 @@ impl Part {
     /// rotor, but with a name.
     fn check_changes(&self, py: Python<'_>, what: &'static str) -> PyResult<()> {
         let has_states = match &self.acts {
-            LoadPart::WithStates(_) => true,
+            LoadPart::WithStates(_) | LoadPart::Thrusters(_) => true,
             LoadPart::Compiled(compiled) => !compiled.initial.is_empty(),
             LoadPart::Term(_) => self.name.is_some(),
             LoadPart::Callback(_) => false,
@@ -382,7 +402,7 @@ impl Part {
             }
             LoadPart::Callback(callback) => callback.windows = within(&callback.windows),
             LoadPart::Compiled(compiled) => compiled.windows = within(&compiled.windows),
-            LoadPart::WithStates(_) => (),
+            LoadPart::WithStates(_) | LoadPart::Thrusters(_) => (),
         }
         part.recipe = recipe(py, "_scheduled", (&self.recipe, given))?;
         Ok(part)
@@ -563,11 +583,11 @@ const SAME: f64 = 1e-9;
 
 impl PyLoad {
     /// The states of its parts, in the order in which a run has them: first those of its analytic terms, then those of parts that call
-    /// Python, then those of compiled functions. Of parts with the same name the second is called `name_2`.
+    /// Python, then those of compiled functions, then those of thrusters, and those of controllers last. Of parts with the same name the second is called `name_2`.
     pub(crate) fn slots(&self) -> Vec<Slot> {
         let mut slots: Vec<Slot> = Vec::new();
         let mut first = 0;
-        for kind in 0..3 {
+        for kind in 0..4 {
             for part in &self.parts {
                 let (of_kind, count) = match &part.acts {
                     LoadPart::Term(terms) => {
@@ -576,16 +596,18 @@ impl PyLoad {
                     LoadPart::Callback(_) => (1, 0),
                     LoadPart::WithStates(one) => (1, one.initial.len()),
                     LoadPart::Compiled(one) => (2, one.initial.len()),
+                    LoadPart::Thrusters(firing) => (3, firing.count()),
                 };
                 if of_kind != kind || count == 0 {
                     continue;
                 }
-                slots.push(Slot {
-                    name: unused_name(part.name.as_deref().unwrap_or("states"), &slots),
-                    first,
-                    count,
-                });
-                first += count;
+                let name = unused_name(part.name.as_deref().unwrap_or("states"), &slots);
+                let pulses = (kind == 3).then(|| format!("{name}_pulse"));
+                for name in [Some(name), pulses].into_iter().flatten() {
+                    let name = unused_name(&name, &slots);
+                    slots.push(Slot { name, first, count });
+                    first += count;
+                }
             }
         }
         for controller in self.controllers().0 {
@@ -669,7 +691,7 @@ impl PyLoad {
     }
 
     /// That a run from one time to another can be made.
-    pub(crate) fn check_run(&self, from: f64, to: f64) -> PyResult<()> {
+    pub(crate) fn check_run(&self, py: Python<'_>, from: f64, to: f64) -> PyResult<()> {
         let count: usize = self.slots().iter().map(|slot| slot.count).sum();
         if count > MOST_STATES && !self.is_analytic() {
             return Err(PyValueError::new_err(format!(
@@ -677,16 +699,18 @@ impl PyLoad {
             )));
         }
         self.with_states().try_for_each(|one| one.check(from, to))?;
+        (self.thrusters()).try_for_each(|firing| firing.check(py, from, to))?;
         let mut controllers = self.controllers().0.into_iter();
-        controllers.try_for_each(|one| one.check_run(from, to))
+        controllers.try_for_each(|one| one.check_run(py, from, to))
     }
 
     /// The initial states of functions, those of controllers last.
     fn initial_of_functions(&self) -> Vec<&[f64]> {
         let called = self.with_states().map(|one| &one.initial[..]);
         let compiled = self.compiled_functions().map(|one| &one.initial[..]);
+        let fired = self.thrusters().map(|firing| &firing.initial[..]);
         let asked = self.controllers().0.into_iter();
-        (called.chain(compiled))
+        (called.chain(compiled).chain(fired))
             .chain(asked.flat_map(Self::initial_of_functions))
             .collect()
     }
@@ -695,8 +719,9 @@ impl PyLoad {
     pub(super) fn scales_of_functions(&self) -> Vec<f64> {
         let called = self.with_states().flat_map(|one| one.scale.iter().copied());
         let compiled = (self.compiled_functions()).flat_map(|one| one.scale.iter().copied());
+        let fired = (self.thrusters()).flat_map(|firing| firing.scale.iter().copied());
         let asked = self.controllers().0.into_iter();
-        (called.chain(compiled))
+        (called.chain(compiled).chain(fired))
             .chain(asked.flat_map(Self::scales_of_functions))
             .collect()
     }

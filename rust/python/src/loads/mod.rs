@@ -3,6 +3,8 @@
 //! | file | what it knows |
 //! |---|---|
 //! | `callbacks` | Python functions, with states of their own or without; states by name |
+//! | `clock` | the times at which controllers look at the body |
+//! | `firing` | thrusters as a part of a load, and what they are told |
 //! | `address` | a function at an address |
 //! | `load` | the sum of terms, and its states; one term, scaled, scheduled, picked; what Python's operators and pickle do with it |
 //! | `pickle_recipe` | how a term was made, for pickle |
@@ -15,7 +17,9 @@
 mod acting;
 mod address;
 mod callbacks;
+mod clock;
 mod evaluate;
+mod firing;
 mod laws;
 mod load;
 mod pickle_recipe;
@@ -24,7 +28,7 @@ mod wheel;
 
 pub(crate) use acting::{ActingLoad, Fault, carried_along};
 pub(crate) use callbacks::{Named, Slot, report_states};
-pub(crate) use laws::{callback, compiled, schedule, torque_callback, with_states};
+pub(crate) use laws::{callback, compiled, schedule, thrusters, torque_callback, with_states};
 pub(crate) use load::PyLoad;
 pub(crate) use registry::declare_laws;
 pub(crate) use wheel::{PyWheel, Turns, wheels};

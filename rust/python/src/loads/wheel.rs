@@ -4,6 +4,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 use nalgebra::Vector3;
 use numpy::PyUntypedArrayMethods;
+use polhode::error::MotionFault;
 use polhode::motion::loads::{
     Drive, PiecewiseSignal, Rotor, Term, Wheel, allocation, allocation_error,
 };
@@ -766,6 +767,14 @@ fn read_drive(
 /// What a motor does, and the terms of the controller that it follows.
 type Motor = (Drive, Option<Vec<Term>>);
 
+/// The analytic terms of a controller, which exerts a torque alone.
+pub(super) fn controller_terms(py: Python<'_>, load: &PyLoad) -> PyResult<Stack<Vec<Term>>> {
+    if load.thrusters().next().is_some() {
+        return Err(to_py(py, &MotionFault::NoController.into()));
+    }
+    load.terms(py)
+}
+
 /// What a controller asks of a motor: a feedback alone has a series, the terms of others are asked one by one.
 fn read_controller(
     py: Python<'_>,
@@ -777,7 +786,7 @@ fn read_controller(
             "times: not beside a controller; loads.schedule(...) makes one that acts at times",
         ));
     }
-    let terms = load.terms(py)?;
+    let terms = controller_terms(py, load)?;
     let is_feedback =
         load.is_analytic() && (terms.rows.iter()).all(|row| matches!(row[..], [Term::Feedback(_)]));
     let motors = terms.rows.into_iter().map(|mut row| match row.pop() {

@@ -225,7 +225,7 @@ impl PyRigidBody {
             &|done| interrupt.poll(done),
         )
         .map_err(|refusal| refused(py, &start.bodies.shape, &refusal))?;
-        acts.check_run(times[0], times[times.len() - 1])?;
+        acts.check_run(py, times[0], times[times.len() - 1])?;
         let ensemble = Ensemble {
             start: &start,
             grid: start.grid()?,

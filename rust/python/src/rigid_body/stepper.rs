@@ -359,7 +359,7 @@ impl PyStepper {
         events: &Functions,
     ) -> PyResult<Run<Fault>> {
         let Acting { load, terms, .. } = acting;
-        load.check_run(times[0], times[1])?;
+        load.check_run(py, times[0], times[1])?;
         let now = &self.samples[self.samples.len() - 1];
         let initial = Phase {
             internal_state: load.initial_states(terms, times[0], &now.omega, states),

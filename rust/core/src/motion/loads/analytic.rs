@@ -129,6 +129,19 @@ impl<'a> Analytic<'a> {
         sum
     }
 
+    /// As [`Self::over_limit`] of the coils of which most is asked, relative to their limit.
+    fn coils_over_limit(&self, t: f64, phase: &Phase) -> f64 {
+        let mut most: f64 = -1.0;
+        for (term, &number) in self.active.iter().zip(&self.numbers) {
+            if let Some(coils) = term.coils().filter(|coils| coils.has_limit()) {
+                let command = self.commanded(number, t, phase, &mut [].iter());
+                let idle = LawContext::without_command(&self.body, t, self.middle, phase);
+                most = most.max(coils.over_limit(&LawContext { command, ..idle }));
+            }
+        }
+        most
+    }
+
     /// The wheel of a bearing turns as that says, from now on.
     fn turn(&mut self, bearing: Bearing) {
         let mine = self.bearings.iter_mut().flatten();
@@ -236,7 +249,10 @@ impl Load for Analytic<'_> {
         self.bearings.as_deref().unwrap_or_default()
     }
 
-    fn over_limit(&self, state: usize, t: f64, phase: &Phase) -> f64 {
+    fn over_limit(&self, wheel: Option<usize>, t: f64, phase: &Phase) -> f64 {
+        let Some(state) = wheel else {
+            return self.coils_over_limit(t, phase);
+        };
         let mut index = 0;
         for (number, term) in self.terms.iter().enumerate() {
             if let Some(carried) = term.carried() {
@@ -301,6 +317,10 @@ impl Load for Analytic<'_> {
                     carried.rates(&now, mine, rates);
                 }
                 Wrench::couple(carried.torque(&now, mine))
+            } else if let Some(coils) = term.coils() {
+                let command = self.commanded(number, t, phase, &mut asked);
+                let idle = LawContext::without_command(&self.body, t, self.middle, phase);
+                Wrench::couple(coils.torque(&LawContext { command, ..idle }))
             } else if let Some(switch) = switch {
                 term.settled_wrench(switch.side, &self.body, t, phase)
             } else {

@@ -68,14 +68,7 @@ pub trait CarriedMomentum {
         command: Vector3<f64>,
     ) -> Vector3<f64> {
         let state = self.begin(t, &phase.omega);
-        let idle = LawContext {
-            body,
-            t,
-            middle: t,
-            phase,
-            side: 1.0,
-            command: Vector3::zeros(),
-        };
+        let idle = LawContext::without_command(body, t, t, phase);
         self.torque(&LawContext { command, ..idle }, &state) - self.torque(&idle, &state)
     }
 
@@ -107,4 +100,23 @@ pub struct LawContext<'a> {
     pub side: f64,
     /// The torque on the body that the controller of a motor asks for.
     pub command: Vector3<f64>,
+}
+
+impl<'a> LawContext<'a> {
+    /// That of a law that no controller asks for anything.
+    pub(super) fn without_command(
+        body: &'a BodyAtPoint,
+        t: f64,
+        middle: f64,
+        phase: &'a Phase,
+    ) -> Self {
+        Self {
+            body,
+            t,
+            middle,
+            phase,
+            side: 1.0,
+            command: Vector3::zeros(),
+        }
+    }
 }

@@ -20,7 +20,7 @@ pub use self::constant_torque::ConstantTorque;
 pub use self::damping::Damping;
 pub use self::feedback::Feedback;
 pub use self::gravity_gradient::GravityGradient;
-pub use self::magnetic::{Magnetic, MagneticField};
+pub use self::magnetic::{Magnetic, MagneticField, Moment};
 pub use self::rotor::Rotor;
 pub use self::sampled::Sampled;
 pub use self::slug::Slug;
@@ -28,7 +28,7 @@ pub use self::uniform_gravity::UniformGravity;
 pub use self::wheel::{Drive, Wheel};
 
 use super::body_at_point::BodyAtPoint;
-use super::carried_momentum::CarriedMomentum;
+use super::carried_momentum::{CarriedMomentum, LawContext};
 use super::law::{ConservedMomentum, Law, Traits};
 use super::principal_frame::{LawNumber, PrincipalFrame};
 use super::schedule::Windows;
@@ -54,10 +54,10 @@ macro_rules! laws {
                 /// Which.
                 term: Box<Term>,
             },
-            /// A wheel whose motor follows a controller.
+            /// A wheel whose motor follows a controller, or coils that do.
             Controlled {
-                /// The wheel, with a [`Drive::Controller`].
-                wheel: Box<Term>,
+                /// The wheel, with a [`Drive::Controller`], or the coils, with a [`Moment::Commanded`].
+                term: Box<Term>,
                 /// The terms of the controller; what a program asks for besides is [commanded](super::Analytic::command).
                 controller: Vec<Term>,
             },
@@ -85,10 +85,15 @@ macro_rules! laws {
                 match self {
                     $(Self::$law(law) => law.traits(pivoted),)+
                     Self::Scheduled { term, .. } => term.traits(pivoted),
-                    Self::Controlled { wheel, controller } => {
-                        let own = wheel.traits(pivoted);
+                    Self::Controlled { term, controller } => {
+                        let own = term.traits(pivoted);
                         let needs_epoch = controller.iter().any(Term::needs_epoch);
-                        Traits { needs_epoch: own.needs_epoch || needs_epoch, ..own }
+                        let needs_body = controller.iter().any(Term::needs_body);
+                        Traits {
+                            needs_epoch: own.needs_epoch || needs_epoch,
+                            needs_body: own.needs_body || needs_body,
+                            ..own
+                        }
                     }
                 }
             }
@@ -100,7 +105,7 @@ macro_rules! laws {
                 match self {
                     $(Self::$law(law) => law.parameters(),)+
                     Self::Scheduled { term, .. } => term.parameters(),
-                    Self::Controlled { wheel, .. } => wheel.parameters(),
+                    Self::Controlled { term, .. } => term.parameters(),
                 }
             }
 
@@ -116,7 +121,10 @@ macro_rules! laws {
                         windows: windows.clone(),
                         term: Box::new(term.scaled(factor)?),
                     },
-                    Self::Controlled { wheel, .. } => wheel.scaled(factor)?, // refused
+                    Self::Controlled { term, controller } => Self::Controlled {
+                        term: Box::new(term.scaled(factor)?), // refused of wheels
+                        controller: controller.clone(),
+                    },
                 })
             }
 
@@ -129,9 +137,10 @@ macro_rules! laws {
                         windows,
                         term: Box::new(term.with_epoch(t)),
                     },
-                    Self::Controlled { wheel, controller } => {
+                    Self::Controlled { term, controller } => {
                         let begun = controller.into_iter().map(|term| term.with_epoch(t));
-                        Self::Controlled { wheel, controller: begun.collect() }
+                        let controller = begun.collect();
+                        Self::Controlled { term: Box::new(term.with_epoch(t)), controller }
                     }
                 }
             }
@@ -146,8 +155,10 @@ macro_rules! laws {
                         breaks.extend(term.breaks());
                         breaks
                     }
-                    Self::Controlled { controller, .. } => {
-                        controller.iter().flat_map(Term::breaks).collect()
+                    Self::Controlled { term, controller } => {
+                        let mut breaks = term.breaks();
+                        breaks.extend(controller.iter().flat_map(Term::breaks));
+                        breaks
                     }
                 }
             }
@@ -161,10 +172,10 @@ macro_rules! laws {
                 match self {
                     $(Self::$law(law) => law.check(body, from, to),)+
                     Self::Scheduled { term, .. } => term.check(body, from, to),
-                    Self::Controlled { wheel, controller } => {
+                    Self::Controlled { term, controller } => {
                         let middle = from + 0.5 * (to - from);
                         let mut acting = controller.iter().filter_map(|term| term.active(middle));
-                        wheel.check(body, from, to)?;
+                        term.check(body, from, to)?;
                         acting.try_for_each(|term| term.check(body, from, to))
                     }
                 }
@@ -184,11 +195,15 @@ macro_rules! laws {
                             Wrench::default()
                         }
                     }
-                    Self::Controlled { wheel, controller } => {
+                    Self::Controlled { term, controller } => {
                         let asked = |term: &Term| term.wrench(body, t, phase).torque;
                         let command = controller.iter().map(asked).sum();
-                        let more = wheel.carried().map(|wheel| wheel.answer(body, t, phase, command));
-                        wheel.wrench(body, t, phase) + Wrench::couple(more.unwrap_or_default())
+                        if let Some(coils) = term.coils() {
+                            let idle = LawContext::without_command(body, t, t, phase);
+                            return Wrench::couple(coils.torque(&LawContext { command, ..idle }));
+                        }
+                        let more = term.carried().map(|wheel| wheel.answer(body, t, phase, command));
+                        term.wrench(body, t, phase) + Wrench::couple(more.unwrap_or_default())
                     }
                 }
             }
@@ -212,7 +227,7 @@ macro_rules! laws {
             ) {
                 match self {
                     $(Self::$law(law) => law.add_to(series, axes, side),)+
-                    Self::Scheduled { term, .. } | Self::Controlled { wheel: term, .. } => {
+                    Self::Scheduled { term, .. } | Self::Controlled { term, .. } => {
                         term.add_to(series, axes, side);
                     }
                 }
@@ -222,7 +237,7 @@ macro_rules! laws {
             pub(super) fn switch(&self, body: &BodyAtPoint, t: f64, phase: &Phase) -> Option<Switch> {
                 match self {
                     $(Self::$law(law) => law.switch(body, t, phase),)+
-                    Self::Scheduled { term, .. } | Self::Controlled { wheel: term, .. } => {
+                    Self::Scheduled { term, .. } | Self::Controlled { term, .. } => {
                         term.switch(body, t, phase)
                     }
                 }
@@ -239,7 +254,7 @@ macro_rules! laws {
             ) -> Wrench {
                 match self {
                     $(Self::$law(law) => law.settled_wrench(side, body, t, phase),)+
-                    Self::Scheduled { term, .. } | Self::Controlled { wheel: term, .. } => {
+                    Self::Scheduled { term, .. } | Self::Controlled { term, .. } => {
                         term.settled_wrench(side, body, t, phase)
                     }
                 }
@@ -252,7 +267,7 @@ macro_rules! laws {
             ) -> Option<Vector4<X>> {
                 match self {
                     $(Self::$law(law) => law.switch_function(axes),)+
-                    Self::Scheduled { term, .. } | Self::Controlled { wheel: term, .. } => {
+                    Self::Scheduled { term, .. } | Self::Controlled { term, .. } => {
                         term.switch_function(axes)
                     }
                 }
@@ -264,7 +279,7 @@ macro_rules! laws {
                 match self {
                     $(Self::$law(law) => law.carried(),)+
                     Self::Scheduled { .. } => None, // what is carried along cannot be scheduled
-                    Self::Controlled { wheel, .. } => wheel.carried(),
+                    Self::Controlled { term, .. } => term.carried(),
                 }
             }
 
@@ -350,11 +365,53 @@ impl Term {
         if controller.iter().any(does_more) {
             return Err(MotionFault::NoController.into());
         }
-        let wheel = Box::new(Self::Wheel(wheel));
-        Ok(Self::Controlled { wheel, controller })
+        let term = Box::new(Self::Wheel(wheel));
+        Ok(Self::Controlled { term, controller })
     }
 
-    /// The terms of the controller that the motor of a wheel follows; nothing of other terms.
+    /// Coils that follow the sum of these terms, and what a program [commands](super::Analytic::command): see [`Moment::Commanded`].
+    ///
+    /// # Errors
+    /// As [`Self::controlled`].
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::mass::{Amount, solids};
+    /// use polhode::motion::loads::{BodyAtPoint, Magnetic, MagneticField, Moment, Term};
+    /// use polhode::motion::simulate::{Phase, State};
+    /// use polhode::motion::kinematics::Frame;
+    /// use polhode::nalgebra::{UnitQuaternion, Vector3};
+    ///
+    /// // A torque is asked for; the coils exert the part of it that is across the field.
+    /// let field = MagneticField::uniform(&Vector3::new(0.0, 0.0, 4e-5))?;
+    /// let asked = Term::constant_torque(&Vector3::new(1e-4, 0.0, 2e-4), Frame::Body)?;
+    /// let coils = Term::controlled_coils(Magnetic::of(Moment::Commanded(1.0), None, field)?, vec![asked])?;
+    /// let body = BodyAtPoint::free(&solids::sphere(1.0, Amount::Mass(5.0))?, 0.0);
+    /// let rest = Phase::in_place(&State { attitude: UnitQuaternion::identity(), omega: Vector3::zeros() });
+    /// assert!((coils.wrench(&body, 0.0, &rest).torque - Vector3::x() * 1e-4).norm() < 1e-19);
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    pub fn controlled_coils(coils: Magnetic, controller: Vec<Self>) -> Result<Self, Error> {
+        let does_more = |term: &Self| term.exerts_force() || term.carried().is_some();
+        if controller.iter().any(does_more) {
+            return Err(MotionFault::NoController.into());
+        }
+        let term = Box::new(Self::Magnetic(coils));
+        Ok(Self::Controlled { term, controller })
+    }
+
+    /// The magnets and coils, of a term that is some.
+    #[must_use]
+    pub fn coils(&self) -> Option<&Magnetic> {
+        match self {
+            Self::Magnetic(law) => Some(law),
+            Self::Scheduled { term, .. } | Self::Controlled { term, .. } => term.coils(),
+            _ => None,
+        }
+    }
+
+    /// The terms of the controller that the motor of a wheel, or coils, follow; nothing of other terms.
     #[must_use]
     pub fn controller(&self) -> &[Self] {
         match self {

@@ -107,11 +107,25 @@ pub trait Load {
         &[]
     }
 
-    /// Of the wheel whose momentum is the state of that number, by how much more than its limit the motor is asked for; see
-    /// [`CarriedMomentum::over_limit`].
-    fn over_limit(&self, state: usize, t: f64, phase: &Phase) -> f64 {
-        let _ = (state, t, phase);
+    /// Of the wheel whose momentum is the state of that number, by how much more than its limit the motor is asked for, or of its coils
+    /// with a limit the one that is asked for most; see [`CarriedMomentum::over_limit`].
+    fn over_limit(&self, wheel: Option<usize>, t: f64, phase: &Phase) -> f64 {
+        let _ = (wheel, t, phase);
         -1.0
+    }
+
+    /// The times within a span at which its law switches, where that is known no sooner than at the start of the span, after it has
+    /// [jumped](Self::jump): the span is cut there. Ascending.
+    fn cuts(&self, from: f64, to: f64, phase: &Phase) -> Vec<f64> {
+        let _ = (from, to, phase);
+        Vec::new()
+    }
+
+    /// Of each of its thrusters, by the number of the state that is its impulse, whether it fires just after the time `t`, or just before
+    /// it, where `phase` has not [jumped](Self::jump) yet.
+    fn firing(&self, t: f64, is_before: bool, phase: &Phase) -> Vec<(usize, bool)> {
+        let _ = (t, is_before, phase);
+        Vec::new()
     }
 
     /// Force in N and torque in B about the reference point.

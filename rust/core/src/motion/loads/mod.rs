@@ -11,6 +11,7 @@
 //! | `series_terms`, `principal_frame`, `variables` | what a law adds to the equations of a series, and in which numbers |
 //! | `orbit_model`, [`kepler`], `oblate` | orbits |
 //! | `attitude_target`, `switch` | where a feedback turns the body, and by which sign |
+//! | `thrusters` | thrusters that fire in pulses, of lengths that are known at the start of each period |
 //! | `carried_momentum`, `stiction`, [`piecewise_signal`] | wheels and slugs, dry friction, what motors are told |
 //!
 //! A new law is a new file in `laws`, which answers what a `Law` is asked, and its lines in the list, `laws.rs`.
@@ -77,6 +78,7 @@ mod series_terms;
 mod spline;
 mod stiction;
 mod switch;
+mod thrusters;
 pub(in crate::motion) mod variables;
 mod wrench;
 
@@ -102,6 +104,7 @@ pub(crate) use self::series_terms::{OMEGA, Steps};
 pub use self::stiction::Bearing;
 pub(in crate::motion) use self::stiction::Stiction;
 pub use self::switch::{LawSwitch, Switch};
+pub use self::thrusters::{Pulses, Thrusters};
 pub use self::variables::Parameter;
 pub(crate) use self::variables::ParameterColumns;
 pub use self::wrench::Wrench;

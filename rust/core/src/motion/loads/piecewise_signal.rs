@@ -58,6 +58,16 @@ impl PiecewiseSignal {
         })
     }
 
+    /// The signal whose values are `factor` times as large.
+    pub(super) fn scaled(&self, what: &'static str, factor: f64) -> Result<Self, Error> {
+        let values: Arc<[f64]> = self.values.iter().map(|value| value * factor).collect();
+        all_finite(what, &*values)?;
+        Ok(Self {
+            times: Arc::clone(&self.times),
+            values,
+        })
+    }
+
     /// The times at which it changes.
     #[must_use]
     pub fn times(&self) -> &[f64] {

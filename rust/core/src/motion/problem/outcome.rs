@@ -187,6 +187,17 @@ pub enum EventTrigger {
     Limit(usize),
     /// It comes to the limit of its rate (rising), or leaves it (falling).
     RateLimit(usize),
+    /// What the coils of the load with a limit are asked for comes to the most that they can, or back from there.
+    DipoleLimit,
+    /// The thruster whose impulse is the state of the load of that number is switched on (rising) or off (falling).
+    Pulse(usize),
+}
+
+impl EventTrigger {
+    /// Whether it is searched for within steps. The load tells the others.
+    pub(in crate::motion) fn is_searched(self) -> bool {
+        matches!(self, Self::Function | Self::Limit(_) | Self::DipoleLimit)
+    }
 }
 
 /// What to do with the passages of one function.

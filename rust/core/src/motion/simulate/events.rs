@@ -90,16 +90,15 @@ impl<'a, E: From<Error>> EventDetector<'a, E> {
         t: f64,
         phase: &Phase,
         span: f64,
-        over_limit: &dyn Fn(usize) -> f64,
+        over_limit: &dyn Fn(Option<usize>) -> f64,
     ) -> Result<Self, E> {
         let rules = events.rules().to_vec();
         let values = (0..rules.len())
             .map(|event| match rules[event].trigger {
                 EventTrigger::Function => events.value(event, t, phase),
-                EventTrigger::Limit(state) => Ok(over_limit(state)),
-                EventTrigger::Stop(_) | EventTrigger::Slip(_) | EventTrigger::RateLimit(_) => {
-                    Ok(f64::NAN)
-                }
+                EventTrigger::Limit(state) => Ok(over_limit(Some(state))),
+                EventTrigger::DipoleLimit => Ok(over_limit(None)),
+                _ => Ok(f64::NAN),
             })
             .collect::<Result<Vec<_>, E>>()?;
         Ok(Self {
@@ -176,9 +175,7 @@ impl<'a, E: From<Error>> EventDetector<'a, E> {
         for event in 0..self.rules.len() {
             let (events, rule) = (&mut *self.events, self.rules[event]);
             let trigger = rule.trigger;
-            if let EventTrigger::Stop(_) | EventTrigger::Slip(_) | EventTrigger::RateLimit(_) =
-                trigger
-            {
+            if !trigger.is_searched() {
                 continue; // told by the load
             }
             if self.signs[event] > 0.0
@@ -190,7 +187,8 @@ impl<'a, E: From<Error>> EventDetector<'a, E> {
             let turn = stepper.turn(to - from);
             let mut search = RootSearch {
                 function: &mut |stepper, at, phase| match trigger {
-                    EventTrigger::Limit(state) => Ok(stepper.over_limit(state, at, phase)),
+                    EventTrigger::Limit(state) => Ok(stepper.over_limit(Some(state), at, phase)),
+                    EventTrigger::DipoleLimit => Ok(stepper.over_limit(None, at, phase)),
                     _ => events.value(event, start + at, phase),
                 },
                 event: Some(event),
@@ -291,6 +289,34 @@ impl<'a, E: From<Error>> EventDetector<'a, E> {
             LawSwitch::Slip(bearing) => (EventTrigger::Slip(bearing.index()), None),
             LawSwitch::Sign(_) => return false,
         };
+        self.note_trigger(trigger, other, time, phase)
+    }
+
+    /// The thruster whose impulse is the state of that number is switched on, or off, at this time and state; whether the run is to end
+    /// there.
+    pub(super) fn note_pulse(
+        &mut self,
+        state: usize,
+        is_on: bool,
+        time: f64,
+        phase: &Phase,
+    ) -> bool {
+        let other = if is_on {
+            Direction::Falling
+        } else {
+            Direction::Rising
+        };
+        self.note_trigger(EventTrigger::Pulse(state), Some(other), time, phase)
+    }
+
+    /// What the load tells; it does not count where the `other` direction is looked for.
+    fn note_trigger(
+        &mut self,
+        trigger: EventTrigger,
+        other: Option<Direction>,
+        time: f64,
+        phase: &Phase,
+    ) -> bool {
         let mut is_last = false;
         let is_at_once = (time - self.start).abs() <= AT_ONCE * self.span.abs();
         for event in 0..self.rules.len() {

@@ -283,7 +283,7 @@ impl Method {
                 "analytic loads, no callbacks and no compiled functions"
             }
             Self::Taylor if !has_series => {
-                "loads whose series is known: no orbit about an oblate attractor or along samples, no magnetic field along an orbit, no B-dot, no motor with a limit or a controller that is no feedback, no allocation, no dry friction, no feedback on a target that moves"
+                "loads whose series is known: no orbit about an oblate attractor or along samples, no magnetic field along an orbit, no B-dot, no coils with a limit, a table or a controller, no motor with a limit or a controller that is no feedback, no allocation, no dry friction, no feedback on a target that moves"
             }
             method if is_beyond_doubles && method != Self::Taylor => {
                 "an rtol of 2.3e-15 or more (ten units of rounding)"

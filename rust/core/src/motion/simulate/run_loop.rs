@@ -12,7 +12,7 @@ use crate::error::{Error, MotionFault};
 use crate::motion::integrate::{Dop853, Radau, RungeKutta};
 use crate::motion::loads::{LawSwitch, Load, Stiction};
 use crate::motion::problem::limits::{HELD, check_steps, spans};
-use crate::motion::problem::{Effort, End, Method, Run, Task};
+use crate::motion::problem::{End, Method, Run, Task};
 use crate::motion::state::Phase;
 
 impl<E> Run<E> {
@@ -37,15 +37,22 @@ impl<E> Run<E> {
             load.enter(from, to)?; // where the functions of events are looked at first
         }
         let (start, end) = (task.times[0], bounds[bounds.len() - 1]);
-        let over_limit = |state| load.over_limit(state, start, &task.initial);
+        let over_limit = |wheel| load.over_limit(wheel, start, &task.initial);
         let mut detector =
             EventDetector::new(events, start, &task.initial, end - start, &over_limit)?;
         let mut carry = Carry::default();
-        for pair in bounds.windows(2) {
-            let [mut from, to] = [pair[0], pair[1]];
-            load.enter(from, to)?;
-            load.jump(from, &mut self.phase)?;
-            load.settle(from, &self.phase);
+        // The ends of the spans to come, the next one last: what the load does at the start of a span may cut it.
+        let mut ends: Vec<f64> = bounds.iter().skip(1).rev().copied().collect();
+        let mut begin = start;
+        while let Some(mut to) = ends.pop() {
+            let mut from = begin;
+            let is_last;
+            (to, is_last) = self.begin_span(load, &mut detector, [from, to], &mut ends)?;
+            if is_last {
+                self.crossings = detector.crossings;
+                return Ok(End::Event);
+            }
+            begin = to;
             // Where the law of the load changes with the state, by what.
             let mut flip: Option<(LawSwitch, f64)> = None;
             let mut flips_at_once = 0_usize;
@@ -67,11 +74,9 @@ impl<E> Run<E> {
                     &mut detector,
                     &mut watch,
                 );
-                let Effort { steps, evaluations } = stepper.effort();
-                self.effort = Effort {
-                    steps: before.steps + steps,
-                    evaluations: before.evaluations + evaluations,
-                };
+                let of_span = stepper.effort();
+                self.effort.steps = before.steps + of_span.steps;
+                self.effort.evaluations = before.evaluations + of_span.evaluations;
                 carry = stepper.carry();
                 drop(stepper);
                 match ended {
@@ -128,6 +133,37 @@ impl<E> Run<E> {
         }
         self.crossings = detector.crossings;
         Ok(End::Complete)
+    }
+
+    /// At the start of a span the states of the load jump, and the span may be cut, with the rest of it among the `ends` to come: its end
+    /// then, and whether the run is to end here, since a thruster is switched.
+    fn begin_span<L: Load<Error = E>>(
+        &mut self,
+        load: &mut L,
+        detector: &mut EventDetector<'_, E>,
+        [from, mut to]: [f64; 2],
+        ends: &mut Vec<f64>,
+    ) -> Result<(f64, bool), E>
+    where
+        E: From<Error>,
+    {
+        let fired = load.firing(from, true, &self.phase);
+        load.enter(from, to)?;
+        load.jump(from, &mut self.phase)?;
+        if let Some(&cut) = load.cuts(from, to, &self.phase).first() {
+            ends.push(to);
+            to = cut;
+            load.enter(from, to)?;
+        }
+        load.settle(from, &self.phase);
+        let mut is_last = false;
+        let fires = load.firing(from, false, &self.phase);
+        for ((_, before), (state, after)) in fired.into_iter().zip(fires) {
+            if before != after {
+                is_last |= detector.note_pulse(state, after, from, &self.phase);
+            }
+        }
+        Ok((to, is_last))
     }
 
     /// Takes the law of the load beyond a switch. The stopping time of a wheel is known only to rounding, so a small relative rate is left:

@@ -59,8 +59,8 @@ impl<L: Load, M: RungeKutta<N>, const N: usize> Dense for RungeKuttaRun<'_, L, M
     }
 
     #[inline]
-    fn over_limit(&self, state: usize, elapsed: f64, phase: &Phase) -> f64 {
-        (self.equations).over_limit(state, self.start + elapsed, phase)
+    fn over_limit(&self, wheel: Option<usize>, elapsed: f64, phase: &Phase) -> f64 {
+        (self.equations).over_limit(wheel, self.start + elapsed, phase)
     }
 
     #[inline]
@@ -233,8 +233,8 @@ impl<L: Load, const N: usize> Equations<'_, L, N> {
     }
 
     /// As of the load.
-    fn over_limit(&self, state: usize, t: f64, phase: &Phase) -> f64 {
-        self.load.over_limit(state, t, phase)
+    fn over_limit(&self, wheel: Option<usize>, t: f64, phase: &Phase) -> f64 {
+        self.load.over_limit(wheel, t, phase)
     }
 
     /// The torque that a bearing at rest takes.

@@ -31,10 +31,10 @@ pub(super) trait Dense {
         Ok(0.0)
     }
 
-    /// By how much more than its limit a motor is asked for at a time since the start of the span and the state then; only what carries
-    /// wheels has motors.
-    fn over_limit(&self, state: usize, elapsed: f64, phase: &Phase) -> f64 {
-        let _ = (state, elapsed, phase);
+    /// By how much more than its limit a motor, or coils, are asked for at a time since the start of the span and the state then; only
+    /// what carries wheels has motors, and coils with a limit have no series.
+    fn over_limit(&self, wheel: Option<usize>, elapsed: f64, phase: &Phase) -> f64 {
+        let _ = (wheel, elapsed, phase);
         -1.0
     }
 

@@ -5,10 +5,13 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
+use super::slug::positive;
 use crate::error::{Error, MotionFault, all_finite, finite};
 use crate::motion::loads::body_at_point::BodyAtPoint;
+use crate::motion::loads::carried_momentum::LawContext;
 use crate::motion::loads::law::{ConservedMomentum, Law, Traits};
 use crate::motion::loads::orbit_model::OrbitModel;
+use crate::motion::loads::piecewise_signal::PiecewiseSignal;
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
 use crate::motion::loads::series_terms::SeriesTerms;
 use crate::motion::loads::spline::Spline;
@@ -137,7 +140,60 @@ pub fn field_and_rate(
     ]
 }
 
-/// `N = m × B` with the moment `m = d − k Ḃ`, all in B: d fixed in the body, and Ḃ the rate of the field as the body sees it.
+/// The moment of magnets and coils in a body, before the limit of coils.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::motion::loads::Moment;
+/// use polhode::nalgebra::Vector3;
+///
+/// let switched = Moment::table(&[0.0, 10.0], &[Vector3::x(), Vector3::zeros()])?;
+/// assert!(matches!(switched, Moment::Table(_)));
+/// # Ok::<(), polhode::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub enum Moment {
+    /// Constant in the body.
+    Fixed(Vector3<f64>),
+    /// Components in B that are constant from each time on to the next.
+    Table(Box<[PiecewiseSignal; 3]>),
+    /// What exerts the part across the field of the torque N that a controller asks for: `m = B × N/|B|²`, times this number; without
+    /// a field none. See [`Term::controlled_coils`](super::super::Term::controlled_coils).
+    Commanded(f64),
+}
+
+impl Moment {
+    /// `moments[k]` from `times[k]` on.
+    ///
+    /// # Errors
+    /// Without times, for times that do not ascend, for numbers that are not finite.
+    ///
+    /// # Panics
+    /// When `times` and `moments` differ in length.
+    pub fn table(times: &[f64], moments: &[Vector3<f64>]) -> Result<Self, Error> {
+        let of = |i: usize| {
+            let values: Vec<f64> = moments.iter().map(|moment| moment[i]).collect();
+            PiecewiseSignal::table("dipole", times, &values)
+        };
+        Ok(Self::Table(Box::new([of(0)?, of(1)?, of(2)?])))
+    }
+
+    fn scaled(&self, factor: f64) -> Result<Self, Error> {
+        Ok(match self {
+            Self::Fixed(moment) => Self::Fixed(times(moment, factor)?),
+            Self::Table(parts) => {
+                let scaled = |part: &PiecewiseSignal| part.scaled("dipole", factor);
+                let [x, y, z] = &**parts;
+                Self::Table(Box::new([scaled(x)?, scaled(y)?, scaled(z)?]))
+            }
+            Self::Commanded(share) => Self::Commanded(finite("dipole", share * factor)?),
+        })
+    }
+}
+
+/// `N = m × B` with the moment `m = d − k Ḃ`, all in B: d of magnets and coils, and Ḃ the rate of the field as the body sees it. Of coils
+/// with a limit each component of m is clipped.
 ///
 /// The second part is the law that slows a satellite down ("B-dot"): `Ḃ = R_NBᵀ Ḃ_N − ω × B`.
 /// Source: Wertz, Spacecraft Attitude Determination and Control, §18.3; Stickler, Alfriend, J. Spacecraft 13 (1976) 282.
@@ -153,11 +209,16 @@ pub fn field_and_rate(
 ///
 /// // A compass needle of 0.1 A m² across a field of 50 µT: m × B.
 /// let field = MagneticField::uniform(&Vector3::new(0.0, 5e-5, 0.0))?;
-/// let needle: Term = Magnetic::new(&Vector3::new(0.1, 0.0, 0.0), None, field)?.into();
+/// let needle: Term = Magnetic::new(&Vector3::new(0.1, 0.0, 0.0), None, field.clone())?.into();
 /// let body = solids::cuboid(&[0.05, 0.002, 0.001], Amount::Mass(0.001))?;
 /// let rest = Phase::in_place(&State { attitude: UnitQuaternion::identity(), omega: Vector3::zeros() });
 /// let torque = needle.wrench(&BodyAtPoint::free(&body, 0.0), 0.0, &rest).torque;
 /// assert!((torque.z - 5e-6).abs() < 1e-20);
+/// // Of coils with a limit each component of the moment is clipped.
+/// let coils = Magnetic::new(&Vector3::new(0.1, 0.0, 0.0), None, field.clone())?.with_max_dipole(&Vector3::repeat(0.02))?;
+/// assert!(coils.has_limit());
+/// let torque = Term::from(coils).wrench(&BodyAtPoint::free(&body, 0.0), 0.0, &rest).torque;
+/// assert!((torque.z - 1e-6).abs() < 1e-20);
 ///
 /// // The field along an orbit about a dipole, twice as strong above its pole as above its equator, or through samples.
 /// let orbit = OrbitModel::kepler(&Orbit::new(1.0, &Vector3::x(), &Vector3::z())?, None)?;
@@ -174,9 +235,11 @@ pub fn field_and_rate(
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Magnetic {
-    dipole: Vector3<f64>,
+    moment: Moment,
     gain: Option<f64>,
     field: MagneticField,
+    /// The most that each component of m can be; infinite without a limit.
+    max_dipole: Vector3<f64>,
 }
 
 impl Magnetic {
@@ -190,29 +253,113 @@ impl Magnetic {
         gain: Option<f64>,
         field: MagneticField,
     ) -> Result<Self, Error> {
-        all_finite("dipole", dipole)?;
+        Self::of(Moment::Fixed(*dipole), gain, field)
+    }
+
+    /// With any moment.
+    ///
+    /// # Errors
+    /// When a number is not finite.
+    pub fn of(moment: Moment, gain: Option<f64>, field: MagneticField) -> Result<Self, Error> {
+        if let Moment::Fixed(dipole) = &moment {
+            all_finite("dipole", dipole)?;
+        }
         gain.map_or(Ok(0.0), |gain| finite("gain", gain))?;
         Ok(Self {
-            dipole: *dipole,
+            moment,
             gain,
             field,
+            max_dipole: Vector3::repeat(f64::INFINITY),
         })
     }
 
-    /// The field, where it is uniform and the moment is fixed in the body.
-    fn constant(&self) -> Option<&Vector3<f64>> {
-        match &self.field.0 {
-            FieldModel::Uniform(field) if self.gain.is_none() => Some(field),
+    /// With coils along the axes of B, the moment of each of which can be so much at most: each component of m is clipped.
+    ///
+    /// # Errors
+    /// For a number that is not positive or not finite.
+    pub fn with_max_dipole(self, most: &Vector3<f64>) -> Result<Self, Error> {
+        for &most in most {
+            positive("max_dipole", most)?;
+        }
+        Ok(Self {
+            max_dipole: *most,
+            ..self
+        })
+    }
+
+    /// Whether its coils have a limit.
+    #[must_use]
+    pub fn has_limit(&self) -> bool {
+        self.max_dipole.iter().any(|most| most.is_finite())
+    }
+
+    /// The field and the moment, where it is uniform and the moment fixed in the body.
+    fn constant(&self) -> Option<(&Vector3<f64>, Vector3<f64>)> {
+        match (&self.field.0, &self.moment) {
+            (FieldModel::Uniform(field), Moment::Fixed(moment)) if self.gain.is_none() => {
+                Some((field, self.clipped(moment)))
+            }
             _ => None,
         }
     }
+
+    fn clipped(&self, moment: &Vector3<f64>) -> Vector3<f64> {
+        moment.zip_map(&self.max_dipole, |m, most| m.clamp(-most, most))
+    }
+
+    /// The field in B, and the moment that is asked of the coils, where a controller asks for the torque `command` on the body.
+    fn demanded(&self, now: &LawContext<'_>) -> [Vector3<f64>; 2] {
+        let in_body = |vector| now.phase.attitude.inverse_transform_vector(vector);
+        let [field, rate] = self.field.at(now.body.start, now.t);
+        let field = in_body(&field);
+        let moment = match &self.moment {
+            Moment::Fixed(moment) => *moment,
+            Moment::Table(parts) => {
+                let [x, y, z] = &**parts;
+                Vector3::new(
+                    x.value(now.middle),
+                    y.value(now.middle),
+                    z.value(now.middle),
+                )
+            }
+            Moment::Commanded(share) => across(&field, &now.command) * *share,
+        };
+        let Some(gain) = self.gain else {
+            return [field, moment];
+        };
+        let seen = in_body(&rate) - now.phase.omega.cross(&field);
+        [field, moment - seen * gain]
+    }
+
+    /// The torque about the reference point where a controller asks for the torque `command` on the body.
+    pub(in crate::motion::loads) fn torque(&self, now: &LawContext<'_>) -> Vector3<f64> {
+        let [field, moment] = self.demanded(now);
+        self.clipped(&moment).cross(&field)
+    }
+
+    /// By how much more than its limit the coil is asked for that is asked for most: `(m/limit)² − 1`.
+    pub(in crate::motion::loads) fn over_limit(&self, now: &LawContext<'_>) -> f64 {
+        let [_, moment] = self.demanded(now);
+        let share = moment.component_div(&self.max_dipole).amax();
+        (share - 1.0) * (share + 1.0)
+    }
+}
+
+/// The moment m across the field B with `m × B = N`, for the part of N across B: `B × N/|B|²`; zero without a field.
+fn across(field: &Vector3<f64>, torque: &Vector3<f64>) -> Vector3<f64> {
+    let largest = field.amax();
+    if largest == 0.0 {
+        return Vector3::zeros();
+    }
+    let scaled = field / largest;
+    scaled.cross(torque) / (scaled.norm_squared() * largest)
 }
 
 impl Law for Magnetic {
     fn traits(&self, _: bool) -> Traits {
         Traits {
             exerts_force: false,
-            depends_on_rates: self.gain.is_some(),
+            depends_on_rates: self.gain.is_some() || matches!(self.moment, Moment::Commanded(_)),
             needs_body: false,
             needs_epoch: match &self.field.0 {
                 FieldModel::Dipole { orbit, .. } => orbit.needs_epoch(),
@@ -222,7 +369,7 @@ impl Law for Magnetic {
                 FieldModel::Uniform(field) => ConservedMomentum::along(field),
                 FieldModel::Sampled(_) | FieldModel::Dipole { .. } => ConservedMomentum::Nothing,
             },
-            has_series: self.constant().is_some(),
+            has_series: self.constant().is_some() && !self.has_limit(),
         }
     }
 
@@ -235,11 +382,12 @@ impl Law for Magnetic {
     }
 
     fn scaled(&self, factor: f64) -> Result<Self, Error> {
-        Self::new(
-            &times(&self.dipole, factor)?,
-            self.gain.map(|gain| gain * factor),
-            self.field.clone(),
-        )
+        let gain = self.gain.map(|gain| gain * factor);
+        let scaled = Self::of(self.moment.scaled(factor)?, gain, self.field.clone())?;
+        if factor == 0.0 || !self.has_limit() {
+            return Ok(scaled); // exerts nothing, whatever its limit
+        }
+        scaled.with_max_dipole(&times(&self.max_dipole, factor.abs())?)
     }
 
     fn with_epoch(self, t: f64) -> Self {
@@ -257,14 +405,21 @@ impl Law for Magnetic {
     }
 
     fn breaks(&self) -> Vec<f64> {
-        match &self.field.0 {
+        let mut breaks = match &self.field.0 {
             FieldModel::Sampled(spline) => spline.knots().to_vec(),
             FieldModel::Dipole { orbit, .. } => orbit.breaks().to_vec(),
             FieldModel::Uniform(_) => Vec::new(),
+        };
+        if let Moment::Table(parts) = &self.moment {
+            breaks.extend(parts[0].times());
         }
+        breaks
     }
 
     fn check(&self, body: &BodyAtPoint, from: f64, to: f64) -> Result<(), Error> {
+        if let Moment::Table(parts) = &self.moment {
+            parts[0].covers("dipole", from, to, false)?;
+        }
         match &self.field.0 {
             FieldModel::Sampled(spline) => spline.check_at(from).and_then(|()| spline.check_at(to)),
             FieldModel::Dipole { .. } if body.pivoted => {
@@ -276,23 +431,16 @@ impl Law for Magnetic {
     }
 
     fn wrench(&self, body: &BodyAtPoint, t: f64, phase: &Phase) -> Wrench {
-        let in_body = |vector| phase.attitude.inverse_transform_vector(vector);
-        if let Some(field) = self.constant() {
-            return Wrench::couple(self.dipole.cross(&in_body(field)));
+        if let Some((field, moment)) = self.constant() {
+            return Wrench::couple(moment.cross(&phase.attitude.inverse_transform_vector(field)));
         }
-        let [field, rate] = self.field.at(body.start, t);
-        let (field, rate) = (in_body(&field), in_body(&rate));
-        let seen = rate - phase.omega.cross(&field);
-        let moment = self
-            .gain
-            .map_or(self.dipole, |gain| self.dipole - seen * gain);
-        Wrench::couple(moment.cross(&field))
+        Wrench::couple(self.torque(&LawContext::without_command(body, t, t, phase)))
     }
 
     /// `−d·B` in a uniform field.
     fn potential(&self, _: &BodyAtPoint, phase: &Phase) -> Option<f64> {
         let in_body = |field| phase.attitude.inverse_transform_vector(field);
-        (self.constant()).map(|field| -self.dipole.dot(&in_body(field)))
+        (self.constant()).map(|(field, moment)| -moment.dot(&in_body(field)))
     }
 
     fn add_to<'a, X: LawNumber>(
@@ -301,8 +449,8 @@ impl Law for Magnetic {
         axes: &PrincipalFrame<'_, X>,
         _: f64,
     ) {
-        if let Some(field) = self.constant() {
-            let lever = cross_matrix(&axes.principal(&axes.vector(&self.dipole, "dipole")));
+        if let Some((field, moment)) = self.constant() {
+            let lever = cross_matrix(&axes.principal(&axes.vector(&moment, "dipole")));
             series.on_space.push((axes.vector(field, "field"), lever));
         }
     }

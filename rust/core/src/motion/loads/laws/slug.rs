@@ -181,7 +181,7 @@ impl CarriedMomentum for Slug {
 }
 
 /// That a number is positive.
-pub(super) fn positive(what: &'static str, value: f64) -> Result<(), Error> {
+pub(in crate::motion::loads) fn positive(what: &'static str, value: f64) -> Result<(), Error> {
     finite(what, value)?;
     if value > 0.0 {
         return Ok(());
