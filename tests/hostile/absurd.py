@@ -268,7 +268,7 @@ OTHERS: dict[str, Callable[[], object]] = {
         np.broadcast_to(0.0, ABSURD), np.broadcast_to(V, (ABSURD, 3)), {}
     ),
     "tumble_information, absurd times": lambda: _core.tumble_information(
-        np.broadcast_to(0.0, ABSURD), V, [1.0, 1.2, 1.5, 0.0, 0.0, 0.0], {}
+        np.broadcast_to(0.0, ABSURD), V, [1.0, 1.2, 1.5, 0.0, 0.0, 0.0], V, {}
     ),
     "Load.__getitem__": lambda: LOADS[np.broadcast_to(0, ABSURD)],
     "RigidBody.__add__": lambda: COLUMN + COLUMN[:, 0],
