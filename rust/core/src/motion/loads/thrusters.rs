@@ -21,7 +21,7 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 ///
 /// // Pulses of 20 ms or more, of 80 ms at most, in periods of 100 ms.
 /// let pulses = Pulses::new(0.1, 0.02, Some(0.08), None)?;
-/// assert_eq!([0.19, 0.2, 0.5, 0.9, -1.0].map(|duty| pulses.length(duty)), [0.0, 0.02, 0.05, 0.08, 0.0]);
+/// assert_eq!([0.19, 0.25, 0.5, 0.9, -1.0].map(|duty| pulses.length(duty)), [0.0, 0.025, 0.05, 0.08, 0.0]);
 /// // On or off.
 /// let switched = Pulses::new(0.1, 0.0, None, Some(0.25))?;
 /// assert_eq!([0.2, 0.25, 1.0].map(|duty| switched.length(duty)), [0.0, 0.1, 0.1]);
@@ -264,11 +264,11 @@ mod tests {
     #[test]
     fn a_pulse_of_the_least_length_is_one_and_a_shorter_one_none() {
         let pulses = Pulses::new(0.1, 0.07, None, None).expect("in order");
-        // 0.7 · 0.1 is rounded below 0.07.
-        assert!(0.7 * 0.1 < 0.07 + f64::EPSILON && pulses.length(0.7) > 0.0);
+        assert!(0.7 * 0.1 < 0.07, "rounded");
+        assert_eq!(pulses.length(0.7), 0.7 * 0.1);
         assert_eq!(pulses.length(0.7 * (1.0 - 1e-14)), 0.0);
-        let none = Pulses::new(0.1, 0.0, None, None).expect("in order");
-        assert_eq!([0.0, 1e-9].map(|duty| none.length(duty)), [0.0, 1e-10]);
+        let none = Pulses::new(0.5, 0.0, None, None).expect("in order");
+        assert_eq!([0.0, 1e-9].map(|duty| none.length(duty)), [0.0, 5e-10]);
     }
 
     #[test]
