@@ -3,7 +3,7 @@
 Both sides run at the loosest tolerance of a ladder up to which the error after ten rotations, of ω relative
 to its magnitude and of the attitude, is at most 1e-13 against heyoka's series in extended precision; for a
 stack, of 64 of its motions. The tolerances stand in the rows. Further rows have both at their tightest,
-which is heyoka's default.
+which is heyoka's default. The last row has a loop of steps beside a chain of `resume`.
 
 heyoka (``pip install heyoka``) is left out where it is not installed.
 """
@@ -156,6 +156,41 @@ def rows() -> Iterator[Row]:
             items=ROTATIONS,
             at_least=150.0,
         )
+    yield a_loop_of_steps()
+
+
+def a_loop_of_steps() -> Row:
+    """A loop that steps a satellite with three wheels, beside a chain of `resume`."""
+    body = RigidBody.from_principal(20.0, (2.0, 3.0, 4.0))
+    x, y, z = (loads.wheel(axis, 0.01, torque=0.001, name=f"wheel {k}") for k, axis in enumerate(np.eye(3)))
+    load, omega, dt, steps = x + y + z, (0.01, 0.02, 0.03), 0.1, 100
+
+    def ours() -> Any:
+        stepper = body.stepper(omega, ATTITUDE, load=load)
+        for _ in range(steps):
+            stepper.step(dt)
+        return stepper.state().omega
+
+    def chain() -> Any:
+        # The times of the stepper, which adds steps one by one.
+        t, motion = dt, body.simulate([0.0, dt], omega, ATTITUDE, load=load)
+        for _ in range(steps - 1):
+            motion = motion.resume([t, t + dt])
+            t += dt
+        return motion.omega[-1]
+
+    def same(one: Any, other: Any) -> None:
+        assert np.array_equal(one, other)
+
+    return Row(
+        name="a step with three wheels",
+        peer="Trajectory.resume",
+        ours=ours,
+        theirs=chain,
+        compare=same,
+        items=steps,
+        at_least=8.0,
+    )
 
 
 def beside_heyoka(case: Case) -> Iterator[Row]:
