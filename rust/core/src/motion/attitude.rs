@@ -153,7 +153,7 @@ mod tests {
         let axis = from.cross(&Vector3::x()).normalize();
         let side = axis.cross(&from);
         for angle in [
-            0.0, 1e-300, 1e-12, 1e-8, 1e-4, 0.1, 1.0, 1.5, 1.6, 3.0, 3.141,
+            0.0, 1e-300, 1e-12, 1e-8, 1e-4, 0.1, 1.0, 1.5, 1.6, 3.0, 3.12,
         ] {
             let (sin, cos) = f64::sin_cos(angle);
             let to = from * cos + side * sin;

@@ -85,7 +85,7 @@ pub struct Tumble<'a> {
     pub torque: [f64; 3],
     /// The elements of the tensor beforehand, and the rows that make errors of unit variance of their deviations.
     pub prior: Option<([f64; 6], [[f64; 6]; 6])>,
-    /// Attitudes R_NB, as unit quaternions (x, y, z, w).
+    /// Attitudes `R_NB`, as unit quaternions (x, y, z, w).
     pub attitude: Option<Sensor<'a, 4>>,
     /// What an accelerometer at an unknown place reads in free flight, in B.
     pub specific_force: Option<Sensor<'a, 3>>,
@@ -108,7 +108,7 @@ pub struct Fit {
     pub bias: [f64; 3],
     /// Errors of its scales.
     pub gyro_scale: [f64; 3],
-    /// Attitude R_NB at the first time (x, y, z, w); the identity where nothing tells it.
+    /// Attitude `R_NB` at the first time (x, y, z, w); the identity where nothing tells it.
     pub attitude: [f64; 4],
     /// Place of the accelerometer from the centre of mass, in B.
     pub place: [f64; 3],
@@ -136,7 +136,7 @@ struct Point {
     inertia: Matrix3<f64>,
     bias: Vector3<f64>,
     scale: Vector3<f64>,
-    /// R_NB at the first time.
+    /// `R_NB` at the first time.
     attitude: UnitQuaternion<f64>,
     place: Vector3<f64>,
 }
@@ -954,19 +954,15 @@ impl<'a> Scaled<'a> {
         starts
     }
 
-    /// Find the maxima of the likelihood, the best first.
-    fn maxima(&self) -> Vec<Fit> {
-        let starts = self.starts();
-        // What noise alone costs: a fit with much more is not the best one.
-        let sigma = self.sigma.get()[0];
-        let usual = 3.0 * self.rows() as f64 * (self.level / sigma).powi(2).max(1.0);
-        let stop = Stop {
-            gain: 1e-9,
-            passes: 60,
-        };
-        let n = self.rows();
-        let some = self.thin_out();
-        let count = some.rows();
+    /// Find the maximum to which the first start leads whose cost is that of noise, or the best one of all starts, and how many were used.
+    fn first_maximum(
+        &self,
+        starts: &[Balanced],
+        some: &Self,
+        usual: f64,
+        stop: &Stop,
+    ) -> Option<((Point, Linear, bool), usize)> {
+        let (n, count) = (self.rows(), some.rows());
         let mut best: Option<(Point, Linear, bool)> = None;
         let mut used = 0;
         for start in starts.iter().take(self.tumble.starts + 1) {
@@ -976,18 +972,18 @@ impl<'a> Scaled<'a> {
             if count < n && n <= HEAD {
                 found = some
                     .join(start, count, JOINS)
-                    .and_then(|(point, _)| self.refine(&point, n, &stop))
+                    .and_then(|(point, _)| self.refine(&point, n, stop))
                     .filter(|(_, linear, converged)| *converged && linear.cost < 2.0 * usual);
             }
             if found.is_none() && !some.stopped.get() {
                 let joined = self.join(start, n, JOINS);
-                found = joined.and_then(|(point, _)| self.refine(&point, n, &stop));
+                found = joined.and_then(|(point, _)| self.refine(&point, n, stop));
             }
             if some.stopped.get() {
                 self.stopped.set(true);
             }
             if self.stopped.get() {
-                return Vec::new();
+                return None;
             }
             if let Some(found) = found
                 && best
@@ -1003,9 +999,26 @@ impl<'a> Scaled<'a> {
                 break;
             }
         }
-        let Some((mut point, mut linear, mut converged)) = best else {
+        best.map(|best| (best, used))
+    }
+
+    /// Find the maxima of the likelihood, the best first.
+    fn maxima(&self) -> Vec<Fit> {
+        let starts = self.starts();
+        // What noise alone costs: a fit with much more is not the best one.
+        let sigma = self.sigma.get()[0];
+        let usual = 3.0 * self.rows() as f64 * (self.level / sigma).powi(2).max(1.0);
+        let stop = Stop {
+            gain: 1e-9,
+            passes: 60,
+        };
+        let n = self.rows();
+        let some = self.thin_out();
+        let count = some.rows();
+        let Some((best, used)) = self.first_maximum(&starts, &some, usual, &stop) else {
             return Vec::new();
         };
+        let (mut point, mut linear, mut converged) = best;
         for _ in 0..50 {
             if self.set_sigma(&point) < 1e-9 {
                 break;
