@@ -45,6 +45,7 @@ def theorems() -> list[str]:
 
 
 class TestCode:
+    @pytest.mark.timeout(400)  # a day in orbit takes half a minute of an idle processor
     @pytest.mark.parametrize(
         "page", [p for p in PAGES if any(kind == "python" for kind, _ in blocks(p))], ids=name
     )
@@ -52,7 +53,10 @@ class TestCode:
         self, page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.chdir(tmp_path)
-        run_page(page)
+        with mpl.rc_context():
+            run_page(page)
+        for picture in drawn_by(page):
+            compare(tmp_path / picture, DOCS / "figures" / picture)
 
     @pytest.mark.parametrize("number", EXERCISES)
     def test_every_exercise_states_solves_and_shows(self, number: int) -> None:
@@ -188,12 +192,7 @@ class TestFigures:
         monkeypatch.setattr(sys, "dont_write_bytecode", True)
         with mpl.rc_context():
             runpy.run_path(str(script), run_name="__main__")
-        drawn, committed = (
-            (folder / f"{script.stem}.svg").read_text("utf-8") for folder in (tmp_path, script.parent)
-        )
-        assert labels(drawn) == labels(committed)
-        if writer(drawn) == writer(committed):
-            assert np.allclose(coordinates(drawn), coordinates(committed), atol=0.01)
+        compare(tmp_path / f"{script.stem}.svg", script.with_suffix(".svg"))
 
     def test_every_picture_has_its_script_and_its_page(self) -> None:
         shown = set()
@@ -202,6 +201,7 @@ class TestFigures:
                 assert description, f"{name(page)}: {target} has no description for those who cannot see it"
                 shown.add((page.parent / target).resolve())
         figures = {script.with_suffix(".svg") for script in SCRIPTS}
+        figures |= {DOCS / "figures" / picture for page in PAGES for picture in drawn_by(page)}
         assert set(DOCS.glob("figures/*.svg")) == figures
         assert figures <= shown
 
@@ -232,6 +232,21 @@ class TestFigures:
             assert film.info["duration"] == round(1000.0 * made["DURATION"] / made["PICTURES"])
         assert f"]({picture.relative_to(ROOT).as_posix()})" in (ROOT / "README.md").read_text("utf-8")[:600]
         assert 'src="gallery/t_handle.live.html"' in (DOCS / "index.md").read_text("utf-8")[:600]
+
+
+def drawn_by(page: Path) -> list[str]:
+    """The pictures that a page shows and that its own code draws."""
+    code = "".join(code for language, code in blocks(page) if language == "python")
+    saved = re.findall(r"""savefig\("(\w+\.svg)"\)""", code)
+    return [picture for picture in saved if f"figures/{picture})" in page.read_text("utf-8")]
+
+
+def compare(drawn: Path, committed: Path) -> None:
+    """Compare the texts of two figures, and the numbers if the same version of matplotlib wrote them."""
+    one, other = (path.read_text("utf-8") for path in (drawn, committed))
+    assert labels(one) == labels(other)
+    if writer(one) == writer(other):
+        assert np.allclose(coordinates(one), coordinates(other), atol=0.01)
 
 
 def labels(svg: str) -> list[str]:
