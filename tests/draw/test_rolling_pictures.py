@@ -136,6 +136,7 @@ def test_both_traces_are_seen(browser: Browser, folder: Path, size: tuple[int, i
       return found / (globalThis.devicePixelRatio || 1) ** 2;
     })"""
     views = ["space"] if size == PHONE else ["space", "second"]
+    browser.run("polhode.draw()")  # the browser may not have come to it yet
     shown = [browser.run(f"{counted}('{view}')") for view in views]
     browser.run("document.getElementById('traces').click(); polhode.draw()")
     hidden = [browser.run(f"{counted}('{view}')") for view in views]

@@ -260,6 +260,13 @@ OTHERS: dict[str, Callable[[], object]] = {
     "wheel, absurd times": lambda: _core.wheel(
         V, 1.0, torque=np.broadcast_to(1.0, ABSURD), times=np.broadcast_to(1.0, ABSURD)
     ),
+    "thrusters, absurd forces": lambda: _core.thrusters(
+        np.broadcast_to(V, (ABSURD, 3)),
+        np.broadcast_to(V, (ABSURD, 3)),
+        np.broadcast_to(1.0, ABSURD),
+        command=[0.5],
+        period=1.0,
+    ),
     "wheels, absurd axes": lambda: _core.wheels(
         np.broadcast_to(V, (ABSURD, 3)), 1.0, torque=loads.feedback(K=1.0, D=1.0)
     ),

@@ -136,6 +136,7 @@ VALUES: dict[str, Any] = {
 KNOWN = {
     "sigma": None, "bias": False, "momentum": [0.0, 0.0, 0.5], "torque": [0.0, 0.0, 0.0], "prior": None,
     "student": False, "starts": 1,
+    "attitude": None, "specific_force": None, "scale": False,
 }  # fmt: skip
 """What is known beside the log of a tumble."""
 
@@ -145,7 +146,11 @@ OVERRIDES: dict[str, dict[str, Any]] = {
         "omega": [RATES[k % 3] for k in range(12)],
         "known": KNOWN,
     },
-    "tumble_information": {"inertia": [1.0, 2.0, 2.5, 0.0, 0.25, 0.0], "known": KNOWN},
+    "tumble_information": {
+        "inertia": [1.0, 2.0, 2.5, 0.0, 0.25, 0.0],
+        "place": [0.25, 0.0, -0.5],
+        "known": KNOWN,
+    },
     "RigidBody": {"inertia": TENSOR},
     "RigidBody.__sub__": {"self": [TUMBLER], "other": RigidBody.from_principal(0.5, (0.125, 0.25, 0.25))},
     "RigidBody.from_density": {"density": gas, "rtol": 1e-3, "max_evaluations": 30_000},
