@@ -42,8 +42,9 @@ const NEAR: f64 = 0.15;
 const JOINS: usize = 15;
 /// Those of a further start: what is not near a maximum by then is not near the best one.
 const TRIES: usize = 6;
-/// Rows on which further starts are tried out, and how many of them.
+/// Rows on which further starts are tried out, or those of so large an angle at the usual rate if they are more; and how many of them.
 const HEAD: usize = 2000;
+const HEAD_ANGLE: f64 = 60.0;
 const TRIED: usize = 300;
 /// Of log L: maxima that are lower by more are left out.
 const WITHIN: f64 = 3.0;
@@ -402,7 +403,8 @@ impl<'a> Scaled<'a> {
 
     /// Some of the rows, on which starts are tried out.
     fn thin_out(&self) -> Self {
-        let head = self.rows().min(HEAD);
+        let turned = self.t.partition_point(|t| *t <= HEAD_ANGLE);
+        let head = turned.max(HEAD).min(self.rows());
         let stride = head.div_ceil(TRIED);
         Self {
             t: self.t[..head].iter().step_by(stride).copied().collect(),
