@@ -208,7 +208,9 @@ def simulated_end(ratio: float, below: float, spin: float, end: float) -> tuple[
     """Return the cosine of the inclination at which a tippe top with friction ends, and of its verdict."""
     top = RigidBody.from_principal(0.006, (8e-7, 8e-7, 8e-7 * ratio), center_of_mass=(0, 0, -below))
     surface = rolling.sphere(0.02)
-    contact = rolling.plane(surface, law="sliding", viscous=("normal", 1.0), lift="hold")
+    # Much friction on a fast slip has no unique force, and near rolling a top turns over slowly.
+    viscous = 1.0 if spin < 100.0 else 0.03
+    contact = rolling.plane(surface, law="sliding", viscous=("normal", viscous), lift="hold")
     load, tilted = loads.uniform_gravity(GRAVITY), (np.sin(0.01), 0, 0, np.cos(0.01))
     found = top.simulate([0, end], (0, 0, spin), tilted, load=load, contact=contact, rtol=1e-10)
     x, y = found.quaternion[-1][:2]
@@ -229,7 +231,7 @@ def test_tippe_tops_with_friction_end_as_their_verdict_says(ratio: float, below:
 @pytest.mark.parametrize("below", [0.002, 0.004, 0.006])
 @pytest.mark.parametrize("spin", [2.0, 20.0, 60.0, 250.0])
 def test_48_tippe_tops_end_as_their_verdict_says(ratio: float, below: float, spin: float) -> None:
-    found, verdict = simulated_end(ratio, below, spin, 200.0)
+    found, verdict = simulated_end(ratio, below, spin, 1e5 / spin)
     assert found == pytest.approx(verdict, abs=0.01)
 
 
