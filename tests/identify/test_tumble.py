@@ -257,6 +257,15 @@ class TestLogs:
         found = identify.from_tumble(ASYMMETRIC.t, ASYMMETRIC.omega, sigma=SIGMA)
         assert np.allclose(found.body.inertia, ASYMMETRIC.inertia, rtol=0.0, atol=1e-9)
 
+    @pytest.mark.parametrize("n", [300, 301, 2000, 2001, 6000])
+    def test_logs_of_which_some_rows_or_all_are_taken_for_the_starts(self, n: int) -> None:
+        t = np.linspace(0.0, 8.0, n)
+        body = RigidBody(mass=1.0, inertia=ASYMMETRIC.inertia)
+        rows = body.free_motion(ASYMMETRIC.start).at(t).omega
+        found = identify.from_tumble(t, rows + BIAS, sigma=SIGMA, bias=True)
+        assert np.allclose(found.body.inertia, ASYMMETRIC.inertia, rtol=0.0, atol=1e-8)
+        assert found.alternatives == ()
+
     def test_student_bears_outliers(self) -> None:
         t, rows, there = ASYMMETRIC.log(4)
         rows[there] += np.where(np.random.default_rng(0).random(there.sum()) < 0.03, 3.0, 0.0)[:, None]

@@ -188,9 +188,9 @@ class TestAttitude:
         assert np.abs((found.scale.value - SCALE) / found.scale.sigma).max() < 4.0
         assert found.degrees_of_freedom == 3 * len(T) + 3 * 30 - 14
         assert np.isnan(found.residuals[0, 3:]).all()
-        # Without them the log is that of no free motion, or of another body.
+        # Without the scales it is the log of no free motion.
         with pytest.raises(IdentificationError, match="no free motion"):
-            identify.from_tumble(T, omega, sigma=0.001, bias=True)
+            identify.from_tumble(T, omega, sigma=GYRO, bias=True)
 
     def test_attitudes_make_the_tensor_surer(self) -> None:
         omega, attitude, _ = log(4)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeVar
 
 import numpy as np
 
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 __all__ = ["best_throw", "design", "from_tumble"]
+
+_Given = TypeVar("_Given")
 
 _STARTS: Final = 4
 _LEAST: Final = 8
@@ -102,8 +104,8 @@ def from_tumble(
     specific_force_sigma : float or array_like, shape (3,), optional
         Standard deviations of its noise. Needed with `specific_force`.
     scale : bool
-        Whether the gyro's three scales have errors that are estimated. Only beside `attitude`: three scales
-        and two ratios of moments do not follow from a gyro alone.
+        Whether the gyro's three scales have errors that are estimated. Only beside `attitude`: in principal
+        axes three scales and two ratios of moments do not follow from three products of components.
     mass : float, optional
         Mass of the body that is returned, 1 by default. The motion does not depend on it.
     prior : RigidBody, optional
@@ -510,33 +512,43 @@ def _sensors(
     scale: bool,
 ) -> dict[str, Any]:
     """Return what further sensors measured in the rows that are kept."""
-    found: dict[str, Any] = {"attitude": None, "specific_force": None, "scale": bool(scale)}
-    for name, given, sigma in (
-        ("attitude", attitude, attitude_sigma),
-        ("specific_force", specific_force, specific_force_sigma),
-    ):
-        if given is None and sigma is None:
-            continue
-        if given is None or sigma is None:
-            missing = name if given is None else f"{name}_sigma"
-            raise ValueError(f"{missing}: it is needed beside {name if sigma is None else f'{name}_sigma'}")
-        rows = (
-            read_quaternions(attitude, len(good), None)  # type: ignore[arg-type]  # it is given
-            if name == "attitude"
-            else read_vectors(given, len(good), name)  # type: ignore[arg-type]  # it is given
-        )
-        kept = rows[good]
-        if len(good) and not np.isfinite(kept).all(axis=1).any():
-            raise IdentificationError(
-                f"{name}: no row is finite where the gyro has one; leave {name} out", kind="undetermined"
-            )
-        found[name] = (np.ascontiguousarray(kept), _three_sigmas(f"{name}_sigma", sigma))
+    found = {
+        "attitude": _rows(
+            "attitude", attitude, attitude_sigma, good, lambda one: read_quaternions(one, len(good), None)
+        ),
+        "specific_force": _rows(
+            "specific_force", specific_force, specific_force_sigma, good,
+            lambda one: read_vectors(one, len(good), "specific_force"),
+        ),
+        "scale": bool(scale),
+    }  # fmt: skip
     if scale and found["attitude"] is None:
         raise ValueError(
-            "scale: the scales of a gyro follow only beside attitude=; three scales and two ratios of moments"
-            " do not follow from a gyro alone; measure attitudes too, or leave it out"
+            "scale: the scales of a gyro follow only beside attitude=; measure attitudes too, or leave it out"
         )
     return found
+
+
+def _rows(
+    name: str,
+    given: _Given | None,
+    sigma: ArrayLike | None,
+    good: NDArray[np.bool_],
+    read: Callable[[_Given], Floats],
+) -> tuple[Floats, list[float]] | None:
+    """Return the rows of a sensor that are kept, and the sigmas of its noise; None without this sensor."""
+    if given is None and sigma is None:
+        return None
+    if given is None:
+        raise ValueError(f"{name}: it is needed beside {name}_sigma")
+    if sigma is None:
+        raise ValueError(f"{name}_sigma: it is needed beside {name}")
+    kept = np.ascontiguousarray(read(given)[good])
+    if len(good) and not np.isfinite(kept).all(axis=1).any():
+        raise IdentificationError(
+            f"{name}: no row is finite where the gyro has one; leave {name} out", kind="undetermined"
+        )
+    return kept, _three_sigmas(f"{name}_sigma", sigma)
 
 
 def _whitening(name: str, covariance: Floats) -> Floats:

@@ -54,7 +54,7 @@ class Event:
     function: Callable[..., float]
     direction: float = 0.0
     terminal: bool | int = False
-    _of_wheel: tuple[str, str] | None = field(default=None, init=False, repr=False)
+    _of_load: tuple[str, str] | None = field(default=None, init=False, repr=False)
     _thruster: int | None = field(default=None, init=False, repr=False)
     _is_at_start: bool = field(default=False, init=False, repr=False)
 
@@ -203,9 +203,9 @@ class Event:
         return event
 
     @classmethod
-    def _of_kind(cls, kind: str, wheel: str, direction: float, terminal: bool | int) -> Event:
+    def _of_kind(cls, kind: str, name: str, direction: float, terminal: bool | int) -> Event:
         event = cls(_never_called, direction, terminal)
-        object.__setattr__(event, "_of_wheel", (kind, str(wheel)))
+        object.__setattr__(event, "_of_load", (kind, str(name)))
         return event
 
     def __call__(
@@ -231,9 +231,9 @@ def after_event(events: Any, last: Any, number: int) -> Any:
     def skip_start(index: int, event: Any) -> Any:
         if (index != number) if last is None else (event is not last):
             return event
-        of_wheel, thruster = getattr(event, "_of_wheel", None), getattr(event, "_thruster", None)
+        of_load, thruster = getattr(event, "_of_load", None), getattr(event, "_thruster", None)
         again = Event(event, getattr(event, "direction", 0.0), getattr(event, "terminal", False))
-        object.__setattr__(again, "_of_wheel", of_wheel)
+        object.__setattr__(again, "_of_load", of_load)
         object.__setattr__(again, "_thruster", thruster)
         object.__setattr__(again, "_is_at_start", True)
         return again

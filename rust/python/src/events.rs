@@ -182,7 +182,7 @@ fn read_event(
         return read_pulse(event, number.extract()?, load);
     }
     let Some(of) = event
-        .getattr_opt("_of_wheel")?
+        .getattr_opt("_of_load")?
         .filter(|given| !given.is_none())
     else {
         return Ok(EventTrigger::Function);
@@ -252,7 +252,7 @@ fn read_event(
 
 /// The thruster of a load that an event asks for.
 fn read_pulse(event: &Bound<'_, PyAny>, number: i64, load: &PyLoad) -> PyResult<EventTrigger> {
-    let (_, name): (String, String) = event.getattr("_of_wheel")?.extract()?;
+    let (_, name): (String, String) = event.getattr("_of_load")?.extract()?;
     let (slots, pulses) = (load.slots(), format!("{name}_pulse"));
     let find = |name: &str| slots.iter().find(|slot| slot.name == name);
     let (Some(slot), Some(_)) = (find(&name), find(&pulses)) else {

@@ -1050,13 +1050,15 @@ pub(crate) fn schedule(
     schedule_load(py, load.get(), windows)
 }
 
+/// Return whether there is one number, without axes.
+fn is_number(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<bool> {
+    let axes: usize = as_array(object, name)?.getattr("ndim")?.extract()?;
+    Ok(axes == 0)
+}
+
 /// Vectors (..., 3), or a number for all components.
 fn vectors(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Stack<Vector3<f64>>> {
-    let is_number = as_array(object, name)?
-        .getattr("ndim")?
-        .extract::<usize>()?
-        == 0;
-    if !is_number {
+    if !is_number(object, name)? {
         return read(object, name);
     }
     let number: Stack<f64> = read(object, name)?;
@@ -1068,11 +1070,7 @@ pub(super) fn matrices(
     object: &Bound<'_, PyAny>,
     name: &'static str,
 ) -> PyResult<Stack<Matrix3<f64>>> {
-    let is_number = as_array(object, name)?
-        .getattr("ndim")?
-        .extract::<usize>()?
-        == 0;
-    if !is_number {
+    if !is_number(object, name)? {
         return read(object, name);
     }
     let number: Stack<f64> = read(object, name)?;
