@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 __all__ = ["best_throw", "design", "from_tumble"]
 
-_Given = TypeVar("_Given")
 
 _STARTS: Final = 4
 _LEAST: Final = 8
@@ -512,16 +511,13 @@ def _sensors(
     scale: bool,
 ) -> dict[str, Any]:
     """Return what further sensors measured in the rows that are kept."""
+    attitudes = None if attitude is None else read_quaternions(attitude, len(good), None)
+    forces = None if specific_force is None else read_vectors(specific_force, len(good), "specific_force")
     found = {
-        "attitude": _rows(
-            "attitude", attitude, attitude_sigma, good, lambda one: read_quaternions(one, len(good), None)
-        ),
-        "specific_force": _rows(
-            "specific_force", specific_force, specific_force_sigma, good,
-            lambda one: read_vectors(one, len(good), "specific_force"),
-        ),
+        "attitude": _rows("attitude", attitudes, attitude_sigma, good),
+        "specific_force": _rows("specific_force", forces, specific_force_sigma, good),
         "scale": bool(scale),
-    }  # fmt: skip
+    }
     if scale and found["attitude"] is None:
         raise ValueError(
             "scale: the scales of a gyro follow only beside attitude=; measure attitudes too, or leave it out"
@@ -530,20 +526,16 @@ def _sensors(
 
 
 def _rows(
-    name: str,
-    given: _Given | None,
-    sigma: ArrayLike | None,
-    good: NDArray[np.bool_],
-    read: Callable[[_Given], Floats],
+    name: str, rows: Floats | None, sigma: ArrayLike | None, good: NDArray[np.bool_]
 ) -> tuple[Floats, list[float]] | None:
     """Return the rows of a sensor that are kept, and the sigmas of its noise; None without this sensor."""
-    if given is None and sigma is None:
+    if rows is None and sigma is None:
         return None
-    if given is None:
+    if rows is None:
         raise ValueError(f"{name}: it is needed beside {name}_sigma")
     if sigma is None:
         raise ValueError(f"{name}_sigma: it is needed beside {name}")
-    kept = np.ascontiguousarray(read(given)[good])
+    kept = np.ascontiguousarray(rows[good])
     if len(good) and not np.isfinite(kept).all(axis=1).any():
         raise IdentificationError(
             f"{name}: no row is finite where the gyro has one; leave {name} out", kind="undetermined"
