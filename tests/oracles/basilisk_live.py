@@ -5,15 +5,17 @@ Basilisk integrates by RK4 with equal steps. A command is read at the beginning 
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from oracles.basilisk_scenarios import Scenario
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
+
+    from oracles.basilisk_scenarios import Scenario
 
     Rows = NDArray[np.float64]
     Change = Callable[[float], object]
@@ -85,20 +87,23 @@ class _Run:
         for wheel in scenario.wheels:
             one = reactionWheelStateEffector.RWConfigPayload()
             one.RWModel = messaging.BalancedWheels
-            one.gsHat_B = _column(np.array(wheel.axis) / np.linalg.norm(wheel.axis))
+            one.gsHat_B = _column(wheel.axis)
             one.Js, one.Jt, one.Jg = wheel.inertia, 0.5 * wheel.inertia, 0.5 * wheel.inertia
             one.Omega, one.cViscous, one.fCoulomb = wheel.rate, wheel.friction, wheel.dry_friction
             one.u_max = -1.0 if wheel.max_torque is None else wheel.max_torque
             # The rate at the end of the step that ends at the limit differs from it by its rounding.
             one.Omega_max = -1.0 if wheel.max_rate is None else wheel.max_rate * (1.0 - 1e-13)
             one.u_min, one.P_max, one.betaStatic = 0.0, -1.0, -1.0
+            one.omegaLimitCycle = 1e-13  # below this rate dry friction is made linear
             effector.addReactionWheel(one)
             self.kept.append(one)
         self.craft.addStateEffector(effector)
         self.add(effector)
         self.speeds = effector.rwSpeedOutMsg
         if scenario.motors:
-            effector.rwMotorCmdInMsg.subscribeTo(self.message("ArrayMotorTorque", "motorTorque", scenario.motors))
+            effector.rwMotorCmdInMsg.subscribeTo(
+                self.message("ArrayMotorTorque", "motorTorque", scenario.motors)
+            )
         else:
             request = (
                 self.add_control()
@@ -109,11 +114,10 @@ class _Run:
 
     def wheel_numbers(self) -> Any:
         wheels = self.scenario.wheels
-        axes = [np.array(wheel.axis) / np.linalg.norm(wheel.axis) for wheel in wheels]
         return self.fixed(
             "RWArrayConfig",
             numRW=len(wheels),
-            GsMatrix_B=np.ravel(axes).tolist(),
+            GsMatrix_B=np.ravel([wheel.axis for wheel in wheels]).tolist(),
             JsList=[wheel.inertia for wheel in wheels],
             uMax=[1e9] * len(wheels),
         )
@@ -143,9 +147,17 @@ class _Run:
         error.attNavInMsg.subscribeTo(sensed.attOutMsg)
         error.attRefInMsg.subscribeTo(target.attRefOutMsg)
         law = self.add(mrpFeedback.mrpFeedback(), "control")
-        law.K, law.P, law.Ki, law.integralLimit, law.controlLawType = control.K, control.P, -1.0, 1.0, control.kind
+        law.K, law.P, law.Ki, law.integralLimit, law.controlLawType = (
+            control.K,
+            control.P,
+            -1.0,
+            1.0,
+            control.kind,
+        )
         law.guidInMsg.subscribeTo(error.attGuidOutMsg)
-        law.vehConfigInMsg.subscribeTo(self.fixed("VehicleConfig", ISCPntB_B=np.ravel(scenario.inertia).tolist()))
+        law.vehConfigInMsg.subscribeTo(
+            self.fixed("VehicleConfig", ISCPntB_B=scenario.without_wheels().ravel().tolist())
+        )
         if scenario.wheels:
             law.rwParamsInMsg.subscribeTo(self.wheel_numbers())
             law.rwSpeedsInMsg.subscribeTo(self.speeds)
@@ -169,9 +181,7 @@ class _Run:
         )
         effector.magInMsg.subscribeTo(self.message("MagneticField", "magField_N", coils.fields))
         effector.mtbCmdInMsg.subscribeTo(
-            self.add_dipole_law()
-            if coils.follows
-            else self.message("MTBCmd", "mtbDipoleCmds", coils.dipoles)
+            self.add_dipole_law() if coils.follows else self.message("MTBCmd", "mtbDipoleCmds", coils.dipoles)
         )
 
     def add_dipole_law(self) -> Any:
@@ -187,7 +197,9 @@ class _Run:
             def UpdateState(self, now: int) -> None:
                 state = craft.scStateOutMsg.read()
                 omega = np.array(state.omega_BN_B)
-                field = RigidBodyKinematics.MRP2C(np.array(state.sigma_BN)) @ np.array(coils.fields.at(now * 1e-9))
+                field = RigidBodyKinematics.MRP2C(np.array(state.sigma_BN)) @ np.array(
+                    coils.fields.at(now * 1e-9)
+                )
                 # The rate of the field in the body is -ω × B.
                 dipole = coils.gain * np.cross(omega, field)
                 dipole -= np.cross(field, coils.damping * omega) / (field @ field)
@@ -205,7 +217,9 @@ class _Run:
         thrusters = self.scenario.thrusters
         assert thrusters is not None
         effector = thrusterDynamicEffector.ThrusterDynamicEffector()
-        for place, along, force in zip(thrusters.positions, thrusters.directions, thrusters.forces, strict=True):
+        for place, along, force in zip(
+            thrusters.positions, thrusters.directions, thrusters.forces, strict=True
+        ):
             one = thrusterDynamicEffector.THRSimConfig()
             one.thrLoc_B = _column(place)
             one.thrDir_B = _column(np.array(along) / np.linalg.norm(along))
@@ -234,13 +248,17 @@ class _Run:
         self.craft.addDynamicEffector(effector)
         self.add(effector)
         if scenario.force:
-            effector.cmdForceBodyInMsg.subscribeTo(self.message("CmdForceBody", "forceRequestBody", scenario.force))
+            effector.cmdForceBodyInMsg.subscribeTo(
+                self.message("CmdForceBody", "forceRequestBody", scenario.force)
+            )
         if scenario.force_in_space:
             effector.cmdForceInertialInMsg.subscribeTo(
                 self.message("CmdForceInertial", "forceRequestInertial", scenario.force_in_space)
             )
         if scenario.torque:
-            effector.cmdTorqueInMsg.subscribeTo(self.message("CmdTorqueBody", "torqueRequestBody", scenario.torque))
+            effector.cmdTorqueInMsg.subscribeTo(
+                self.message("CmdTorqueBody", "torqueRequestBody", scenario.torque)
+            )
         elif scenario.control:
             effector.cmdTorqueInMsg.subscribeTo(self.add_control())
 
@@ -263,7 +281,7 @@ class _Run:
         self.simulation.AddModelToTask("steps", self.craft)
         self.simulation.InitializeSimulation()
         times = scenario.times()
-        for t, end in zip(times[:-1], times[1:], strict=True):
+        for t, end in pairwise(times):
             for change in self.changes:
                 change(t)
             self.simulation.ConfigureStopTime(self.nano(end))
@@ -288,7 +306,12 @@ def run(scenario: Scenario, step: float) -> Rows:
         built.add_coils()
     if scenario.thrusters:
         built.add_thrusters()
-    if scenario.force or scenario.force_in_space or scenario.torque or (scenario.control and not scenario.wheels):
+    if (
+        scenario.force
+        or scenario.force_in_space
+        or scenario.torque
+        or (scenario.control and not scenario.wheels)
+    ):
         built.add_external()
     if scenario.mu:
         built.add_gravity()

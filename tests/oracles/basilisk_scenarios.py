@@ -1,7 +1,7 @@
 """Scenarios of a spacecraft with actuators, as data: Basilisk and polhode both run them.
 
-The tensor is about the centre of mass C and includes the wheels as if they were locked. Points are in the body
-frame, position and velocity are those of C. All steps of Basilisk are powers of two, and everything that
+The tensor is about the centre of mass C and includes the wheels as if they were locked. Points are in the
+body frame, position and velocity are those of C. All steps of Basilisk are powers of two, and everything that
 switches does so at whole steps.
 """
 
@@ -44,6 +44,7 @@ def held(*row: float) -> Steps:
 @dataclass(frozen=True)
 class Wheel:
     axis: Sequence[float]
+    """Of unit length."""
     inertia: float
     rate: float = 0.0
     friction: float = 0.0
@@ -136,24 +137,31 @@ class Scenario:
             found |= set(table.times if table else ())
         return sorted(time for time in found if time <= max(self.t))
 
+    def without_wheels(self) -> NDArray[np.float64]:
+        """Return the tensor less the moments of the wheels about their axes."""
+        return np.array(self.inertia) - sum(
+            (wheel.inertia * np.outer(wheel.axis, wheel.axis) for wheel in self.wheels),
+            start=np.zeros((3, 3)),
+        )
+
     @property
     def first_order(self) -> bool:
         return self.jumps or self.thrusters is not None or (self.coils is not None and self.coils.follows)
 
 
 def attitude_law(
-    scenario: Scenario, omega: Vector, error: Vector, rates: Sequence[float]
+    scenario: Scenario, omega: Vector, error: Vector, momenta: Sequence[float]
 ) -> NDArray[np.float64]:
-    """Return the torque on the body that the control asks for; the error is in Rodrigues parameters."""
+    """Return the torque on the body that the control asks for.
+
+    The error is in Rodrigues parameters, and a momentum that of a wheel about its axis, with the body's rate.
+    """
     control = scenario.control
     assert control is not None
     torque = -control.K * error - control.P * omega
     if control.kind == 1:
-        momentum = np.array(scenario.inertia) @ omega
-        for wheel, rate in zip(scenario.wheels, rates, strict=True):
-            axis = np.array(wheel.axis) / np.linalg.norm(wheel.axis)
-            momentum = momentum + wheel.inertia * rate * axis
-        torque = torque + np.cross(omega, momentum)
+        axes = np.reshape([wheel.axis for wheel in scenario.wheels], (-1, 3))
+        torque = torque + np.cross(omega, scenario.without_wheels() @ omega + np.array(momenta) @ axes)
     return torque
 
 
@@ -202,12 +210,20 @@ EARTH = 3.986004415e14
 
 
 def _pyramid(**same: Any) -> tuple[Wheel, ...]:
-    return tuple(Wheel(axis, 0.03, rate, **same) for axis, rate in zip(PYRAMID, (40, -30, 20, 60), strict=True))
+    return tuple(
+        Wheel(axis, 0.03, rate, **same) for axis, rate in zip(PYRAMID, (40, -30, 20, 60), strict=True)
+    )
 
 
 def _motors() -> list[Scenario]:
     free = [
-        _body(k, kind="wheels", name=f"{k} wheels, torques constant", wheels=_wheels(k, k), motors=_rows(k, (0.0,), k, 0.05))
+        _body(
+            k,
+            kind="wheels",
+            name=f"{k} wheels, torques constant",
+            wheels=_wheels(k, k),
+            motors=_rows(k, (0.0,), k, 0.05),
+        )
         for k in (1, 2, 3, 4)
     ]
     tables = [
@@ -240,7 +256,8 @@ def _motors() -> list[Scenario]:
         )
         for k in (1, 2, 3)
     ]
-    # About a principal axis the rate is linear in time, and passes zero at the end of a step.
+    # About a principal axis the rate is linear in time. It passes zero at the beginning of a step, in whose
+    # first stage Basilisk's friction has the sign before.
     inertia, torque, dry_torque = 0.05, -0.04, 0.01
     share = 1.0 / inertia + 1.0 / (8.0 - inertia)
     crossing = Scenario(
@@ -248,7 +265,9 @@ def _motors() -> list[Scenario]:
         "1 wheel, dry, through zero",
         np.diag((6.0, 7.0, 8.0)).tolist(),
         (0.0, 0.0, 0.02),
-        wheels=(Wheel((0, 0, 1), inertia, 8.0 * (-torque + dry_torque) * share, dry_friction=dry_torque),),
+        wheels=(
+            Wheel((0, 0, 1), inertia, 8.0 * (-torque + dry_torque) * share + 1e-10, dry_friction=dry_torque),
+        ),
         motors=held(torque),
         jumps=True,
     )
@@ -277,7 +296,10 @@ def _limits() -> list[Scenario]:
 
 
 def _allocation() -> list[Scenario]:
-    six = tuple(Wheel(_unit(axis), 0.02, 10.0 * k) for k, axis in enumerate((*CROSS, (1, 1, 0), (0, 1, -1), (1, -1, 1))))
+    six = tuple(
+        Wheel(_unit(axis), 0.02, 10.0 * k)
+        for k, axis in enumerate((*CROSS, (1, 1, 0), (0, 1, -1), (1, -1, 1)))
+    )
     cases = {
         "4 wheels, a pyramid": _pyramid(),
         "4 wheels, a pyramid, clipped": _pyramid(max_torque=0.05),
@@ -286,7 +308,13 @@ def _allocation() -> list[Scenario]:
         "4 wheels, viscous": _pyramid(friction=3e-4),
     }
     return [
-        _body(40 + k, kind="allocation", name=name, wheels=wheels, request=_rows(40 + k, (0.0, 4.0, 11.0), 3, 0.12))
+        _body(
+            40 + k,
+            kind="allocation",
+            name=name,
+            wheels=wheels,
+            request=_rows(40 + k, (0.0, 4.0, 11.0), 3, 0.12),
+        )
         for k, (name, wheels) in enumerate(cases.items())
     ]
 
@@ -317,7 +345,9 @@ def _magnets() -> list[Scenario]:
         "3 coils, clipped": Coils(held(*field), held(5e3, -2e4, 1.25e3), limits=(4e3, 2.5e3, 1e4)),
         "dipoles at times": Coils(held(*field), _rows(62, (0.0, 5.0, 12.0), 3, 3e3), limits=(2e3, 2e3, 2e3)),
         "fields at times": Coils(turning, held(1500.0, -1000.0, 700.0)),
-        "4 skew coils, clipped": Coils(turning, _rows(64, (0.0, 8.0), 4, 4e3), axes=skew, limits=(2e3, 1e3, 3e3, 2e3)),
+        "4 skew coils, clipped": Coils(
+            turning, _rows(64, (0.0, 8.0), 4, 4e3), axes=skew, limits=(2e3, 1e3, 3e3, 2e3)
+        ),
         "1 coil": Coils(held(*field), held(2000.0), axes=skew[:1], limits=(5e3,)),
         "B-dot": Coils(held(*field), gain=8e8),
         "B-dot, clipped": Coils(held(*field), gain=8e8, limits=(2e3, 1e3, 2e3)),
@@ -325,7 +355,13 @@ def _magnets() -> list[Scenario]:
         "torque across the field, clipped": Coils(held(*field), damping=0.8, limits=(900.0, 500.0, 700.0)),
     }
     return [
-        _body(60 + k, kind="coils", name=name, coils=coils, t=(2.0, 4.0, 6.0) if coils.follows else (4.0, 10.0, 20.0))
+        _body(
+            60 + k,
+            kind="coils",
+            name=name,
+            coils=coils,
+            t=(2.0, 4.0, 6.0) if coils.follows else (4.0, 10.0, 20.0),
+        )
         for k, (name, coils) in enumerate(cases.items())
     ]
 
@@ -339,15 +375,22 @@ def _thrusters() -> list[Scenario]:
         2.0,
     )
     one = Thrusters([(0.5, -0.3, 0.2)], [(0.2, 1.0, 0.1)], [0.4], Steps((0.0,), ((0.625,),)), 1.0)
-    pair = replace(one, positions=[(0.6, 0, 0), (-0.6, 0, 0)], directions=[(0, 1, 0), (0, -1, 0)], forces=[0.3, 0.3],
-                   pulses=Steps((0.0, 3.0), ((0.25, 0.25), (0.75, 0.5))))
+    pair = replace(
+        one,
+        positions=[(0.6, 0, 0), (-0.6, 0, 0)],
+        directions=[(0, 1, 0), (0, -1, 0)],
+        forces=[0.3, 0.3],
+        pulses=Steps((0.0, 3.0), ((0.25, 0.25), (0.75, 0.5))),
+    )
     cases: dict[str, Thrusters] = {
         "1, a train of pulses": one,
         "2, a couple": pair,
         "4, a table": four,
         "4, the shortest pulses are left out": replace(four, min_on=0.5),
         "1, one pulse": replace(one, pulses=Steps((0.0, 1.0), ((0.875,), (0.0,)))),
-        "2, the whole period": replace(pair, pulses=Steps((0.0, 2.0, 5.0), ((1.0, 0.0), (0.0, 1.0), (0.5, 0.25)))),
+        "2, the whole period": replace(
+            pair, pulses=Steps((0.0, 2.0, 5.0), ((1.0, 0.0), (0.0, 1.0), (0.5, 0.25)))
+        ),
     }
     return [
         _body(80 + k, kind="thrusters", name=name, thrusters=thrusters, t=(2.0, 5.0, 8.0))
@@ -394,7 +437,9 @@ def _gradients() -> list[Scenario]:
 def _external() -> list[Scenario]:
     return [
         _body(100, kind="force and torque", name="torque constant", torque=held(0.05, -0.02, 0.03)),
-        _body(101, kind="force and torque", name="torques at times", torque=_rows(101, (0.0, 2.0, 9.0), 3, 0.1)),
+        _body(
+            101, kind="force and torque", name="torques at times", torque=_rows(101, (0.0, 2.0, 9.0), 3, 0.1)
+        ),
         _body(102, kind="force and torque", name="force off the centre", force=held(0.2, -0.1, 0.4)),
         _body(
             103,
@@ -414,12 +459,52 @@ def _together() -> list[Scenario]:
     control = Control(0.5, 0.4, 2.5, kind=1)
     orbit = _orbit(6.9e6, 0.05, 0.7)
     return [
-        _body(110, kind="together", name="wheels and coils", wheels=_wheels(110, 3), motors=_rows(110, (0.0, 6.0), 3, 0.05), coils=coils),
-        _body(111, kind="together", name="controlled wheels and coils", wheels=_pyramid(friction=2e-4), control=control, coils=coils),
-        _body(112, kind="together", name="wheels and thrusters", wheels=_wheels(112, 2), motors=_rows(112, (0.0, 4.0), 2, 0.05), thrusters=jets, t=(2.0, 5.0, 8.0)),
-        _body(113, kind="together", name="controlled wheels and thrusters", wheels=_pyramid(max_torque=0.1), control=control, thrusters=jets, t=(2.0, 5.0, 8.0)),
-        _body(114, kind="together", name="coils and thrusters", coils=coils, thrusters=jets, t=(2.0, 5.0, 8.0)),
-        _body(115, kind="together", name="wheels and external loads", wheels=_wheels(115, 4, friction=1e-4), motors=_rows(115, (0.0,), 4, 0.04), torque=held(0.02, 0.03, -0.01), force=held(0.1, 0.2, -0.3)),
+        _body(
+            110,
+            kind="together",
+            name="wheels and coils",
+            wheels=_wheels(110, 3),
+            motors=_rows(110, (0.0, 6.0), 3, 0.05),
+            coils=coils,
+        ),
+        _body(
+            111,
+            kind="together",
+            name="controlled wheels and coils",
+            wheels=_pyramid(friction=2e-4),
+            control=control,
+            coils=coils,
+        ),
+        _body(
+            112,
+            kind="together",
+            name="wheels and thrusters",
+            wheels=_wheels(112, 2),
+            motors=_rows(112, (0.0, 4.0), 2, 0.05),
+            thrusters=jets,
+            t=(2.0, 5.0, 8.0),
+        ),
+        _body(
+            113,
+            kind="together",
+            name="controlled wheels and thrusters",
+            wheels=_pyramid(max_torque=0.1),
+            control=control,
+            thrusters=jets,
+            t=(2.0, 5.0, 8.0),
+        ),
+        _body(
+            114, kind="together", name="coils and thrusters", coils=coils, thrusters=jets, t=(2.0, 5.0, 8.0)
+        ),
+        _body(
+            115,
+            kind="together",
+            name="wheels and external loads",
+            wheels=_wheels(115, 4, friction=1e-4),
+            motors=_rows(115, (0.0,), 4, 0.04),
+            torque=held(0.02, 0.03, -0.01),
+            force=held(0.1, 0.2, -0.3),
+        ),
         _body(
             116,
             kind="together",
@@ -427,7 +512,15 @@ def _together() -> list[Scenario]:
             wheels=_wheels(116, 3, friction=1e-5),
             motors=held(2e-3, -1e-3, 1e-3),
             coils=Coils(field, held(3.0, -2.0, 1.0)),
-            **(orbit | {"center": (0.0, 0.0, 0.0), "omega": (1e-3, -5e-4, 2e-3), "step": 2.0**-5, "t": (100.0, 300.0)}),
+            **(
+                orbit
+                | {
+                    "center": (0.0, 0.0, 0.0),
+                    "omega": (1e-3, -5e-4, 2e-3),
+                    "step": 2.0**-5,
+                    "t": (100.0, 300.0),
+                }
+            ),
         ),
         _body(
             117,
@@ -435,7 +528,42 @@ def _together() -> list[Scenario]:
             name="gravity gradient and controlled wheels",
             wheels=_pyramid(),
             control=control,
-            **(orbit | {"center": (0.0, 0.0, 0.0), "omega": (1e-2, -5e-3, 2e-2), "step": 2.0**-6, "t": (30.0, 100.0)}),
+            **(
+                orbit
+                | {
+                    "center": (0.0, 0.0, 0.0),
+                    "omega": (1e-2, -5e-3, 2e-2),
+                    "step": 2.0**-6,
+                    "t": (30.0, 100.0),
+                }
+            ),
+        ),
+    ]
+
+
+def _validated() -> list[Scenario]:
+    """Two in round numbers, whose results are rows of ``polhode validate``."""
+    inertia = [[9.0, 0.4, -0.2], [0.4, 8.0, 0.3], [-0.2, 0.3, 10.0]]
+    return [
+        Scenario(
+            "wheels",
+            "of polhode validate",
+            inertia,
+            (0.05, -0.08, 0.1),
+            wheels=_pyramid(friction=2e-4, max_torque=0.035),
+            motors=Steps((0.0, 8.0), ((0.04, -0.02, 0.03, 0.01), (-0.03, 0.05, 0.0, 0.02))),
+            t=(20.0,),
+        ),
+        Scenario(
+            "gravity gradient",
+            "of polhode validate",
+            [[60.0, 4.0, -2.0], [4.0, 80.0, 3.0], [-2.0, 3.0, 30.0]],
+            (1e-3, -5e-4, 2e-3),
+            position=(7.2e6, 0.0, 0.0),
+            velocity=(0.0, 8e3, 2e3),
+            mu=EARTH,
+            step=2.0**-1,
+            t=(3000.0,),
         ),
     ]
 
@@ -450,5 +578,6 @@ _PARTS: tuple[Callable[[], list[Scenario]], ...] = (
     _gradients,
     _external,
     _together,
+    _validated,
 )
 SCENARIOS = [scenario for part in _PARTS for scenario in part()]

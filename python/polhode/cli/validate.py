@@ -13,7 +13,7 @@ from typing import Final, Literal
 
 import numpy as np
 
-from polhode import RigidBody, __version__, _core, interop, solids
+from polhode import RigidBody, __version__, _core, interop, loads, orbits, solids
 from polhode.cli import brick
 from polhode.cli.layout import Column, Field, Report, Table
 from polhode.molecules import rotational_constants
@@ -131,6 +131,170 @@ def _mean(a: float, b: float) -> float:
     return a
 
 
+_CRAFT: Final = ((9.0, 0.4, -0.2), (0.4, 8.0, 0.3), (-0.2, 0.3, 10.0))
+_CRAFT_RATE: Final = (0.05, -0.08, 0.1)
+
+
+def _balanced_wheels() -> Numbers:
+    """Three wheels of Honeywell HR16, whose torque is at most 0.2 N m; modified Rodrigues parameters."""
+    rpm = math.pi / 30.0
+    motors = zip(np.eye(3), (500.0, 200.0, -150.0), (0.2, 0.1, -0.5), strict=True)
+    load = sum(
+        loads.wheel(
+            axis, 100.0 / (6000.0 * rpm), rate * rpm, torque=[torque, 0.0], times=[0.0, 0.5], max_torque=0.2
+        )
+        for axis, rate, torque in motors
+    )
+    body = RigidBody(750.0, np.diag((900.0, 800.0, 600.0)))
+    quaternion = body.simulate([0.0, 1.0], (0.08, 0.01, 0.0), load=load, rtol=1e-12).quaternion[-1]
+    return _to_floats(quaternion[:3] / (1.0 + quaternion[3]))
+
+
+def _pyramid() -> Numbers:
+    axes = ((1, 0, 1), (0, 1, 1), (-1, 0, 1), (0, -1, 1))
+    torques = ((0.04, -0.03), (-0.02, 0.05), (0.03, 0.0), (0.01, 0.02))
+    wheels = [
+        loads.wheel(axis, 0.03, rate, torque=torque, times=(0.0, 8.0), friction=2e-4, max_torque=0.035)
+        for axis, rate, torque in zip(axes, (40.0, -30.0, 20.0, 60.0), torques, strict=True)
+    ]
+    motion = RigidBody(90.0, _CRAFT).simulate([0.0, 20.0], _CRAFT_RATE, load=sum(wheels), rtol=1e-13)
+    omega = motion.omega[-1]
+    momenta = [momentum[-1, 0] for momentum in motion.states.values()]
+    rates = [h / 0.03 - omega @ axis / math.sqrt(2.0) for h, axis in zip(momenta, axes, strict=True)]
+    return _to_floats([*omega, *rates])
+
+
+def _coils() -> Numbers:
+    load = loads.magnetic((5e3, -2e4, 1.25e3), (1e-5, -3e-5, 2e-5), max_dipole=(4e3, 2.5e3, 1e4))
+    start = np.array((0.2, 0.4, -0.6, 0.86)) / 1.14  # Rodrigues parameters 0.1, 0.2, -0.3
+    return _to_floats(
+        RigidBody(90.0, _CRAFT).simulate([0.0, 60.0], _CRAFT_RATE, start, load=load, rtol=1e-13).omega[-1]
+    )
+
+
+def _thrusters() -> Numbers:
+    duties = np.array(((64, 128, 192, 0), (250, 26, 0, 77), (0, 154, 51, 250), (102, 0, 240, 13))) / 256.0
+    load = loads.thrusters(
+        ((1.0, 0.2, 0.0), (-1.0, 0.1, 0.3), (0.0, 1.0, -0.2), (0.1, -1.0, 0.0)),
+        ((0.0, 1.0, 0.2), (0.1, 1.0, 0.0), (0.0, 0.3, 1.0), (0.2, 0.0, -1.0)),
+        (0.2, 0.3, 0.25, 0.15),
+        command=duties,
+        times=(0.0, 2.0, 4.0, 6.0),
+        period=2.0,
+    )
+    return _to_floats(
+        RigidBody(90.0, _CRAFT).simulate([0.0, 8.0], _CRAFT_RATE, load=load, rtol=1e-13).omega[-1]
+    )
+
+
+def _tide() -> Numbers:
+    """Compute ω on an ellipse, in degrees an hour."""
+    body = RigidBody(90.0, ((60.0, 4.0, -2.0), (4.0, 80.0, 3.0), (-2.0, 3.0, 30.0)))
+    load = loads.gravity_gradient(3.986004415e14, (7.2e6, 0.0, 0.0), (0.0, 8e3, 2e3))
+    omega = body.simulate([0.0, 3000.0], (1e-3, -5e-4, 2e-3), load=load, rtol=1e-13).omega[-1]
+    return _to_floats(np.rad2deg(omega) * 3600.0)
+
+
+_PITCH: Final = math.radians(40.0)
+_LIBRATING: Final = (2.0, 2.2, 0.5)
+
+
+def _libration_period() -> float:
+    """Compute the period of a pendulum: ``θ'' = -3/2 n² (I₁ - I₃)/I₂ sin 2θ`` for n = 1, from 40 degrees."""
+    first, second, third = _LIBRATING
+    return 2.0 * math.pi / (_mean(1.0, math.cos(_PITCH)) * math.sqrt(3.0 * (first - third) / second))
+
+
+def _libration() -> Numbers:
+    """Compute the pitch after a quarter, a half and a whole of its period."""
+    orbit = orbits.kepler(1.0, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+    t = np.array((0.0, 0.25, 0.5, 1.0)) * _libration_period()
+    frame = orbit.frame(t)
+    x, y, z, w = frame.quaternion[0]
+    s, c = math.sin(0.5 * _PITCH), math.cos(0.5 * _PITCH)
+    start = (c * x - s * z, c * y + s * w, c * z + s * x, c * w - s * y)
+    motion = RigidBody.from_principal(1.0, _LIBRATING).simulate(
+        t, frame.omega[0], start, load=loads.gravity_gradient(orbit), rtol=1e-13
+    )
+    # The axis of the pitch is that of the orbit, in the body and in the frame.
+    long_axis = _core.rotate(motion.quaternion, (0.0, 0.0, 1.0))
+    seen = _core.rotate(frame.quaternion, long_axis, inverse=True)
+    return _to_floats(np.arctan2(seen[1:, 0], seen[1:, 2]))
+
+
+_EARTH: Final = 398600.4418
+
+
+def _kepler() -> Numbers:
+    orbit = orbits.kepler(_EARTH, (1131.340, -2282.343, 6672.423), (-5.64305, 4.30333, 2.42879))
+    return _to_floats(orbit.at(2400.0).position)
+
+
+_J2: Final = 1.08263e-3
+_EQUATOR: Final = 6378.137
+_CIRCLE: Final = 7000.0
+_CIRCLE_RATE: Final = math.sqrt(_EARTH / _CIRCLE**3 * (1.0 + 1.5 * _J2 * (_EQUATOR / _CIRCLE) ** 2))
+
+
+def _oblate() -> Numbers:
+    state = (_CIRCLE, 0.0, 0.0), (0.0, _CIRCLE_RATE * _CIRCLE, 0.0)
+    return _to_floats(orbits.kepler(_EARTH, *state, j2=_J2, radius=_EQUATOR).at(86400.0).position)
+
+
+def _node() -> Numbers:
+    """Compute the drift of the node in degrees a day, over ten days."""
+    orbit = orbits.from_elements(
+        _EARTH,
+        eccentricity=0.001,
+        semi_major_axis=7178.0,
+        inclination=98.6,
+        degrees=True,
+        j2=_J2,
+        radius=_EQUATOR,
+    )
+    days = np.arange(11.0)
+    place, velocity = orbit.at(86400.0 * days)
+    normal = np.cross(place, velocity)
+    node = np.unwrap(np.arctan2(normal[:, 0], -normal[:, 1]))
+    return (float(np.degrees(np.polyfit(days, node, 1)[0])),)
+
+
+def _node_drift() -> float:
+    rate = math.sqrt(_EARTH / 7178.0**3)
+    drift = -1.5 * _J2 * rate * (_EQUATOR / (7178.0 * (1.0 - 1e-6))) ** 2 * math.cos(math.radians(98.6))
+    return math.degrees(drift) * 86400.0
+
+
+_PERIAPSIS, _ECCENTRICITY = 38011.486, 4.253901873
+_ANOMALY: Final = math.radians(100.0)
+
+
+def _flyby() -> Numbers:
+    """Compute the rate of a body that was at rest, per product of inertia, in seconds of arc a second.
+
+    The product is so small that the body turns by less than a second of arc.
+    """
+    part = math.sqrt((_ECCENTRICITY - 1.0) / (_ECCENTRICITY + 1.0)) * math.tan(0.5 * _ANOMALY)
+    hyperbolic = 2.0 * math.atanh(part)
+    axis = _PERIAPSIS / (_ECCENTRICITY - 1.0)
+    half = (_ECCENTRICITY * math.sinh(hyperbolic) - hyperbolic) * math.sqrt(axis**3 / _EARTH)
+    orbit = orbits.from_elements(
+        _EARTH, eccentricity=_ECCENTRICITY, periapsis=_PERIAPSIS, since_periapsis=-half
+    )
+    body = RigidBody(1.0, ((1.0, 1e-6, 0.0), (1e-6, 1.0, 0.0), (0.0, 0.0, 1.0)))
+    load = loads.gravity_gradient(orbit)
+    omega = body.simulate([0.0, 2.0 * half], (0.0, 0.0, 0.0), load=load, rtol=1e-13).omega[-1]
+    return _to_floats(np.rad2deg(omega) * 3600.0 / 1e-6)
+
+
+def _tidal_kick() -> float:
+    """Compute ``3 mu/(p h) I₁₂ ∫ (1 + e cos f) cos 2f df``, from the true anomaly -100 to 100 degrees."""
+    parameter = _PERIAPSIS * (1.0 + _ECCENTRICITY)
+    angles = math.sin(2.0 * _ANOMALY) + _ECCENTRICITY * (math.sin(_ANOMALY) + math.sin(3.0 * _ANOMALY) / 3.0)
+    return math.degrees(3.0 * math.sqrt(_EARTH / parameter**3) * angles) * 3600.0
+
+
+_BASILISK: Final = "Basilisk 2.12.1"
 _NASA: Final = "NASA/TM-2015-218675, check case 2"
 _HERZBERG: Final = "Huber and Herzberg, Molecular Structure IV (1979)"
 _T, _S3 = 4.0, math.sqrt(3.0)
@@ -160,6 +324,97 @@ CASES: Final = (
         (0.16112601, 0.51386477, 0.66303218),
         4e-8,
         _printout,
+    ),
+    Case(
+        "spacecraft",
+        "three balanced wheels, attitude at 1 s",
+        "Basilisk, test_reactionWheelStateEffector_integrated.py",
+        (1.99853994e-02, 2.45647716e-03, 8.45356279e-06),
+        5.1e-11,
+        _balanced_wheels,
+    ),
+    Case(
+        "spacecraft",
+        "four wheels with friction, rad/s at 20 s",
+        f"{_BASILISK}, step 1/256 s, by 1/128 the same to 2e-13",
+        (
+            0.04371234003222547,
+            -0.046906696287765726,
+            0.1160976991196874,
+            31.854809641761165,
+            -17.629272515953595,
+            24.680919110317305,
+            62.60671922854026,
+        ),
+        1e-11,
+        _pyramid,
+    ),
+    Case(
+        "spacecraft",
+        "three coils, two saturated, rad/s at 60 s",
+        f"{_BASILISK}, step 1/100 s",
+        (0.1378052392720095, -0.006130385611334306, -0.01163096737866266),
+        1e-11,
+        _coils,
+    ),
+    Case(
+        "spacecraft",
+        "four thrusters in pulses, rad/s at 8 s",
+        f"{_BASILISK}, three steps, extrapolated",
+        (0.19434437793307371, -0.08616809653658342, 0.0908939396065957),
+        1e-11,
+        _thrusters,
+    ),
+    Case(
+        "spacecraft",
+        "gravity gradient on an ellipse, deg/h at 3000 s",
+        f"{_BASILISK}, step 1/4 s, by 1/2 the same to 1e-12",
+        tuple(
+            math.degrees(rate) * 3600.0
+            for rate in (-0.0010570351184167601, 0.00027882140514733447, 0.0014159936629154274)
+        ),
+        1e-9,
+        _tide,
+    ),
+    Case(
+        "orbit",
+        "libration of a satellite from 40 deg",
+        "the pendulum: 0, -40 and 40 deg by its period",
+        (0.0, -_PITCH, _PITCH),
+        1e-11,
+        _libration,
+    ),
+    Case(
+        "orbit",
+        "40 minutes on an ellipse, km",
+        "Vallado, Fundamentals of Astrodynamics, example 2-4",
+        (-4219.7527, 4363.0292, -3958.7666),
+        6e-5,
+        _kepler,
+    ),
+    Case(
+        "orbit",
+        "a day about the oblate Earth, km",
+        "circle in the equator: cos, sin",
+        (_CIRCLE * math.cos(86400.0 * _CIRCLE_RATE), _CIRCLE * math.sin(86400.0 * _CIRCLE_RATE), 0.0),
+        1e-7,
+        _oblate,
+    ),
+    Case(
+        "orbit",
+        "drift of the node of a sun-synchronous orbit, deg/d",
+        "first order in J2: -3/2 J2 n (R/p)^2 cos i",
+        (_node_drift(),),
+        0.005,
+        _node,
+    ),
+    Case(
+        "flyby",
+        "tide of the Earth on Apophis in 2029, arcsec/s",
+        "closed form of the integral along the hyperbola",
+        (0.0, 0.0, _tidal_kick()),
+        2e-5,
+        _flyby,
     ),
     Case(
         "closed form", "corner of a cube, as a mesh", "by hand: 20, 4, -1", (20.0, 4.0, -1.0), 4e-15, _corner
