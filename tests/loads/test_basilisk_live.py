@@ -1,10 +1,10 @@
-"""Spacecraft with actuators against live Basilisk, whose package has an environment of its own::
+"""Spacecraft with actuators against SciPy and against live Basilisk, which has an environment of its own::
 
     python -m venv basilisk
     basilisk/bin/pip install bsk numpy scipy pytest pytest-timeout hypothesis mpmath
     PYTHONPATH=python basilisk/bin/python -m pytest -m long tests/loads/test_basilisk_live.py
 
-Without the package the tests are skipped. With ``--durations=0 -s`` they say what the differences are.
+Without the package the tests of Basilisk are skipped. With ``-s`` all tests say what the differences are.
 """
 
 from __future__ import annotations
@@ -20,7 +20,9 @@ import pytest
 from numpy.typing import NDArray
 from oracles import basilisk_live
 from oracles.basilisk_scenarios import SCENARIOS, Scenario, Steps, attitude_law
+from oracles.spacecraft_by_scipy import by_scipy
 from polhode import RigidBody, loads, orbits
+from polhode.cli.validate import CASES
 from scipy.spatial.transform import Rotation
 
 Rows = NDArray[np.float64]
@@ -104,13 +106,13 @@ def coils(scenario: Scenario) -> list[loads.Load]:
                 rows,
                 b,
                 dipole_times=given.dipoles.times,
-                max_dipole=given.limits,  # type: ignore[union-attr]
+                max_dipole=given.limits,
             ),
         )
     moments = np.clip(rows, -np.array(given.limits), given.limits) @ np.array(given.axes)
     return scheduled(
         given.fields,
-        lambda b: loads.magnetic(moments, b, dipole_times=given.dipoles.times),  # type: ignore[union-attr]
+        lambda b: loads.magnetic(moments, b, dipole_times=given.dipoles.times),
     )
 
 
@@ -186,20 +188,64 @@ def of_basilisk(scenario: Scenario) -> tuple[Rows, Rows]:
     return best, distances(once[1], best)
 
 
+QUICK = {
+    "wheels: 1 wheels, torques at times, clipped",
+    "friction: 1 wheels, viscous",
+    "limits: down, and back",
+    "allocation: 6 wheels",
+    "coils: B-dot",
+    "thrusters: 1, one pulse",
+    "gravity gradient: of polhode validate",
+    "force and torque: torque constant",
+}
+"""By SciPy these take no more than a second or two."""
+
+
+def label(scenario: Scenario) -> str:
+    return f"{scenario.kind}: {scenario.name}"
+
+
+@pytest.mark.parametrize(
+    "scenario",
+    [
+        pytest.param(one, id=label(one), marks=() if label(one) in QUICK else pytest.mark.long)
+        for one in SCENARIOS
+    ],
+)
+def test_by_scipy(scenario: Scenario) -> None:
+    off = distances(run(scenario), by_scipy(scenario))
+    print(f"\n{label(scenario):60} off SciPy by {off.max():.1e}")
+    assert np.all(off < 1e-11), off
+
+
 @pytest.mark.long
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
-@pytest.mark.parametrize("scenario", SCENARIOS, ids=lambda scenario: f"{scenario.kind}: {scenario.name}")
+@pytest.mark.parametrize("scenario", SCENARIOS, ids=label)
 def test_live(scenario: Scenario) -> None:
     pytest.importorskip("Basilisk")
     best, error = of_basilisk(scenario)
     off = distances(run(scenario), best)
-    print(
-        f"\n{scenario.kind:20} {scenario.name:40} off {off.max():.1e}, Basilisk's own error {error.max():.1e}"
-    )
+    print(f"\n{label(scenario):60} off {off.max():.1e}, Basilisk's own error {error.max():.1e}")
     assert np.all(off < SMALL + error), (off, error)
+
+
+@pytest.mark.long
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+@pytest.mark.parametrize(
+    ("kind", "row"), [("wheels", "four wheels"), ("gravity gradient", "gravity gradient")]
+)
+def test_validate_shows_what_basilisk_computes(kind: str, row: str) -> None:
+    pytest.importorskip("Basilisk")
+    (scenario,) = (one for one in SCENARIOS if (one.kind, one.name) == (kind, "of polhode validate"))
+    (case,) = (case for case in CASES if case.name.startswith(row))
+    found = basilisk_live.run(scenario, scenario.step / 2)[0]
+    if scenario.mu:
+        found = np.rad2deg(found[:3]) * 3600.0
+    np.testing.assert_allclose([*found[:3], *found[12:]], case.expected, rtol=0.0, atol=case.allowed / 10.0)
 
 
 def test_there_are_enough() -> None:
     kinds = Counter(scenario.kind for scenario in SCENARIOS)
-    assert len({(scenario.kind, scenario.name) for scenario in SCENARIOS}) == len(SCENARIOS) >= 40
+    assert len(set(map(label, SCENARIOS))) == len(SCENARIOS) >= 40
+    assert set(map(label, SCENARIOS)) >= QUICK
     assert min(kinds.values()) >= 3

@@ -192,17 +192,16 @@ class _Run:
         coils, craft, messaging = self.scenario.coils, self.craft, self.messaging
         assert coils is not None
         command = messaging.MTBCmdMsg()
+        fields, gain, damping = coils.fields, coils.gain, coils.damping
 
         class Law(sysModel.SysModel):  # type: ignore[misc]
             def UpdateState(self, now: int) -> None:
                 state = craft.scStateOutMsg.read()
                 omega = np.array(state.omega_BN_B)
-                field = RigidBodyKinematics.MRP2C(np.array(state.sigma_BN)) @ np.array(
-                    coils.fields.at(now * 1e-9)
-                )
+                field = RigidBodyKinematics.MRP2C(np.array(state.sigma_BN)) @ np.array(fields.at(now * 1e-9))
                 # The rate of the field in the body is -ω × B.
-                dipole = coils.gain * np.cross(omega, field)
-                dipole -= np.cross(field, coils.damping * omega) / (field @ field)
+                dipole = gain * np.cross(omega, field)
+                dipole -= np.cross(field, damping * omega) / (field @ field)
                 payload = messaging.MTBCmdMsgPayload()
                 payload.mtbDipoleCmds = dipole.tolist()
                 command.write(payload, now)
