@@ -514,6 +514,13 @@ impl RollingSeries {
         ([x / speed, y / speed], speed * self.length * self.rate)
     }
 
+    /// Return whether the slip falls at the start of the last step.
+    pub(crate) fn slip_falls(&self) -> bool {
+        let [x, y] = ContactState::of(&self.before[0]).slip;
+        let [x_rate, y_rate] = [12, 13].map(|i| self.series.coefficients()[i][1]);
+        (x * x_rate + y * y_rate) * self.end.signum() < 0.0
+    }
+
     /// Compute the force of the plane over the mass at a time within the last step, from its series: two components in the plane and
     /// the one along the normal.
     pub(crate) fn force_over_mass(&self, elapsed: f64) -> [f64; 3] {
