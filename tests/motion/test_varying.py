@@ -334,7 +334,7 @@ def test_refusals() -> None:
     with pytest.raises(ValueError, match=r"t, bodies: expected as many times as bodies.*\(4,\) and \(5,\)"):
         RigidBody.varying(TIMES[1:], spheres)
     with pytest.raises(ValueError, match="bodies: expected a stack of bodies"):
-        RigidBody.varying(TIMES, [1, 2])
+        RigidBody.varying(TIMES, [1, 2])  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="ascend"):
         RigidBody.varying(TIMES[::-1], spheres, outlet=(0, 0, 0))
     with pytest.raises(ValueError, match="outlet: expected shape"):
@@ -350,7 +350,7 @@ def test_refusals() -> None:
         body.at(4.0001)
     for method in ("taylor", "exact", "splitting"):
         with pytest.raises(ValueError, match="serve a varying body"):
-            body.simulate([0, 1], (0, 0, 1), method=method)
+            body.simulate([0, 1], (0, 0, 1), method=method)  # type: ignore[arg-type]
     limits: list[dict[str, Any]] = [{"dry_friction": 0.1}, {"max_rate": 10.0}, {"max_momentum": 10.0}]
     for options in limits:
         wheel = loads.wheel((0, 0, 1), inertia=0.1, torque=0.1, **options)

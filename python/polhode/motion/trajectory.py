@@ -1099,8 +1099,8 @@ class Trajectory(metaclass=ClassWithHints):
         return motion_html(self)
 
     def _varying(self) -> _core.VaryingBody | None:
-        """Return the body if it varies with time; to type checkers it is a `RigidBody`, as of nearly all motions."""
-        body: Any = self.body
+        """Return the body if it varies with time."""
+        body: Any = self.body  # to type checkers one that does not, as of nearly all motions
         return body if isinstance(body, _core.VaryingBody) else None
 
     def _check_constant(self, what: str, instead: str) -> None:

@@ -131,10 +131,7 @@ impl Ensemble<'_> {
             return row.integrate(&mut load, events);
         };
         let start = row.body();
-        match VaryingLoad::new(varying, load, &start) {
-            Ok(mut load) => row.integrate(&mut load, events),
-            Err(error) => row.fail(error.into()),
-        }
+        row.integrate(&mut VaryingLoad::new(varying, load, &start), events)
     }
 }
 

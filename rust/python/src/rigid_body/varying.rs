@@ -24,15 +24,6 @@ type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 /// A body whose mass, centre of mass and tensor change with time: what :meth:`RigidBody.varying` returns.
 ///
-/// Attributes
-/// ----------
-/// t : numpy.ndarray, shape (n,)
-///     Times at which the body is known.
-/// bodies : RigidBody
-///     Stack of shape (n,): the body then.
-/// outlet : numpy.ndarray, shape (k, 3), or None
-///     Points of the body, components in its frame, where mass leaves or comes.
-///
 /// See Also
 /// --------
 /// RigidBody.varying : the equations of motion, and what they leave out.
@@ -171,16 +162,19 @@ impl PyRigidBody {
 
 #[pymethods]
 impl PyVaryingBody {
+    /// Times at which the body is known, shape (n,).
     #[getter]
     fn t<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
         write(py, &list(self.varying.times().to_vec()))
     }
 
+    /// The body at these times: a stack of shape (n,).
     #[getter]
     fn bodies(&self, py: Python<'_>) -> Py<PyRigidBody> {
         self.bodies.clone_ref(py)
     }
 
+    /// Points of the body, components in its frame, where mass leaves or comes, shape (k, 3); None without them.
     #[getter]
     fn outlet<'py>(&self, py: Python<'py>) -> PyResult<Option<Array<'py>>> {
         let outlets = self.varying.outlets();
@@ -335,8 +329,8 @@ impl PyVaryingBody {
     /// --------
     /// >>> from polhode import RigidBody
     /// >>> arms = RigidBody.from_principal(60.0, [(3.0, 3.5, 2.0), (3.0, 3.5, 1.0)])
-    /// >>> RigidBody.varying([0, 2], arms).torque_of_change(1.0, (0, 0, 4.0))
-    /// array([0., 0., 2.])
+    /// >>> RigidBody.varying([0, 2], arms).torque_of_change(1.0, (0, 0, 4.0))[2]
+    /// 2.0
     #[pyo3(signature = (t, omega, about="center_of_mass"))]
     fn torque_of_change<'py>(
         &self,

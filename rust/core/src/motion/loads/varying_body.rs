@@ -55,7 +55,7 @@ use crate::numerics::threads::Watch;
 /// let start = rocket.at(0.0)?;
 /// let phase = Phase::in_place(&State { attitude: UnitQuaternion::identity(), omega: Vector3::x() });
 /// let task = Task::free(&start, phase, &[0.0, 4.0], Method::Dop853, Tolerance::new(1e-13, 0.0)?);
-/// let mut load = VaryingLoad::new(&rocket, Analytic::new(&[], task.body_at_point), &task.body_at_point)?;
+/// let mut load = VaryingLoad::new(&rocket, Analytic::new(&[], task.body_at_point), &task.body_at_point);
 /// let run = simulate(&task, &mut load, &mut NoEvents::new(), &mut |_| ControlFlow::Continue(())).into_result()?;
 /// let per_mass = (3.0 * 0.01 + 1.0) / 12.0;
 /// assert!((run.phase.omega.x - 0.6_f64.powf(0.25 / per_mass - 1.0)).abs() < 1e-12);
@@ -345,30 +345,29 @@ pub struct VaryingLoad<'a, L> {
     wheels: Matrix3<f64>,
     /// The tensor about the reference point that the equations of motion have, without these wheels.
     tensor: Matrix3<f64>,
+    has_bearing: bool,
 }
 
 impl<'a, L: Load> VaryingLoad<'a, L> {
     /// `load` on `body`; `start`: the body at the first time, as the load sees it.
     ///
-    /// # Errors
-    /// [`MotionFault::VaryingWithBearing`] for wheels with dry friction or a limit of their rate, whose bearings hold the body of the start;
-    /// where the run begins outside the times of the body.
-    pub fn new(body: &'a VaryingBody, load: L, start: &BodyAtPoint) -> Result<Self, Error> {
-        body.check_at(start.start)?;
+    /// It refuses to [act](Load::enter) beyond the times of the body, and with wheels that have dry friction or a limit of their rate: their
+    /// bearings would hold the body of the start.
+    pub fn new(body: &'a VaryingBody, load: L, start: &BodyAtPoint) -> Self {
         let carried = load.carried();
-        if (carried.iter()).any(|it| it.bearing().is_some() || it.rate_limit().is_some()) {
-            return Err(Error::Motion(MotionFault::VaryingWithBearing));
-        }
+        let has_bearing =
+            (carried.iter()).any(|it| it.bearing().is_some() || it.rate_limit().is_some());
         let turning = carried.iter().filter_map(|it| it.turning());
         let wheels: Matrix3<f64> = turning.map(|(a, j)| a * a.transpose() * j).sum();
         let tensor = start.inertia + parallel(start.mass, &(start.center * start.mass)) - wheels;
-        Ok(Self {
+        Self {
             body,
             load,
             start: *start,
             wheels,
             tensor,
-        })
+            has_bearing,
+        }
     }
 
     /// The body at time `t`, which the load is told.
@@ -403,6 +402,9 @@ impl<L: Load> Load for VaryingLoad<'_, L> {
     }
 
     fn enter(&mut self, from: f64, to: f64) -> Result<(), L::Error> {
+        if self.has_bearing {
+            return Err(Error::Motion(MotionFault::VaryingWithBearing).into());
+        }
         self.body.check_at(from)?;
         self.body.check_at(to)?;
         self.tell(from);

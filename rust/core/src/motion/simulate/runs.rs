@@ -208,11 +208,6 @@ impl Member<'_> {
         by_method(self.task, load, events, self.watch)
     }
 
-    /// Its run, which cannot be begun for this reason.
-    pub fn fail<E>(self, error: E) -> Run<E> {
-        Run::at_start(self.task, End::Failed(error))
-    }
-
     /// Compute its motion on a plane under uniform gravity: see [`roll`].
     pub fn roll<E: From<Error>>(
         self,
