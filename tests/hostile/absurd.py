@@ -334,6 +334,7 @@ OTHERS: dict[str, Callable[[], object]] = {
     "MassAccumulator.add": lambda: _core.MassAccumulator().add(
         np.broadcast_to(1.0, ABSURD), np.broadcast_to(1.0, (ABSURD, 3))
     ),
+    "RigidBody.varying": lambda: RigidBody.varying(np.broadcast_to(1.0, ABSURD), BODY),
     "sampled": lambda: _core.sampled(np.broadcast_to(1.0, ABSURD), np.broadcast_to(1.0, (ABSURD, 3))),
     "schedule": lambda: _core.schedule(LOAD, np.broadcast_to(1.0, (ABSURD, 2))),
     **{

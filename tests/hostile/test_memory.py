@@ -37,6 +37,7 @@ SIZELESS = {
     "torque_callback",
     "Contact",
     "Stepper",
+    "VaryingBody",
     "Surface",
     "rolling_critical_rate",
     "rolling_modes",

@@ -274,3 +274,19 @@ def test_dry_friction_goes_on_and_not_back() -> None:
     assert np.allclose(again.position[-1], found.position[-1], rtol=0, atol=1e-13)
     with pytest.raises(ContactError, match="times that rise"):
         dry(ball, given[0], [1, 0], *given[2:])
+
+
+@pytest.mark.parametrize("rtol", [1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 2.3e-15])
+def test_friction_that_is_only_just_enough_to_brake(rtol: float) -> None:
+    """Of 2.5 m/s² two hundredths are left to brake, less than the errors of a step when the slip is small."""
+    body = RigidBody(1.0, np.diag([0.1094, 0.1167, 0.095]), (-0.0699, 0.0417, 0.0561))
+    attitude = np.array([0.7102, -0.1002, 0.0817, 0.692])
+    contact = rolling.plane(rolling.torus(0.4, 0.1), law="dry", friction=0.2628)
+    found = body.simulate(
+        [0, 1.5], (-0.4562, 4.2494, 0.8843), attitude / np.linalg.norm(attitude), load=G, contact=contact,
+        rtol=rtol, max_steps=2500,
+    )  # fmt: skip
+    assert found.status == "complete"
+    assert found.events.kind.tolist() == ["slip", "roll", "slip"]
+    exact = [1.26533433291030, 1.31306749, 1.39866647]
+    assert np.abs(found.events.t - exact).max() < 1e-7 + 1e3 * rtol

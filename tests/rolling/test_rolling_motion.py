@@ -200,7 +200,7 @@ def test_motions_of_lying_bodies(row: Any) -> None:
 @pytest.mark.parametrize("row", LYING)
 def test_motions_of_lying_bodies_for_longer(row: Any) -> None:
     case, motion = lying(*row)
-    exact = lying_motion(case, flat(motion.at(0.0)), 5.0, 60)
+    exact = lying_motion(case, flat(motion.at(0.0)), 5.0, 120)
     assert off(flat(motion.at(5.0)), exact, 10.0) < 1e-12
 
 

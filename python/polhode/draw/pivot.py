@@ -48,7 +48,7 @@ class Pivot:
 
 def top_of(trajectory: Trajectory) -> HeavyTop | None:
     """Return the heavy top in closed form that starts at the first state of a trajectory; else None."""
-    if not trajectory.pivoted or repr(trajectory.load) != _GRAVITY:
+    if not trajectory.pivoted or repr(trajectory.load) != _GRAVITY or trajectory._varying() is not None:
         return None
     gravity = trajectory.force()[0] / trajectory.body.mass
     try:

@@ -210,6 +210,7 @@ class Scene:
         travel: float = 0.0,
     ) -> Scene:
         trajectory, chosen = footage.trajectory, footage.chosen
+        trajectory._check_constant("animate", "the picture draws one body; plot() draws the states")
         about = trajectory.about
         pivot = pivot_of(trajectory, motion)
         principal = trajectory.body.principal_about(about)

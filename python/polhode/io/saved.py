@@ -313,12 +313,16 @@ def save_trajectory(trajectory: Trajectory, path: str | PathLike[str]) -> None:
     suffix = file.suffix.lower()
     if suffix == ".csv":
         _save_csv(trajectory, file)
-    elif trajectory.uncertain_start != (None, None):
+        return
+    trajectory._check_constant(
+        f"path: {file}", "such a file holds one body; pickle keeps it, and .csv holds the states"
+    )
+    if trajectory.uncertain_start != (None, None):
         raise ValueError(
             f"path: {file}: such a file does not hold what is uncertain of the state at the first time; "
             "pickle keeps it, and .csv holds the states alone"
         )
-    elif suffix == ".json":
+    if suffix == ".json":
         _save_json(trajectory, file)
     elif suffix == ".npz":
         _save_npz(trajectory, file)

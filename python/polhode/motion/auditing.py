@@ -267,6 +267,9 @@ def audit(
             f"trajectory: expected that of one body, got a stack of shape {body.shape}; take one"
         )
     trajectory._check_series("audit")
+    trajectory._check_constant(
+        "trajectory", "an audit knows the laws of a body that does not; compare momenta instead"
+    )
     limit = _RTOL if rtol is None else float(_core.real_numbers(rtol, "rtol"))
     if not 0.0 < limit < 1.0:
         raise ValueError(f"rtol: expected a number between 0 and 1, got {rtol!r}")

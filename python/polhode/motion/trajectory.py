@@ -85,7 +85,7 @@ class Trajectory(metaclass=ClassWithHints):
 
     Attributes
     ----------
-    body : RigidBody
+    body : RigidBody or VaryingBody
         The body, or the stack of them.
     t : numpy.ndarray, shape (T,)
         Times; the first is the start. For a motion in closed form these are any times, in an array of any
@@ -97,7 +97,8 @@ class Trajectory(metaclass=ClassWithHints):
     position, velocity : numpy.ndarray, shape (..., T, 3)
         Position and velocity of the point `about`, in space.
     about : numpy.ndarray, shape (..., 3)
-        The point the motion refers to, in the body frame.
+        The point the motion refers to, in the body frame. Of a varying body that moves freely the centre of
+        mass at each time, shape (T, 3).
     steps, evaluations : numpy.ndarray, shape (...)
         Accepted steps and evaluations of the equations of motion.
     load : Load or None
@@ -281,7 +282,8 @@ class Trajectory(metaclass=ClassWithHints):
         -------
         numpy.ndarray, shape (..., T, 3)
         """
-        center = self.body.center_of_mass
+        varying = self._varying()
+        center = self.body.center_of_mass if varying is None else varying.at(self.t).center_of_mass
         words = {"center_of_mass": center, "com": center, "origin": np.zeros(3)}
         if isinstance(point, str) and point not in words:
             raise ValueError(
@@ -290,8 +292,8 @@ class Trajectory(metaclass=ClassWithHints):
         place = words[point] if isinstance(point, str) else _core.real_numbers(point, "point")
         if place.shape[-1:] != (3,):
             raise ValueError(f"point: expected shape (..., 3), got {place.shape}")
-        arm = place - self.about
-        return self.position + _core.rotate(self.quaternion, self._per_time(arm))
+        arm = place - self.about if varying is None else place - self._reference()
+        return self.position + _core.rotate(self.quaternion, self._per_time(arm) if varying is None else arm)
 
     def invariants(self) -> Invariants:
         """Return the conserved quantities of the motion, and how far the numbers have drifted from them.
@@ -312,6 +314,8 @@ class Trajectory(metaclass=ClassWithHints):
         work = 0.0 if self._contact_states is None else self._contact_states[1]
         if self._contact is not None and self._contact.turntable and self._contact_states is None:
             potential = None  # the plane does work, which a closed form does not have
+        if self._varying() is not None:
+            potential = None  # what moves inside the body does work
         spin = self.angular_momentum().spin
         energy = None if potential is None else kinetic + potential - work
         kept = self._kept_directions()
@@ -622,6 +626,9 @@ class Trajectory(metaclass=ClassWithHints):
             arm = contact.point_in_body - self._reference()
             torque = torque + np.cross(arm, _core.rotate(self.quaternion, contact.force, inverse=True))
             torque += _core.rotate(self.quaternion, contact.couple, inverse=True)
+        varying = self._varying()
+        if varying is not None:
+            torque = torque + varying.torque_of_change(self.t, self.omega, self._about_word())
         return self._bodies().angular_acceleration(self.omega, torque, about=self._reference())
 
     def potential_energy(self) -> Floats:
@@ -754,6 +761,7 @@ class Trajectory(metaclass=ClassWithHints):
                 "sensitivity: the derivatives of a body that rolls are not known; take differences of "
                 "motions from starts a little apart, simulated tightly"
             )
+        self._check_constant("sensitivity", "take differences of motions from starts a little apart")
         self._check_series("sensitivity", "; FreeMotion.sensitivity(t) has those of a free body at any times")
         if method == "differences":
             from polhode.motion.finite_differences import by_differences
@@ -852,7 +860,8 @@ class Trajectory(metaclass=ClassWithHints):
         given = state._asdict() | {"about": about}
         if self.pivoted or (self._contact is not None and self._contact.law == "rolling"):
             del given["velocity"]
-        given["contact"] = self._contact
+        if self._contact is not None:
+            given["contact"] = self._contact
         first = float(self.t.flat[0]) if self._origin.start is None else self._origin.start
         is_another = "load" in options or "states" in options
         load = options.pop("load") if "load" in options else self._acting("resume", -1)
@@ -1089,8 +1098,21 @@ class Trajectory(metaclass=ClassWithHints):
 
         return motion_html(self)
 
+    def _varying(self) -> _core.VaryingBody | None:
+        """Return the body if it varies with time."""
+        body: Any = self.body  # to type checkers one that does not, as of nearly all motions
+        return body if isinstance(body, _core.VaryingBody) else None
+
+    def _check_constant(self, what: str, instead: str) -> None:
+        """Refuse a body that varies with time."""
+        if self._varying() is not None:
+            raise ValueError(f"{what}: the body of this motion varies with time; {instead}")
+
     def _bodies(self) -> _core.RigidBody:
         """Return the body or stack with axes for time, along which it broadcasts."""
+        varying = self._varying()
+        if varying is not None:
+            return varying.at(self.t)
         return self.body[(..., *self._time_axes())]
 
     def _time_axes(self) -> tuple[None, ...]:
@@ -1110,6 +1132,8 @@ class Trajectory(metaclass=ClassWithHints):
         return vectors[(..., *self._time_axes(), slice(None))]
 
     def _reference(self) -> Floats:
+        if self._varying() is not None:  # the centre of mass at each time, or the origin
+            return self.about
         return self._per_time(self.about)
 
     def _over_time(self, load: _core.Load) -> _core.Load:
@@ -1149,7 +1173,8 @@ class Trajectory(metaclass=ClassWithHints):
 
     def _kept_directions(self) -> Any:
         """Return the directions along which L is conserved: True for all, unit vectors, or None."""
-        if self._contact is not None:
+        varying = self._varying()
+        if self._contact is not None or (varying is not None and varying.outlet is not None):
             return None
         if self.load is None:
             return None if self._is_loaded() else True
@@ -1255,7 +1280,7 @@ class Trajectory(metaclass=ClassWithHints):
 
     def _exact(self) -> _core.FreeMotion | _core.GyrostatMotion | None:
         """Return the motion in closed form from the first state on, of one body; None where none is known."""
-        if self._is_loaded() or self.pivoted or self._contact is not None:
+        if self._is_loaded() or self.pivoted or self._contact is not None or self._varying() is not None:
             return None
         motion = self._origin.motion
         if motion is None:

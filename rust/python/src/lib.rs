@@ -144,7 +144,7 @@ mod _core {
     #[pymodule_export]
     use crate::regions::{ellipsoid as ellipsoid_region, mesh};
     #[pymodule_export]
-    use crate::rigid_body::PyStepper;
+    use crate::rigid_body::{PyStepper, PyVaryingBody};
     #[pymodule_export]
     use crate::rods::{arc, ring, rod};
     #[pymodule_export]

@@ -175,6 +175,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "RigidBody.combined": {"axis": None},
     "RigidBody.heavy_top": {"self": [TOP]},
     "RigidBody.stack": {"bodies": [TUMBLER, TOP]},
+    "RigidBody.varying": {"t": [0.0, 2.0], "bodies": RigidBody.stack([TUMBLER, TUMBLER])},
     "RigidBody.__getitem__": {"self": [STACK], "key": 1},
     "RigidBody.__len__": {"self": [STACK]},
     "RigidBody.simulate": {"rtol": 1e-8, "max_steps": 100_000},
@@ -386,6 +387,7 @@ def receivers() -> dict[str, tuple[Any, ...]]:
         "RuledSurface": (rolling.cylinder(0.5, 2.0), rolling.cone(0.5, 2.0)),
         "Stepper": (TUMBLER.stepper(OMEGA),),
         "Surface": (rolling.sphere(0.5), rolling.paraboloid((1.0, 0.5), 0.5)),
+        "VaryingBody": (RigidBody.varying([0.0, 2.0], RigidBody.stack([TUMBLER, TUMBLER])),),
         "Trajectory": (motion, TUMBLER.free_motion(OMEGA).at([0.0, 0.5])),
         "Wheel": (polhode.wheel(axis=[0.0, 0.5, 1.0], inertia=[0.25, 0.125], rate=2.0),),
     }

@@ -193,6 +193,44 @@ pub enum MotionFault {
         /// The last one.
         last: f64,
     },
+    /// A varying body is needed at a time beyond those at which it is known.
+    #[error(
+        "the bodies are known from t = {first:?} to t = {last:?}, and needed at t = {t:?}: give bodies there too"
+    )]
+    OutsideBodies {
+        /// When it is needed.
+        t: f64,
+        /// The first time at which it is known.
+        first: f64,
+        /// The last one.
+        last: f64,
+    },
+    /// Numbers between those of two bodies that no body can have.
+    #[error(
+        "the spline through the bodies has mass and moments at t = {t:?} that no body can have: give bodies at more times around it, \
+         or, where they change suddenly, simulate the parts one after the other"
+    )]
+    NoBodyBetween {
+        /// When.
+        t: f64,
+    },
+    /// A body that loses or gains mass nowhere.
+    #[error(
+        "outlet: the mass is {first:?} at first and {mass:?} at t = {t:?}: give the point of the body at which it leaves or comes"
+    )]
+    MassWithoutOutlet {
+        /// When.
+        t: f64,
+        /// The mass then.
+        mass: f64,
+        /// The first one.
+        first: f64,
+    },
+    /// Wheels whose bearings hold them, in a body that varies.
+    #[error(
+        "load: dry friction and limits of a wheel's rate are not for a body that varies: leave friction, max_rate and max_momentum out"
+    )]
+    VaryingWithBearing,
     /// A method of integration that is not made for a run.
     #[error("the method \"{method}\" needs {needs}; \"{instead}\" can serve this run")]
     MethodCannotServe {
@@ -442,6 +480,10 @@ impl MotionFault {
             | Self::NotMonotone { .. }
             | Self::WindowOrder { .. }
             | Self::OutsideSamples { .. }
+            | Self::OutsideBodies { .. }
+            | Self::NoBodyBetween { .. }
+            | Self::MassWithoutOutlet { .. }
+            | Self::VaryingWithBearing
             | Self::MethodCannotServe { .. }
             | Self::NoClosedForm { .. }
             | Self::LostInClosedForm { .. }

@@ -371,6 +371,10 @@ impl Load for ActingLoad<'_, '_> {
         analytic.over_limit(wheel, t, phase)
     }
 
+    fn set_body(&mut self, body: &BodyAtPoint) {
+        self.analytic.set_body(body);
+    }
+
     #[inline]
     fn wrench(&mut self, t: f64, phase: &Phase) -> Result<Wrench, Fault> {
         self.act(t, phase, &mut [])

@@ -11,6 +11,7 @@
 //! | `instant` | a moving body at one instant: its points, what holds it, whether it spins steadily |
 //! | `simulate`, `simulate_stack`, `outcome` | motions under loads |
 //! | `stepper` | a motion step by step |
+//! | `varying` | a body that changes with time |
 //!
 //! Motions in closed form are classes of their own: `crate::free_motion`, `crate::heavy_top`, `crate::gyrostat`.
 
@@ -25,5 +26,7 @@ mod simulate;
 mod simulate_stack;
 mod stepper;
 mod uncertainty;
+mod varying;
 
 pub(crate) use stepper::PyStepper;
+pub(crate) use varying::PyVaryingBody;

@@ -14,7 +14,6 @@ use pyo3::types::{PyDict, PyTuple};
 
 use super::simulate_stack::{Ensemble, Results, Runs};
 use crate::arrays::{Item, Numbers, write, write_of};
-use crate::body::PyRigidBody;
 use crate::errors::at_row;
 use crate::interrupt::Interrupt;
 use crate::loads::{Fault, Slot};
@@ -192,7 +191,7 @@ impl Ensemble<'_> {
     pub(super) fn trajectory<'py>(
         &self,
         py: Python<'py>,
-        body: &Bound<'py, PyRigidBody>,
+        body: &Bound<'py, PyAny>,
         load: Option<&Bound<'py, PyAny>>,
         runs: Runs,
         interrupt: &Interrupt,
@@ -266,6 +265,16 @@ impl Ensemble<'_> {
             shape: self.grid.shape.clone(),
             about: if self.plan.pivoted() {
                 Stack::one(Vector3::zeros())
+            } else if let Some(varying) = self.varying {
+                // One for each time; beyond the times of the body the run has not come.
+                let center = |&t: &f64| {
+                    let body = varying.at(t);
+                    body.map_or(Vector3::repeat(f64::NAN), |body| body.center_of_mass())
+                };
+                Stack {
+                    shape: vec![self.plan.times().len()],
+                    rows: self.plan.times().iter().map(center).collect(),
+                }
             } else {
                 (self.start.bodies).map(py, polhode::RigidBody::center_of_mass)?
             },

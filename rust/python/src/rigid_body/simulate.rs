@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 use polhode::RigidBody;
+use polhode::motion::loads::VaryingBody;
 use polhode::motion::rolling::Law;
 use polhode::motion::simulate::{Method, Plan, Refusal, Tolerance, most_demanding};
 use pyo3::exceptions::PyValueError;
@@ -187,6 +188,75 @@ impl PyRigidBody {
                 return Ok(motion);
             }
         }
+        let wanted = Wanted {
+            t,
+            omega,
+            attitude,
+            load,
+            contact,
+            position,
+            velocity,
+            about,
+            method: parse_method(method)?,
+            rtol,
+            atol,
+            events,
+            on_failure,
+            progress,
+            states,
+            max_steps,
+        };
+        wanted.run(py, slf.as_any(), &slf.get().bodies, None)
+    }
+}
+
+/// What is asked of `simulate`.
+pub(super) struct Wanted<'a, 'py> {
+    pub(super) t: &'a Bound<'py, PyAny>,
+    pub(super) omega: &'a Bound<'py, PyAny>,
+    pub(super) attitude: Given<'a, 'py>,
+    pub(super) load: Given<'a, 'py>,
+    pub(super) contact: Given<'a, 'py>,
+    pub(super) position: Given<'a, 'py>,
+    pub(super) velocity: Given<'a, 'py>,
+    pub(super) about: &'a str,
+    pub(super) method: Method,
+    pub(super) rtol: f64,
+    pub(super) atol: Option<f64>,
+    pub(super) events: Given<'a, 'py>,
+    pub(super) on_failure: &'a str,
+    pub(super) progress: Option<Py<PyAny>>,
+    pub(super) states: Given<'a, 'py>,
+    pub(super) max_steps: Option<i128>,
+}
+
+impl<'py> Wanted<'_, 'py> {
+    /// The trajectory of `body`, which is `bodies`, or varies and is `bodies` at the first time.
+    pub(super) fn run(
+        self,
+        py: Python<'py>,
+        body: &Bound<'py, PyAny>,
+        bodies: &Stack<RigidBody>,
+        varying: Option<&VaryingBody>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let Self {
+            t,
+            omega,
+            attitude,
+            load,
+            contact,
+            position,
+            velocity,
+            about,
+            method,
+            rtol,
+            atol,
+            events,
+            on_failure,
+            progress,
+            states,
+            max_steps,
+        } = self;
         let _guard = RecursionGuard::run("simulate")?;
         let pivoted = is_pivot(about)?;
         check_velocity(pivoted, velocity)?;
@@ -200,7 +270,11 @@ impl PyRigidBody {
         let load = load.filter(|load| !load.is_none());
         let acts = load.map_or(Ok(&nothing), cast_load)?;
         let given = StartArguments::read(omega, attitude)?;
-        let bodies = &slf.get().bodies;
+        if varying.is_some() && given.uncertain.is_any() {
+            return Err(PyValueError::new_err(
+                "omega, attitude: of a varying body the start is without uncertainty; draw starts with polhode.ensembles, or give numbers",
+            ));
+        }
         let start = Start::read(py, bodies, &given, [position, velocity], acts, states)?;
         let rolling = (contact.map(|contact| {
             let given =
@@ -216,12 +290,12 @@ impl PyRigidBody {
             pivoted,
             &times,
             // Rolling has series, and no closed form that serves here.
-            match parse_method(method)? {
+            match method {
                 Method::Auto if rolling.is_some() => Method::Taylor,
                 method => method,
             },
             tolerance,
-            acts.is_analytic().then_some(of_one),
+            (acts.is_analytic() && varying.is_none()).then_some(of_one),
             &|done| interrupt.poll(done),
         )
         .map_err(|refusal| refused(py, &start.bodies.shape, &refusal))?;
@@ -234,9 +308,10 @@ impl PyRigidBody {
             events: &events,
             raises,
             rolling,
+            varying,
         };
         ensemble.check(py)?;
-        let (trajectory, has_failures) = ensemble.run(py, slf, load, &interrupt)?;
+        let (trajectory, has_failures) = ensemble.run(py, body, load, &interrupt)?;
         if let Some(contact) = contact {
             let known = trajectory.getattr("__dict__")?;
             known.set_item("_contact", contact)?;

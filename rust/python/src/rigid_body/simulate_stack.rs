@@ -2,15 +2,14 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::RigidBody;
-use polhode::motion::loads::Term;
+use polhode::motion::loads::{Term, VaryingBody, VaryingLoad};
 use polhode::motion::rolling::Contact;
 use polhode::motion::simulate::{
-    Batch, CallbackPolicy, End, Member, NoEvents, Plan, Run, simulate_many,
+    Batch, CallbackPolicy, End, Events, Member, NoEvents, Plan, Run, simulate_many,
 };
 use polhode::motion::state::Phase;
 use pyo3::prelude::*;
 
-use crate::body::PyRigidBody;
 use crate::errors::{at_row, to_py};
 use crate::events::{Functions, States};
 use crate::interrupt::{Beat, Interrupt};
@@ -79,6 +78,8 @@ pub(super) struct Ensemble<'a> {
     pub(super) raises: bool,
     /// The plane that the bodies roll on.
     pub(super) rolling: Option<Rolling>,
+    /// The body, where it varies with time.
+    pub(super) varying: Option<&'a VaryingBody>,
 }
 
 /// A plane, and how each row starts on it and which gravity acts there.
@@ -118,6 +119,22 @@ impl Rolling {
     }
 }
 
+impl Ensemble<'_> {
+    /// The motion of a row, whose body may vary.
+    fn integrate(
+        &self,
+        row: Member<'_>,
+        mut load: ActingLoad<'_, '_>,
+        events: &mut dyn Events<Error = Fault>,
+    ) -> Run<Fault> {
+        let Some(varying) = self.varying else {
+            return row.integrate(&mut load, events);
+        };
+        let start = row.body();
+        row.integrate(&mut VaryingLoad::new(varying, load, &start), events)
+    }
+}
+
 /// One run for each row, as far as they were begun.
 pub(super) type Runs = Vec<Option<Run<Fault>>>;
 
@@ -149,7 +166,7 @@ impl Ensemble<'_> {
     pub(super) fn run<'py>(
         &self,
         py: Python<'py>,
-        body: &Bound<'py, PyRigidBody>,
+        body: &Bound<'py, PyAny>,
         load: Option<&Bound<'py, PyAny>>,
         interrupt: &Interrupt,
     ) -> Results<'py> {
@@ -275,16 +292,16 @@ impl Batch for Ensemble<'_> {
         }
         match self.callbacks() {
             CallbackPolicy::Nothing | CallbackPolicy::OnAnyThread => {
-                let mut load = ActingLoad::new(load, terms, subject, None);
-                row.integrate(&mut load, &mut NoEvents::new())
+                let load = ActingLoad::new(load, terms, subject, None);
+                self.integrate(row, load, &mut NoEvents::new())
             }
             CallbackPolicy::OnThisThread => Python::attach(|py| {
-                let mut load = ActingLoad::new(load, terms, subject, Some(py));
+                let load = ActingLoad::new(load, terms, subject, Some(py));
                 let states = States {
                     slots: self.load.slots(),
                     terms,
                 };
-                row.integrate(&mut load, &mut self.events.with_callbacks(py, states))
+                self.integrate(row, load, &mut self.events.with_callbacks(py, states))
             }),
         }
     }

@@ -514,6 +514,14 @@ impl RollingSeries {
         ([x / speed, y / speed], speed * self.length * self.rate)
     }
 
+    /// Return how fast the speed of the slip falls at the start of the last step, in the direction of the run.
+    pub(crate) fn fall_of_slip(&self) -> f64 {
+        let [x, y] = ContactState::of(&self.before[0]).slip;
+        let [x_rate, y_rate] = [12, 13].map(|i| self.series.coefficients()[i][1]);
+        let fall = -(x * x_rate + y * y_rate) / x.hypot(y) * self.end.signum();
+        fall * self.length * self.rate * self.rate
+    }
+
     /// Compute the force of the plane over the mass at a time within the last step, from its series: two components in the plane and
     /// the one along the normal.
     pub(crate) fn force_over_mass(&self, elapsed: f64) -> [f64; 3] {

@@ -274,6 +274,10 @@ impl Load for Analytic<'_> {
         -1.0
     }
 
+    fn set_body(&mut self, body: &BodyAtPoint) {
+        self.body = *body;
+    }
+
     #[inline]
     fn wrench(&mut self, t: f64, phase: &Phase) -> Result<Wrench, Error> {
         self.act(t, phase, &mut [])

@@ -1,5 +1,6 @@
 //! The trait `Load`: what a run asks of whatever acts on the body, analytic or a function of the caller.
 
+use super::body_at_point::BodyAtPoint;
 use super::carried_momentum::CarriedMomentum;
 use super::laws::Term;
 use super::stiction::{Bearing, Stiction};
@@ -126,6 +127,11 @@ pub trait Load {
     fn firing(&self, t: f64, is_before: bool, phase: &Phase) -> Vec<(usize, bool)> {
         let _ = (t, is_before, phase);
         Vec::new()
+    }
+
+    /// From now on it acts on this body, which may change with time.
+    fn set_body(&mut self, body: &BodyAtPoint) {
+        let _ = body;
     }
 
     /// Force in N and torque in B about the reference point.

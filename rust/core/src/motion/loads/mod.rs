@@ -13,6 +13,7 @@
 //! | `attitude_target`, `switch` | where a feedback turns the body, and by which sign |
 //! | `thrusters` | thrusters that fire in pulses, of lengths that are known at the start of each period |
 //! | `carried_momentum`, `stiction`, [`piecewise_signal`] | wheels and slugs, dry friction, what motors are told |
+//! | `varying_body` | a body that changes with time, and a load on it |
 //!
 //! A new law is a new file in `laws`, which answers what a `Law` is asked, and its lines in the list, `laws.rs`.
 //!
@@ -80,6 +81,7 @@ mod stiction;
 mod switch;
 mod thrusters;
 pub(in crate::motion) mod variables;
+mod varying_body;
 mod wrench;
 
 pub use self::allocation::{allocation, allocation_error};
@@ -107,5 +109,6 @@ pub use self::switch::{LawSwitch, Switch};
 pub use self::thrusters::{Pulses, Thrusters};
 pub use self::variables::Parameter;
 pub(crate) use self::variables::ParameterColumns;
+pub use self::varying_body::{VaryingBody, VaryingLoad};
 pub use self::wrench::Wrench;
 pub use super::kinematics::Frame;

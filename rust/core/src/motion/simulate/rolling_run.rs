@@ -26,6 +26,11 @@ use crate::motion::state::Phase;
 /// ceased.
 const CEASED: f64 = 64.0 * f64::EPSILON;
 const OF_TOLERANCE: f64 = 0.01;
+/// Where a slip is no larger than so many errors of a step, and a step in which it falls does not make it smaller, it has ceased too:
+/// where friction is only just enough to brake it, the errors are as large as what a step brakes.
+const OF_LOST_SLIP: f64 = 16.0;
+/// A slip that falls and would be gone within that part of the time since the start has ceased: no step is so small.
+const OF_TIME: f64 = 8.0 * f64::EPSILON;
 /// How often the part of a step in which a slip or a height is looked for is made smaller.
 const HALVINGS: usize = 12;
 /// How near to the edge of the cone of friction it is not known whether a body rolls, relative to the force.
@@ -461,13 +466,17 @@ impl Rolling<'_> {
                 if !self.has_ceased(limit, &dense.series, place) && half != from {
                     // It passes by zero, or the series does not reach so far.
                     (reached, ends) = (half, Some(Reached::Cut(half)));
+                    if limit == Limit::Slip && self.is_lost(&dense.series, half) {
+                        ends = Some(Reached::Limit(limit, half));
+                    }
                 }
             } else {
                 let ceases = [Limit::Slip, Limit::Turn];
                 let gone = ceases.into_iter().find(|limit| {
                     dense.limits.contains(limit)
                         && !self.is_fresh.get()
-                        && self.has_ceased(*limit, &dense.series, to)
+                        && (self.has_ceased(*limit, &dense.series, to)
+                            || *limit == Limit::Slip && self.is_lost(&dense.series, to))
                 });
                 (reached, ends) = (to, gone.map(|limit| Reached::Limit(limit, to)));
             }
@@ -563,6 +572,19 @@ impl Rolling<'_> {
         };
         let error = CEASED.max(OF_TOLERANCE * self.task.tolerance.relative);
         x.hypot(y) <= error * size
+    }
+
+    /// Return whether the errors of the last step, or the rounding of the time, hide how a slip that falls goes on.
+    fn is_lost(&self, series: &RollingSeries, elapsed: f64) -> bool {
+        let fall = series.fall_of_slip();
+        if self.is_fresh.get() || fall <= 0.0 || fall.is_nan() {
+            return false;
+        }
+        let ([x, y], size) = series.slip_at(elapsed);
+        let now = x.hypot(y);
+        now <= fall * OF_TIME * elapsed.abs()
+            || now <= OF_LOST_SLIP * self.task.tolerance.relative * size
+                && now >= series.slip_before().1
     }
 
     /// Return whether the plane would have to pull where a regime begins.
