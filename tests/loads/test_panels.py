@@ -84,7 +84,7 @@ class TestClosedForms:
         # Vanes on both sides of an axle along z, in light along y: the bright one is pushed twice as much.
         vanes: Any = ([(1.5, 0, 0), (-1.5, 0, 0)], [0.2, 0.2], [(0, 1, 0), (0, 1, 0)])
         found = exerted(lit(vanes, [(0, 0), (1, 0)], (0, 1, 0), 3.0))
-        assert found == pytest.approx([0, -3 * 0.6, 0, 0, 0, 1.5 * 0.6 - 1.5 * 1.2], abs=1e-15)
+        assert found == pytest.approx([0, -3 * 0.6, 0, 0, 0, 1.5 * 1.2 - 1.5 * 0.6], abs=1e-15)
 
     @pytest.mark.parametrize("shares", SHARES)
     @pytest.mark.parametrize("sun", [SUN, (-1, 2, -0.5), (0, 0, -1), (1, -1, 0)])
