@@ -240,10 +240,6 @@ fn read_surface<'py>(surface: &Bound<'py, PyAny>) -> PyResult<(Plates, Bound<'py
         } else {
             Vec::new()
         };
-    let numpy = crate::arrays::numpy(py)?;
-    let copies: Vec<_> = (parts.iter())
-        .map(|part| numpy.call_method1("array", (part,)))
-        .collect::<PyResult<_>>()?;
     let plates = match &parts[..] {
         [vertices, faces] => read_faces(vertices, faces)?,
         [centers, areas, normals] => read_plates(centers, areas, normals)?,
@@ -258,6 +254,10 @@ fn read_surface<'py>(surface: &Bound<'py, PyAny>) -> PyResult<(Plates, Bound<'py
             )));
         }
     };
+    let numpy = crate::arrays::numpy(py)?;
+    let copies: Vec<_> = (parts.iter())
+        .map(|part| numpy.call_method1("array", (part,)))
+        .collect::<PyResult<_>>()?;
     Ok((plates, PyTuple::new(py, copies)?))
 }
 
