@@ -98,6 +98,7 @@ __all__ = [
     "nearest_valid",
     "nutation_damping",
     "oblate_states",
+    "panels",
     "polygon",
     "principal_axes",
     "principal_derivative",
@@ -970,6 +971,17 @@ def sampled(t: ArrayLike, torque: ArrayLike, frame: Literal["body", "space"] = "
 def schedule(load: Load, windows: ArrayLike) -> Load: ...
 def rotor(momentum: ArrayLike) -> Load: ...
 def slug(inertia: ArrayLike, damping: ArrayLike, name: str = "slug") -> Load: ...
+def panels(
+    surface: object,
+    law: Literal["solar", "drag"] = "solar",
+    *,
+    coefficients: ArrayLike,
+    direction: ArrayLike | None = None,
+    pressure: ArrayLike | None = None,
+    density: ArrayLike | None = None,
+    velocity: ArrayLike | None = None,
+    times: ArrayLike | None = None,
+) -> Load: ...
 def wheel(
     axis: ArrayLike,
     inertia: ArrayLike,

@@ -148,6 +148,10 @@ ROWS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     "kepler_period": (_core.kepler_period, {"mu": 1.0, "position": V, "velocity": (1.0, 0.2, 0.1)}),
     "dipole_field": (_core.dipole_field, {"strength": V, "position": V}),
     "magnetic": (_core.magnetic, {"dipole": V, "field": V, "gain": 1.0}),
+    "panels": (
+        lambda **rows: _core.panels(([V], [1.0], [V]), **rows),
+        {"coefficients": np.full((1, 2), 0.25), "direction": V, "pressure": 1.0},
+    ),
     "damping": (_core.damping, {"matrix": T, "quadratic": T}),
     "feedback": (_core.feedback, {"K": T, "D": T, "target": Q}),
     "nutation_damping": (
@@ -266,6 +270,12 @@ OTHERS: dict[str, Callable[[], object]] = {
         np.broadcast_to(1.0, ABSURD),
         command=[0.5],
         period=1.0,
+    ),
+    "panels, absurd plates": lambda: _core.panels(
+        (np.broadcast_to(V, (ABSURD, 3)), np.broadcast_to(1.0, ABSURD), np.broadcast_to(V, (ABSURD, 3))),
+        coefficients=(0.0, 0.0),
+        direction=V,
+        pressure=1.0,
     ),
     "wheels, absurd axes": lambda: _core.wheels(
         np.broadcast_to(V, (ABSURD, 3)), 1.0, torque=loads.feedback(K=1.0, D=1.0)

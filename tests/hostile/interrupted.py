@@ -139,6 +139,13 @@ def calls() -> dict[str, Callable[[], object]]:
         "schedule": lambda: loads.schedule(loads.schedule(push, windows), windows + 0.5),
         "sampled": lambda: loads.sampled(np.arange(float(ROWS)), vectors),
         "sampled field": lambda: loads.magnetic((0.0, 0.0, 1.0), vectors, times=np.arange(float(ROWS))),
+        "sampled light": lambda: loads.panels(
+            ([(0, 0, 0)], [1.0], [(0, 0, 1)]),
+            coefficients=(0, 0),
+            direction=vectors + 9.0,
+            pressure=1.0,
+            times=np.arange(float(ROWS)),
+        ),
         "sampled orbit": lambda: loads.gravity_gradient(
             orbits.sampled(1.0, np.arange(float(ROWS)), vectors + 9.0)
         ),

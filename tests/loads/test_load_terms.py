@@ -277,6 +277,12 @@ LOADS = {
     "magnetic at times": loads.magnetic(
         (1.0, 2.0, 3.0), np.arange(12.0).reshape(4, 3) ** 1.5, times=[0.0, 1.0, 3.0, 4.0]
     ),
+    "panels": loads.panels(
+        ([(1.0, 2.0, 3.0)], [2.0], [(0.1, 0.2, 1.0)]),
+        coefficients=(0.2, 0.3),
+        direction=(0.1, 0.2, 0.5),
+        pressure=0.1,
+    ),
     "scheduled": loads.schedule(
         loads.damping(1.0) + loads.constant_torque((1, 0, 0)), [(0.0, 1.0), (2.0, 3.0)]
     ),

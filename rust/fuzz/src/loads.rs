@@ -1,12 +1,15 @@
 //! Loads drawn from bytes.
 
+use std::ops::ControlFlow;
+
 use arbitrary::Result;
 use nalgebra::{Matrix3, Vector3};
 use polhode::Error;
 use polhode::motion::loads::kepler::Orbit;
 use polhode::motion::loads::{
     AttitudeTarget, Damping, Drive, Feedback, Frame, GravityGradient, Magnetic, MagneticField,
-    Oblate, OrbitModel, PiecewiseSignal, Rotor, Sampled, Slug, Term, Wheel, Windows,
+    Oblate, OrbitModel, Panels, PiecewiseSignal, Plates, Rotor, Sampled, Slug, Stream, Term, Wheel,
+    Windows,
 };
 
 use crate::draw::Draw;
@@ -31,7 +34,7 @@ type Made = core::result::Result<Term, Error>;
 /// # Errors
 /// When the bytes are used up.
 pub fn term(draw: &mut Draw<'_>) -> Result<Made> {
-    Ok(match draw.up_to(12)? {
+    Ok(match draw.up_to(13)? {
         0 => Term::constant_torque(&draw.vector()?, frame(draw)?),
         1 => {
             let point = draw.vector()?;
@@ -85,6 +88,7 @@ pub fn term(draw: &mut Draw<'_>) -> Result<Made> {
                 })
                 .map(Term::Wheel)
         }
+        12 => panels(draw)?.map(Term::Panels),
         _ => {
             let (dipole, field) = (draw.vector()?, field(draw)?);
             let gain = if draw.coin()? {
@@ -95,6 +99,38 @@ pub fn term(draw: &mut Draw<'_>) -> Result<Made> {
             field.and_then(|field| Magnetic::new(&dipole, gain, field).map(Term::Magnetic))
         }
     })
+}
+
+/// Plates in light or air, all with the same coefficients.
+fn panels(draw: &mut Draw<'_>) -> Result<core::result::Result<Panels, Error>> {
+    let go_on = &mut |_: f64| ControlFlow::Continue(());
+    let plates = draw.list(6, |draw| Ok((draw.vector()?, draw.positive()?, draw.vector()?)))?;
+    let mut all = Plates::default();
+    for (center, area, normal) in &plates {
+        if let Err(error) = all.add(center, *area, normal) {
+            return Ok(Err(error));
+        }
+    }
+    let (is_air, level, share) = (draw.coin()?, draw.positive()?, draw.numbers::<2>()?);
+    let surface = if is_air {
+        all.dragging(&share[..1])
+    } else {
+        all.reflecting(&[share])
+    };
+    let stream = match (draw.coin()?, is_air) {
+        (false, false) => Stream::light(&draw.vector()?),
+        (false, true) => Stream::air(&draw.vector()?),
+        (true, is_air) => {
+            let (times, values) = samples(draw)?;
+            if is_air {
+                Stream::air_sampled(&times, &values, go_on)
+            } else {
+                Stream::light_sampled(&times, &values, go_on)
+            }
+        }
+    };
+    let level = PiecewiseSignal::constant("level", level);
+    Ok(surface.and_then(|surface| Panels::new(surface, stream?, level?)))
 }
 
 fn feedback(draw: &mut Draw<'_>) -> Result<core::result::Result<Feedback, Error>> {

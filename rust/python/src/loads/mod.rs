@@ -9,6 +9,7 @@
 //! | `load` | the sum of terms, and its states; one term, scaled, scheduled, picked; what Python's operators and pickle do with it |
 //! | `pickle_recipe` | how a term was made, for pickle |
 //! | `laws` | the functions that make loads |
+//! | `panels` | the function that makes plates in light or air |
 //! | `wheel` | the class `Wheel`, a record that is a load, and the function that makes one with a motor |
 //! | `registry` | which function makes which law |
 //! | `acting` | a load at work on a body, and what the body carries along under it |
@@ -22,6 +23,7 @@ mod evaluate;
 mod firing;
 mod laws;
 mod load;
+mod panels;
 mod pickle_recipe;
 mod registry;
 mod wheel;

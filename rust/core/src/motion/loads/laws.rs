@@ -9,6 +9,7 @@ pub mod damping;
 pub mod feedback;
 pub mod gravity_gradient;
 pub mod magnetic;
+pub mod panels;
 pub mod rotor;
 pub mod sampled;
 pub mod slug;
@@ -21,6 +22,7 @@ pub use self::damping::Damping;
 pub use self::feedback::Feedback;
 pub use self::gravity_gradient::GravityGradient;
 pub use self::magnetic::{Magnetic, MagneticField, Moment};
+pub use self::panels::{Panels, Plates, Stream, Surface};
 pub use self::rotor::Rotor;
 pub use self::sampled::Sampled;
 pub use self::slug::Slug;
@@ -318,6 +320,8 @@ laws!(
         Feedback(Feedback),
         /// The torque of a magnetic field: `N = (d − k Ḃ) × B`.
         Magnetic(Magnetic),
+        /// Plates in light or air: `F = −p A cos θ ((1 − ρ_s) s + 2 (ρ_s cos θ + ρ_d/3) n)`, or `½ ρ v² C_d A cos θ` along the flow.
+        Panels(Panels),
         /// A rotor that keeps its momentum in the body: `N = −ω × h`.
         Rotor(Rotor),
         /// A wheel with motor and friction: `ḣ = τ − c Ω − c₀ sign(Ω)`.

@@ -74,6 +74,11 @@ impl PiecewiseSignal {
         &self.times
     }
 
+    /// The values at those times, or the one of a constant.
+    pub(super) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
     /// Whether it is known from one time to another: from its first time on, and where it `ends`, up to its last.
     pub(super) fn covers(
         &self,
