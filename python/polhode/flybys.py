@@ -676,7 +676,7 @@ def _toward(
 ) -> Floats:
     """Return attitudes at the start, with L near a direction.
 
-    If the angles `around` are counted, zero is the attitude of a motion from periods: that of the shortest turn.
+    If the angles `around` are counted, zero is the attitude of a motion from periods: by the shortest turn.
     """
     one, two = _across(pole)
     # The shortest turn to the pole from z; or from -z, where that is nearer and half a turn about x leads.

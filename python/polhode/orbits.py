@@ -640,8 +640,8 @@ def _check_velocities(times: Floats, places: Floats, speeds: Floats) -> None:
     raise PolhodeError(
         f"velocity: from row {row} to row {row + 1}{stack} the position moves by {moved[worst].tolist()}, "
         f"but by {told[worst].tolist()} at the mean of the two velocities; the two must agree within half of "
-        "the larger. Give velocities in units of position per unit of t, relative to the attractor, in axes that "
-        "do not turn, at times that are near enough; or leave velocity out"
+        "the larger. Give velocities in units of position per unit of t, relative to the attractor, in axes "
+        "that do not turn, at times that are near enough; or leave velocity out"
     )
 
 

@@ -246,3 +246,15 @@ print(json.dumps([found.spin_ratio.tolist(), found.forecast.spin_ratio.sigma]))
 def test_what_is_refused(make: Callable[[], object], error: type[Exception], message: str) -> None:
     with pytest.raises(error, match=re.escape(message)):
         make()
+
+
+def test_what_benson_and_others_say_of_uncertain_moments() -> None:
+    """arXiv:2210.13365: likely a short-axis mode afterwards, a rate that may halve, a shift of 10 degrees."""
+    body: Any = RigidBody.from_principal(1.0, Uncertain(MOMENTS, (0.03, 0.01, 0.0)))
+    periods = PERIODS | {"rotation_period": Uncertain(P_PSI, 0.03 * HOUR)}
+    found = flybys.flyby(body, ORBIT, 6 * DAY, n=3000, **periods)
+    known = ~found.failed
+    assert 0.8 < found.modes()["short-axis"] < 1.0
+    assert found.spin_ratio[known].min() < 0.55
+    assert found.spin_ratio[known].max() > 1.5
+    assert np.degrees(np.median(found.pole_shift[known])) == pytest.approx(10.0, abs=1.0)

@@ -43,7 +43,7 @@ use crate::numerics::threads::Watch;
 /// let flattened = quick.clone().about_oblate(1e-3, 0.9, &Vector3::z())?;
 /// assert_eq!(flattened.at(0.0, 0.3), quick.at(0.0, 0.3));
 /// // Other orbits are not changed by a bulge that they do not feel.
-/// assert!(model.about_oblate(1e-3, 0.9, &Vector3::z()).is_err());
+/// assert!(begun.about_oblate(1e-3, 0.9, &Vector3::z()).is_err());
 /// assert!(sampled.check(0.0, 0.0, 2.0).is_ok() && sampled.check(0.0, 0.0, 2.5).is_err());
 /// # Ok::<(), polhode::Error>(())
 /// ```
