@@ -509,8 +509,8 @@ def _forecast(
         tilt = np.asarray(next(drawn, np.zeros(2)))
         attitude = _toward(motion, pole, np.array([around]), tilt[np.newaxis], True)
         run = body.simulate(times, motion.omega.reshape(1, 3), attitude, load=load, rtol=RTOL)
-        ends = [_tumble(body, None, run.omega[:, k], run.quaternion[:, k]) for k in (0, -1)]
-        one = Flyby(body, *ends, failed=np.zeros(1, bool))
+        first, last = (_tumble(body, None, run.omega[:, k], run.quaternion[:, k]) for k in (0, -1))
+        one = Flyby(body, first, last, failed=np.zeros(1, bool))
         return _figures(one)[:, 0], _unit(one.after.momentum)[0]
 
     figures, toward = after(*(doubt.value for doubt in doubts))
@@ -538,7 +538,8 @@ def _forecast(
     is_linear = all(fits[4:])
     off = np.hypot(*clones_[4:])
     pole_ = Spread(toward, ellipse if is_linear else np.full(2, np.nan), is_linear, *_quantiles(off))
-    return Forecast(*spreads, pole=pole_)
+    rotation, precession, spin, shift = spreads
+    return Forecast(rotation, precession, spin, shift, pole_)
 
 
 def _figures(found: Flyby) -> Floats:
