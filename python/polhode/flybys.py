@@ -2,12 +2,12 @@
 
 On 13 April 2029 the asteroid Apophis, which tumbles, passes the Earth inside the geostationary ring. The
 phase of its tumbling at that time is not known. Clones with all phases and directions show the possible
-results.
+results. Where phase and direction are known before, :attr:`Flyby.forecast` has sigmas of what is after.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import wraps
 from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, TypeVar, cast
 
@@ -20,6 +20,7 @@ from polhode.ensembles.call import ensemble
 from polhode.errors import PolhodeError
 from polhode.orbits import Orbit
 from polhode.uncertainty.propagation import propagate
+from polhode.uncertainty.uncertain import join
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Flyby", "Tumble", "clones", "flyby"]
+__all__ = ["Flyby", "Forecast", "Spread", "Tumble", "clones", "flyby"]
 
 F = TypeVar("F", bound="Callable[..., Any]")
 
@@ -85,6 +86,60 @@ class Tumble(NamedTuple):
         return short(self)
 
 
+class Spread(NamedTuple):
+    """A figure after a flyby, with its uncertainty.
+
+    Attributes
+    ----------
+    value : float or numpy.ndarray
+        Of the body with the given numbers.
+    sigma : float or numpy.ndarray
+        Standard deviation to first order; NaN unless `linear`. Of a direction, shape (2,): half axes of the
+        ellipse of one standard deviation in radians, the larger one first.
+    linear : bool
+        Whether the first order is enough, to about a percent of `sigma`. If not, the quantiles say how wide
+        the distribution is.
+    low, median, high : float
+        Quantiles of 5, 50 and 95 per cent of the clones. Of a direction: of the angle from `value`.
+    """
+
+    value: Any
+    sigma: Any
+    linear: bool
+    low: float
+    median: float
+    high: float
+
+    def __repr__(self) -> str:
+        return short(self)
+
+
+class Forecast(NamedTuple):
+    """What is known of a body after a flyby if its attitude before is known: see :attr:`Flyby.forecast`.
+
+    Attributes
+    ----------
+    rotation_period, precession_period, spin_ratio, pole_shift : Spread
+        As of :class:`Tumble` and :class:`Flyby`.
+    pole : Spread
+        Direction of L in space after the flyby, shape (3,).
+    """
+
+    rotation_period: Spread
+    precession_period: Spread
+    spin_ratio: Spread
+    pole_shift: Spread
+    pole: Spread
+
+    @property
+    def linear(self) -> bool:
+        """Whether all figures have a sigma."""
+        return all(one.linear for one in self)
+
+    def __repr__(self) -> str:
+        return short(self)
+
+
 @dataclass(frozen=True, eq=False)
 class Flyby:
     """Clones of a body before and after a flyby.
@@ -97,12 +152,16 @@ class Flyby:
         Their motion at the start and at the end.
     failed : numpy.ndarray of bool, shape (n,)
         Clones whose integration failed. Their other fields are NaN.
+    forecast : Forecast or None
+        Periods, spin and pole after the flyby with their sigmas; None unless `phase`, `azimuth` and `pole`
+        were given, and something of them or of body and periods is uncertain.
     """
 
     body: RigidBody
     before: Tumble
     after: Tumble
     failed: NDArray[np.bool_]
+    forecast: Forecast | None = None
 
     @property
     def spin_ratio(self) -> Floats:
@@ -138,6 +197,8 @@ def clones(
     precession_period: float | Uncertain,
     mode: Literal["long-axis", "short-axis"],
     sense: Literal[1, -1] = 1,
+    phase: float | Uncertain | None = None,
+    azimuth: float | Uncertain | None = None,
     pole: ArrayLike | None = None,
     pole_sigma: float = 0.0,
     radius: float | None = None,
@@ -145,7 +206,7 @@ def clones(
     seed: int = 0,
     **options: Any,
 ) -> Ensemble:
-    """Make the ensemble of clones that :func:`flyby` runs, with random phases of the tumbling.
+    """Make the ensemble of clones that :func:`flyby` runs, with random phases of the tumbling or a known one.
 
     Parameters
     ----------
@@ -160,6 +221,12 @@ def clones(
     rotation_period, precession_period, mode, sense
         As for :meth:`polhode.RigidBody.free_motion_from_periods`. If a period is an `Uncertain`, each clone
         has one of its own, from a normal distribution.
+    phase : float or Uncertain, optional
+        Phase at the start, as of :meth:`polhode.RigidBody.free_motion_from_periods`; all phases by default.
+    azimuth : float or Uncertain, optional
+        Angle about `pole`, in radians, by which the body is turned at the start from the attitude that
+        :meth:`polhode.RigidBody.free_motion_from_periods` gives to this phase and direction; all angles by
+        default. It needs `pole`.
     pole : array_like, shape (3,), optional
         Direction of the angular momentum in space; all directions by default.
     pole_sigma : float, optional
@@ -191,36 +258,22 @@ def clones(
         raise ValueError(f"pole_sigma: must not be negative, got {spread}")
     if pole is None and spread > 0.0:
         raise TypeError("pole_sigma: it is that of a direction; give pole= too")
+    if pole is None and azimuth is not None:
+        raise TypeError("azimuth: it is an angle about the pole; give pole= too")
     _check_orbit(orbit, None if radius is None else _number(radius, "radius"))
-    motion = body.free_motion_from_periods(rotation_period, precession_period, mode, sense)
-    if motion.shape:
-        raise ValueError(f"body and periods: expected one of each, got a stack of shape {motion.shape}")
-    numbers = _numbers(motion)
-    if numbers is None:
-        known = cast("float", rotation_period)
-        phase = distributions.uniform(0.0, float(known), name="phase")
-        bodies: Any = body
-        start = distributions.apply(_at, motion, phase)
-    else:
-        share = distributions.uniform(0.0, 1.0, name="phase")
-        bodies = distributions.apply(_bodies, body, numbers)
-        start = distributions.apply(_start, bodies, numbers, mode, sense, share)
+    start = _read_start(body, rotation_period, precession_period, mode, sense, phase, azimuth)
+    bodies, motion, around = start.draws()
     if pole is None:
         attitude = distributions.apply(
-            _turn_attitudes, start, distributions.uniform_rotation(name="direction")
+            _turn_attitudes, motion, distributions.uniform_rotation(name="direction")
         )
     else:
-        toward = _core.real_numbers(pole, "pole")
-        if toward.shape != (3,) or not np.isfinite(toward).all() or not toward.any():
-            raise ValueError(f"pole: expected three numbers that are not all zero, got {toward.tolist()}")
-        around = distributions.uniform(0.0, 2 * np.pi, name="azimuth")
-        toward = toward / np.abs(toward).max()
         tilt = distributions.normal(np.zeros(2), sigma=spread, name="direction")
-        attitude = distributions.apply(_toward, start, toward / np.linalg.norm(toward), around, tilt)
+        attitude = distributions.apply(_toward, motion, _direction(pole), around, tilt, azimuth is not None)
     return ensemble(
         bodies,
         [orbit.begins, orbit.begins + long],
-        distributions.apply(_omega, start),
+        distributions.apply(_omega, motion),
         attitude,
         loads.gravity_gradient(orbit),
         n=n,
@@ -239,6 +292,11 @@ def flyby(
     rotation_period: float | Uncertain,
     precession_period: float | Uncertain,
     mode: Literal["long-axis", "short-axis"],
+    sense: Literal[1, -1] = 1,
+    phase: float | Uncertain | None = None,
+    azimuth: float | Uncertain | None = None,
+    pole: ArrayLike | None = None,
+    pole_sigma: float = 0.0,
     n: int = 1000,
     seed: int = 0,
     progress: Progress = None,
@@ -248,16 +306,19 @@ def flyby(
 
     Parameters
     ----------
-    body, orbit, span, rotation_period, precession_period, mode, n, seed
+    body, orbit, span, rotation_period, precession_period, mode, sense, phase, azimuth, pole, pole_sigma
+        As of :func:`clones`.
+    n, seed
         As of :func:`clones`.
     progress : bool or callable, optional
         As in :func:`polhode.ensemble`.
     **options
-        Further arguments of :func:`clones`: `sense`, `pole`, `pole_sigma`, `radius`, `rtol`, `client` …
+        Further arguments of :func:`clones`: `radius`, `rtol`, `client` …
 
     Returns
     -------
     Flyby
+        With `phase`, `azimuth` and `pole` it has a forecast: sigmas of the figures after the flyby.
 
     Raises
     ------
@@ -276,6 +337,16 @@ def flyby(
     >>> found = flybys.flyby(apophis, earth, 6 * day, **periods, mode="short-axis", n=500)
     >>> bool(found.spin_ratio.min() < 0.8), bool(found.spin_ratio.max() > 1.2)
     (True, True)
+
+    The attitude three days before the passage may be known, from a campaign of observations. With a sigma of
+    the period the forecast has one:
+
+    >>> from polhode import Uncertain
+    >>> periods["precession_period"] = Uncertain(27.38547 * hour, 5.0)
+    >>> known = {"phase": 0.3, "azimuth": 0.7, "pole": (0.2, 0.1, -1.0)}
+    >>> found = flybys.flyby(apophis, earth, 6 * day, **periods, **known, mode="short-axis", n=500)
+    >>> found.forecast.spin_ratio.linear
+    True
     """
     check_kind(body, "body", "RigidBody")
     for name in ("reduce", "outputs"):
@@ -285,14 +356,17 @@ def flyby(
             )
     given: dict[str, Any] = {
         "rotation_period": rotation_period, "precession_period": precession_period, "mode": mode,
+        "sense": sense, "phase": phase, "azimuth": azimuth, "pole": pole, "pole_sigma": pole_sigma,
     }  # fmt: skip
     many = clones(body, orbit, span, **given, n=n, seed=seed, progress=progress, **options)
-    motion = body.free_motion_from_periods(rotation_period, precession_period, mode)
-    found = _describe(body, _numbers(motion), seed, many.to_numpy())
+    start = _read_start(body, rotation_period, precession_period, mode, sense, phase, azimuth)
+    found = _describe(body, start.numbers, seed, many.to_numpy())
     if found.failed.all():
         # Why tells a clone alone.
         clones(body, orbit, span, **given, n=1, seed=seed, on_failure="raise", **options).to_numpy()
-    return found
+    if pole is None or phase is None or azimuth is None or (start.numbers is None and not pole_sigma):
+        return found
+    return replace(found, forecast=_forecast(found, start, orbit, span, _direction(pole), pole_sigma))
 
 
 def _check_orbit(orbit: Orbit | SampledOrbit, radius: float | None) -> None:
@@ -310,6 +384,7 @@ def _check_orbit(orbit: Orbit | SampledOrbit, radius: float | None) -> None:
         least = float(np.min(elements.periapsis))
     else:
         least = float(np.linalg.norm(orbit.position, axis=-1).min())
+        radius = orbit.radius if radius is None else radius
     if radius is not None and not least > float(np.max(radius)):
         raise PolhodeError(
             f"orbit: the least distance from the planet's centre is {least:.6g}, within its radius of "
@@ -317,20 +392,195 @@ def _check_orbit(orbit: Orbit | SampledOrbit, radius: float | None) -> None:
         )
 
 
-def _numbers(motion: FreeMotion) -> distributions.Normal | None:
-    """Return the distribution of three moments and two periods, or None where they are known."""
+class _Start(NamedTuple):
+    """How clones start: their moments, periods, phase, and azimuth about the pole."""
+
+    body: RigidBody
+    motion: FreeMotion
+    periods: tuple[float, float]
+    mode: Literal["long-axis", "short-axis"]
+    sense: Literal[1, -1]
+    phase: Any
+    azimuth: Any
+    numbers: distributions.Normal | None
+    covariance: Floats
+    """Of `numbers`: three moments and two periods, then phase and azimuth if they are uncertain."""
+
+    def angle(self, given: Any, column: int, drawn: Any) -> Any:
+        """Return a phase or an azimuth: as it was given, or of clones with these numbers."""
+        if not isinstance(given, _core.Uncertain):
+            return given
+        if isinstance(drawn, distributions.Distribution):
+            return distributions.apply(_column, drawn, column)
+        return drawn[..., column]
+
+    def angles(self, drawn: Any) -> tuple[Any, Any]:
+        """Return phase and azimuth of clones with these numbers; None for all that there are."""
+        both = isinstance(self.azimuth, _core.Uncertain)
+        return self.angle(self.phase, -2 if both else -1, drawn), self.angle(self.azimuth, -1, drawn)
+
+    def draws(self) -> tuple[Any, Any, Any]:
+        """Return distributions of bodies, of their motions with L along z, and of the azimuth."""
+        share, around = self.angles(self.numbers)
+        if around is None:
+            around = distributions.uniform(0.0, 2 * np.pi, name="azimuth")
+        if self.numbers is None and share is None and self.azimuth is None:
+            phase = distributions.uniform(0.0, self.periods[0], name="phase")
+            return self.body, distributions.apply(_at, self.motion, phase), around
+        if share is None:
+            share = distributions.uniform(0.0, 1.0, name="phase")
+        drawn: Any = self.known if self.numbers is None else self.numbers
+        bodies: Any = self.body
+        if self.numbers is not None:
+            bodies = distributions.apply(_bodies, self.body, drawn)
+        motion = distributions.apply(_start, bodies, drawn, self.mode, self.sense, share)
+        return bodies, motion, around
+
+    @property
+    def known(self) -> Floats:
+        """Moments and periods, without their sigmas."""
+        return np.array([*self.body.principal_moments, *self.periods])
+
+    def one(self, drawn: Floats | None) -> tuple[RigidBody, FreeMotion, float]:
+        """Return body, motion and azimuth of one clone with known angles."""
+        share, around = self.angles(drawn)
+        body = self.body if drawn is None else _bodies(self.body, drawn)
+        given = self.known if drawn is None else drawn
+        return body, _start(body, given, self.mode, self.sense, share), around
+
+
+def _read_start(
+    body: RigidBody,
+    rotation: float | Uncertain,
+    precession: float | Uncertain,
+    mode: Literal["long-axis", "short-axis"],
+    sense: Literal[1, -1],
+    phase: Any,
+    azimuth: Any,
+) -> _Start:
+    motion = body.free_motion_from_periods(rotation, precession, mode, sense)
+    if motion.shape:
+        raise ValueError(f"body and periods: expected one of each, got a stack of shape {motion.shape}")
+    phase, azimuth = _angle(phase, "phase"), _angle(azimuth, "azimuth")
     given = motion._from_periods
-    if given is None:
-        return None
-    one = given.row((), 0)
+    periods: tuple[Any, ...] = (rotation, precession) if given is None else given.row((), 0)[:2]
+    known = [float(one.value if isinstance(one, _core.Uncertain) else one) for one in periods]
+    doubts = [one for one in (*periods, phase, azimuth) if isinstance(one, _core.Uncertain)]
+    numbers, covariance = None, np.zeros((0, 0))
+    if body.covariance is not None or doubts:
 
-    def five(body: RigidBody, *periods: Any) -> Floats:
-        values = iter(periods)
-        both = [next(values) if isinstance(x, _core.Uncertain) else x for x in one[:2]]
-        return np.array([*body.principal_moments, *map(float, both)])
+        def of(body: RigidBody, *uncertain: Any) -> Floats:
+            values = iter(uncertain)
+            both = [next(values) if isinstance(x, _core.Uncertain) else x for x in periods]
+            return np.array([*body.principal_moments, *map(float, both), *map(float, values)])
 
-    found = propagate(five, motion.body, arguments=one.uncertain)
-    return distributions.normal(found.value, found.covariance, name="moments and periods")
+        found = propagate(of, body, arguments=doubts)
+        numbers = distributions.normal(found.value, found.covariance, name="moments and periods")
+        covariance = found.covariance
+    return _Start(body, motion, (known[0], known[1]), mode, sense, phase, azimuth, numbers, covariance)
+
+
+SHARES: Final = (0.05, 0.5, 0.95)
+RTOL: Final = 1e-12
+"""Of the motions whose differences are derivatives."""
+ENOUGH: Final = 0.02
+"""Part by which the standard deviation of clones may differ from that to first order, beside chance."""
+NOISE: Final = 1e-9
+"""Deviation of a figure, relative to its scale, that may be an error of integration."""
+CHANCE: Final = 4.0
+"""How many standard deviations of its own that of the clones may be off by chance."""
+
+
+def _forecast(
+    found: Flyby, start: _Start, orbit: Orbit | SampledOrbit, span: float, pole: Floats, pole_sigma: float
+) -> Forecast:
+    """Propagate what is uncertain before a flyby to what is after, beside the clones."""
+    times = [orbit.begins, orbit.begins + float(span)]
+    load = loads.gravity_gradient(orbit)
+    doubts: list[Any] = []
+    if start.numbers is not None:
+        doubts.append(_core.Uncertain(start.numbers.mean, covariance=start.covariance))
+    if pole_sigma:
+        doubts.append(_core.Uncertain(np.zeros(2), float(pole_sigma)))
+
+    def after(*values: Any) -> tuple[Floats, Floats]:
+        drawn = iter(values)
+        body, motion, around = start.one(None if start.numbers is None else next(drawn))
+        tilt = np.asarray(next(drawn, np.zeros(2)))
+        attitude = _toward(motion, pole, np.array([around]), tilt[np.newaxis], True)
+        run = body.simulate(times, motion.omega.reshape(1, 3), attitude, load=load, rtol=RTOL)
+        first, last = (_tumble(body, None, run.omega[:, k], run.quaternion[:, k]) for k in (0, -1))
+        one = Flyby(body, first, last, failed=np.zeros(1, bool))
+        return _figures(one)[:, 0], _unit(one.after.momentum)[0]
+
+    figures, toward = after(*(doubt.value for doubt in doubts))
+    sides = _across(toward)
+
+    def numbers(*values: Any) -> Floats:
+        these, direction = after(*values)
+        return np.array([*these, *_tilts(direction, toward, sides)])
+
+    result = propagate(numbers, None, arguments=doubts)
+    sigma, linear = np.asarray(result.sigma), np.asarray(result.linear)
+    clones_ = np.array([*_figures(found), *_tilts(_unit(found.after.momentum), toward, sides).T])
+    clones_ = clones_[:, ~found.failed]
+    is_one = not found.failed.any() and len(found.modes()) == 1
+    scales = [*figures[:2], 1.0, 1.0, 1.0, 1.0]
+    fits = [
+        is_one and _fit(values, wide, bool(ok), scale)
+        for values, wide, ok, scale in zip(clones_, sigma, linear, scales, strict=True)
+    ]
+    ellipse = np.sqrt(np.maximum(np.linalg.eigvalsh(result.covariance[4:, 4:])[::-1], 0.0))
+    spreads = [
+        Spread(float(value), float(wide) if ok else np.nan, ok, *_quantiles(these))
+        for value, wide, ok, these in zip(figures, sigma[:4], fits[:4], clones_[:4], strict=True)
+    ]
+    is_linear = all(fits[4:])
+    off = np.hypot(*clones_[4:])
+    pole_ = Spread(toward, ellipse if is_linear else np.full(2, np.nan), is_linear, *_quantiles(off))
+    rotation, precession, spin, shift = spreads
+    return Forecast(rotation, precession, spin, shift, pole_)
+
+
+def _figures(found: Flyby) -> Floats:
+    """Return the four figures of clones, shape (4, n)."""
+    after = found.after
+    return np.array([after.rotation_period, after.precession_period, found.spin_ratio, found.pole_shift])
+
+
+def _fit(values: Floats, sigma: float, is_linear: bool, scale: float) -> bool:
+    """Return whether the deviation of clones is that to first order, but for chance and rounding."""
+    seen = float(np.std(values))
+    if max(seen, sigma) <= NOISE * scale:
+        return True
+    allowed = ENOUGH + CHANCE / np.sqrt(2.0 * max(values.size - 1, 1))
+    return is_linear and bool(abs(seen - sigma) <= allowed * sigma)
+
+
+def _quantiles(values: Floats) -> tuple[float, float, float]:
+    low, median, high = np.quantile(values, SHARES).tolist()
+    return low, median, high
+
+
+def _unit(vectors: Floats) -> Floats:
+    found: Floats = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return found
+
+
+def _across(direction: Floats) -> Floats:
+    """Return two unit vectors perpendicular to a direction and to each other."""
+    side = np.eye(3)[int(np.argmin(np.abs(direction)))]
+    one = np.cross(direction, side) / np.linalg.norm(np.cross(direction, side))
+    return np.stack([one, np.cross(direction, one)])
+
+
+def _tilts(directions: Floats, toward: Floats, sides: Floats) -> Floats:
+    """Return the angles of directions from one of them, along two sides."""
+    across = directions @ sides.T
+    size = np.linalg.norm(across, axis=-1, keepdims=True)
+    angle = np.arctan2(size, (directions @ toward)[..., np.newaxis])
+    found: Floats = across * np.where(size > 0.0, angle / np.where(size > 0.0, size, 1.0), 1.0)
+    return found
 
 
 def _describe(
@@ -374,6 +624,30 @@ def _number(given: Any, name: str) -> float:
     return float(found)
 
 
+def _angle(given: Any, name: str) -> Any:
+    """Return a known angle as a float, an uncertain one as `Uncertain`; None as it is."""
+    if given is None:
+        return None
+    found = given if isinstance(given, _core.Uncertain) else join(given)
+    if found is None:
+        return _number(given, name)
+    if np.shape(found.value):
+        raise ValueError(f"{name}: expected one number, got the shape {np.shape(found.value)}")
+    return found
+
+
+def _direction(pole: ArrayLike) -> Floats:
+    """Return the unit vector along a pole."""
+    toward = _core.real_numbers(pole, "pole")
+    if toward.shape != (3,) or not np.isfinite(toward).all() or not toward.any():
+        raise ValueError(f"pole: expected three numbers that are not all zero, got {toward.tolist()}")
+    return _unit(toward / np.abs(toward).max())
+
+
+def _column(numbers: Floats, column: int) -> Floats:
+    return numbers[..., column]
+
+
 def _bodies(body: RigidBody, numbers: Floats) -> RigidBody:
     """Return the bodies of clones: the given body with other principal moments."""
     axes, center = body.principal.axes, body.center_of_mass
@@ -398,16 +672,22 @@ def _turn_attitudes(start: Trajectory | FreeMotion, turn: Floats) -> Floats:
     return _product(turn, start.quaternion)
 
 
-def _toward(start: Trajectory | FreeMotion, pole: Floats, around: Floats, tilt: Floats) -> Floats:
-    """Return attitudes at the start, with L near a direction."""
-    side = np.eye(3)[int(np.argmin(np.abs(pole)))]
-    one = np.cross(pole, side) / np.linalg.norm(np.cross(pole, side))
-    two = np.cross(pole, one)
+def _toward(
+    start: Trajectory | FreeMotion, pole: Floats, around: Any, tilt: Floats, is_counted: bool
+) -> Floats:
+    """Return attitudes at the start, with L near a direction.
+
+    If the angles `around` are counted, zero is the attitude of a motion from periods: by the shortest turn.
+    """
+    one, two = _across(pole)
     # The shortest turn to the pole from z; or from -z, where that is nearer and half a turn about x leads.
     near = np.array([0.0, 0.0, 1.0 if pole[2] >= 0.0 else -1.0])
     aligned = np.array([*np.cross(near, pole), 1.0 + near @ pole])
     if pole[2] < 0.0:
         aligned = _product(aligned, np.array([1.0, 0.0, 0.0, 0.0]))
+        if is_counted and (pole[0] or pole[1]):
+            around = around - (2 * np.arctan2(pole[1], pole[0]) + np.pi)
+    around = np.asarray(around)
     spun = np.stack([0 * around, 0 * around, np.sin(around / 2), np.cos(around / 2)], axis=-1)
     angle = np.linalg.norm(tilt, axis=-1)
     share = 0.5 * np.sinc(angle / (2 * np.pi))  # sin(angle/2)/angle

@@ -1,16 +1,16 @@
 """Orbits about an attractor: position and velocity over time, and the local frame that points down.
 
 An :class:`Orbit` is made by :func:`kepler` from a state or by :func:`from_elements`; a :class:`SampledOrbit`
-by :func:`sampled` from a table of positions. The loads :func:`polhode.loads.gravity_gradient` and
-:func:`polhode.loads.magnetic` act along them, and :func:`polhode.loads.feedback` can point a body down along
-them.
+by :func:`sampled` from a table of positions, or of positions and velocities. The loads
+:func:`polhode.loads.gravity_gradient` and :func:`polhode.loads.magnetic` act along them, and
+:func:`polhode.loads.feedback` can point a body down along them.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
@@ -222,7 +222,7 @@ class Path(ABC):
 class SampledOrbit(Path):
     """An orbit through positions at given times, as from an ephemeris, or a stack of them.
 
-    Between the times it follows cubic splines.
+    Between the times it follows cubic splines, or with velocities quintics.
 
     Attributes
     ----------
@@ -231,16 +231,29 @@ class SampledOrbit(Path):
     times : numpy.ndarray, shape (n,)
     position : numpy.ndarray, shape (..., n, 3)
         Positions from the attractor, in space, at the times.
+    velocity : numpy.ndarray, shape (..., n, 3), or None
+        Velocities relative to the attractor, in space, at the times.
+    j2, radius : float, numpy.ndarray of shape (...) or None
+        J₂ of the attractor and the radius that it refers to; None for a sphere.
+    pole : numpy.ndarray, shape (..., 3), or None
+        Axis of the attractor, in space.
     """
 
     mu: Any
     times: Floats
     position: Floats
+    velocity: Floats | None = None
+    j2: Any = None
+    radius: Any = None
+    pole: Floats | None = None
 
     @property
     def shape(self) -> tuple[int, ...]:
         """Shape of the stack, as a tuple of int; ``()`` for one."""
-        return np.broadcast_shapes(np.shape(self.mu), self.position.shape[:-2])
+        shapes = [np.shape(self.mu), self.position.shape[:-2]]
+        if self.pole is not None:
+            shapes += [np.shape(self.j2), np.shape(self.radius), self.pole.shape[:-1]]
+        return np.broadcast_shapes(*shapes)
 
     @property
     def begins(self) -> float:
@@ -261,7 +274,8 @@ class SampledOrbit(Path):
             Arrays of shape (..., T..., 3): axes of the stack, axes of the times, components.
         """
         times = _core.real_numbers(t, "t")
-        return reshape_times(_core.sampled_states(self.times, self.position, times.ravel()), times.shape)
+        found = _core.sampled_states(self.times, self.position, times.ravel(), self.velocity)
+        return reshape_times(found, times.shape)
 
 
 @dataclass(frozen=True, eq=False)
@@ -516,42 +530,119 @@ def kepler(
     return Orbit(freeze(mass), place, speed, when, freeze(bulge[0]), freeze(bulge[1]), axis)
 
 
-def sampled(mu: ArrayLike, t: ArrayLike, position: ArrayLike) -> SampledOrbit:
-    """Make an orbit from positions at given times, as from an ephemeris.
+def sampled(
+    mu: ArrayLike,
+    t: ArrayLike,
+    position: ArrayLike,
+    velocity: ArrayLike | None = None,
+    *,
+    j2: ArrayLike | None = None,
+    radius: ArrayLike | None = None,
+    pole: ArrayLike = (0, 0, 1),
+) -> SampledOrbit:
+    """Make an orbit from positions at given times, and velocities if they are known, as from an ephemeris.
 
     Parameters
     ----------
     mu : array_like, shape (...)
-        Gravitational parameter of the attractor.
+        Gravitational parameter of the attractor. It serves for the torque; the path is that of the samples.
     t : array_like, shape (n,)
         Ascending.
     position : array_like, shape (..., n, 3)
         Positions from the attractor, in space.
+    velocity : array_like, shape (..., n, 3), optional
+        Velocities relative to the attractor, in space, in units of `position` per unit of `t`.
+    j2, radius : array_like, shape (...), optional
+        J₂ of the attractor, and the radius that it refers to: :func:`polhode.loads.gravity_gradient` then
+        includes the torque of J₂. They do not change the path.
+    pole : array_like, shape (..., 3), optional
+        The axis of an oblate attractor, in space, of any length.
 
     Returns
     -------
     SampledOrbit
-        A cubic spline through them ("not a knot"): its error falls with the fourth power of the distance
-        between the times.
+        From positions alone: a cubic spline through them ("not a knot"). Its error falls with the fourth
+        power of the distance between the times. With velocities: a quintic between each two samples, which
+        has the position and velocity of both exactly. Its error falls with the sixth power.
+
+    Raises
+    ------
+    PolhodeError
+        When `mu` is not positive, times do not ascend, or velocities contradict the positions: between two
+        samples, the difference of the positions and the mean velocity times the difference of the times
+        differ by more than half. So it is if the units are not the same, or the axes of one turn.
+
+    Notes
+    -----
+    A quintic also needs the acceleration at each sample. It is found from the samples: it is that of the one
+    quintic through the positions and velocities of this sample and of its two neighbours. Its error falls
+    with the fourth power of the distance between the times. The acceleration -mu r/r³ of the attractor is
+    not used. It would be wrong wherever something else acts: J₂, a third body, or the attractor's own
+    acceleration, as for positions relative to the Moon. From two samples the path is a cubic.
 
     Examples
     --------
     >>> import numpy as np
     >>> from polhode import orbits
-    >>> t = np.linspace(0, 2 * np.pi, 400)
-    >>> circle = orbits.sampled(1.0, t, np.stack([np.cos(t), np.sin(t), 0 * t], axis=-1))
-    >>> circle.at(1.0).velocity.round(6)
-    array([-0.841471,  0.540302,  0.      ])
+    >>> t = np.linspace(0, 2 * np.pi, 40)
+    >>> place = np.stack([np.cos(t), np.sin(t), 0 * t], axis=-1)
+    >>> speed = np.stack([-np.sin(t), np.cos(t), 0 * t], axis=-1)
+    >>> for circle in (orbits.sampled(1.0, t, place), orbits.sampled(1.0, t, place, speed)):
+    ...     print(circle.at(1.0).velocity.round(6))
+    [-0.841481  0.540324  0.      ]
+    [-0.841471  0.540302  0.      ]
     """
     mass = np.array(_core.real_numbers(mu, "mu"))
     if not (np.isfinite(mass).all() and np.min(mass, initial=1.0) > 0.0):
         raise PolhodeError(f"mu: must be positive, got {mass.tolist()}")
     times, places = np.array(_core.real_numbers(t, "t")), vector(position, "position")
-    _core.sampled_states(times, places, times[:1])  # checks them
+    speeds = None if velocity is None else vector(velocity, "velocity")
+    _core.sampled_states(times, places, times[:1], speeds)  # checks them
     if not do_broadcast(mass, places[..., 0, 0]):
         raise ValueError(f"mu and position: shapes {mass.shape} and {places.shape} do not broadcast")
+    if speeds is not None:
+        _check_velocities(times, places, speeds)
     times.flags.writeable = False
-    return SampledOrbit(freeze(mass), times, places)
+    if j2 is None and radius is None:
+        return SampledOrbit(freeze(mass), times, places, speeds)
+    if j2 is None or radius is None:
+        raise TypeError("j2 and radius: give both of an oblate attractor, or none")
+    bulge = np.array(_core.real_numbers(j2, "j2")), np.array(_core.real_numbers(radius, "radius"))
+    axis = vector(pole, "pole")
+    if not do_broadcast(mass, places[..., 0, 0], *bulge, axis[..., 0]):
+        shapes = [one.shape for one in (mass, places, *bulge, axis)]
+        raise ValueError(f"mu, position, j2, radius and pole: shapes {shapes} do not broadcast")
+    found = SampledOrbit(freeze(mass), times, places, speeds, freeze(bulge[0]), freeze(bulge[1]), axis)
+    _core.local_frames(found, times[:1])  # checks them
+    return found
+
+
+APART: Final = 0.5
+"""Largest part by which distances of positions and of velocities may differ between two samples. On a circle
+it is reached with 2.3 samples in a revolution, where no curve through the samples is near to the circle."""
+
+
+def _check_velocities(times: Floats, places: Floats, speeds: Floats) -> None:
+    """Refuse velocities that contradict the positions, which is mostly a question of units."""
+    with np.errstate(all="ignore"):
+        spans = np.diff(times)[:, np.newaxis]
+        moved, told = np.diff(places, axis=-2), 0.5 * (speeds[..., 1:, :] + speeds[..., :-1, :]) * spans
+        paces = np.linalg.norm(speeds, axis=-1)
+        lengths = np.linalg.norm(moved, axis=-1), 0.5 * (paces[..., 1:] + paces[..., :-1]) * spans[:, 0]
+        rounding = 8 * np.finfo(float).eps * np.abs(places).max(initial=0.0)
+        off = np.linalg.norm(moved - told, axis=-1) - APART * np.maximum(*lengths) - rounding
+        off = np.where(np.isfinite(off), off, -np.inf)  # of numbers whose squares leave the range
+    worst = np.unravel_index(np.argmax(off), off.shape) if off.size else None
+    if worst is None or not off[worst] > 0.0:
+        return
+    row = int(worst[-1])
+    stack = f" of orbit {tuple(int(k) for k in worst[:-1])}" if len(worst) > 1 else ""
+    raise PolhodeError(
+        f"velocity: from row {row} to row {row + 1}{stack} the position moves by {moved[worst].tolist()}, "
+        f"but by {told[worst].tolist()} at the mean of the two velocities; the two must agree within half of "
+        "the larger. Give velocities in units of position per unit of t, relative to the attractor, in axes "
+        "that do not turn, at times that are near enough; or leave velocity out"
+    )
 
 
 def from_elements(

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 use numpy::PyArrayDyn;
+use polhode::Error;
 use polhode::motion::attitude::components;
 use polhode::motion::loads::kepler::Orbit;
 use polhode::motion::loads::magnetic::field_and_rate;
@@ -9,11 +10,11 @@ use polhode::motion::loads::{Oblate, OrbitModel};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::arrays::{list_floats, read, samples, try_rows, try_series, write, write_of};
+use crate::arrays::{list_floats, read, read_list, samples, try_rows, try_series, write, write_of};
 use crate::errors::to_py;
 use crate::interrupt::Beat;
 use crate::memory;
-use crate::stack::{BLOCK, Broadcast, Stack};
+use crate::stack::{BLOCK, Broadcast, Stack, try_watched};
 
 /// An array of float64.
 type Floats<'py> = Bound<'py, PyArrayDyn<f64>>;
@@ -42,11 +43,14 @@ impl Orbits {
         let part = |name: &str| orbit.getattr(name);
         let mu: Stack<f64> = read(&part("mu")?, "mu")?;
         if orbit.hasattr("times")? {
-            let (times, values) =
-                samples([&part("times")?, &part("position")?], ["t", "position"])?;
-            let paths = try_series(py, &values, |row, watch| {
-                OrbitModel::sampled_watched(&times, row, watch)
-            })?;
+            let velocity = part("velocity")?;
+            let velocity = Some(&velocity).filter(|velocity| !velocity.is_none());
+            let mut paths = sampled(py, &part("times")?, &part("position")?, velocity)?;
+            let j2 = part("j2")?;
+            if !j2.is_none() {
+                let bulges = Bulges::read([&j2, &part("radius")?, &part("pole")?])?;
+                paths = bulges.below(py, &paths)?;
+            }
             return Ok(Self { mu, paths });
         }
         let epoch: Option<f64> = part("epoch")?.extract()?;
@@ -85,6 +89,24 @@ impl Bulges {
         orbits: &Stack<Orbit>,
         epoch: Option<f64>,
     ) -> PyResult<Stack<OrbitModel>> {
+        self.each(py, orbits, |orbit, j2, radius, pole| {
+            OrbitModel::oblate(Oblate::new(orbit, j2, radius, pole)?, epoch)
+        })
+    }
+
+    /// Samples about them.
+    fn below(&self, py: Python<'_>, paths: &Stack<OrbitModel>) -> PyResult<Stack<OrbitModel>> {
+        self.each(py, paths, |path, j2, radius, pole| {
+            path.clone().about_oblate(j2, radius, pole)
+        })
+    }
+
+    fn each<T: Sync>(
+        &self,
+        py: Python<'_>,
+        orbits: &Stack<T>,
+        make: impl Fn(&T, f64, f64, &Vector3<f64>) -> Result<OrbitModel, Error> + Sync,
+    ) -> PyResult<Stack<OrbitModel>> {
         let names = ["orbit", "j2", "radius", "pole"];
         let shapes = [
             &orbits.shape[..],
@@ -93,8 +115,7 @@ impl Bulges {
             &self.pole.shape,
         ];
         Broadcast::of(names, shapes)?.try_map(py, |[o, j, r, p]| {
-            let oblate = Oblate::new(&orbits[o], self.j2[j], self.radius[r], &self.pole[p])?;
-            OrbitModel::oblate(oblate, epoch)
+            make(&orbits[o], self.j2[j], self.radius[r], &self.pole[p])
         })
     }
 }
@@ -182,28 +203,56 @@ pub(crate) fn oblate_states<'py>(
     states(py, &paths, elapsed)
 }
 
-/// Position and velocity along cubic splines through positions at some times.
+/// The curves through positions, and velocities where there are any, at some times.
+fn sampled(
+    py: Python<'_>,
+    times: &Bound<'_, PyAny>,
+    position: &Bound<'_, PyAny>,
+    velocity: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Stack<OrbitModel>> {
+    let (times, positions) = samples([times, position], ["t", "position"])?;
+    let Some(velocity) = velocity else {
+        return try_series(py, &positions, |row, watch| {
+            OrbitModel::sampled_watched(&times, row, None, watch)
+        });
+    };
+    let velocities: Stack<Vector3<f64>> = read_list(velocity, "velocity", "..., n")?;
+    if velocities.shape != positions.shape {
+        return Err(PyValueError::new_err(format!(
+            "velocity: expected one for each position, {:?} of them, got {:?}",
+            positions.shape, velocities.shape
+        )));
+    }
+    let count = times.len();
+    let shape = positions.shape[..positions.shape.len() - 1].to_vec();
+    let both = (positions.rows.chunks(count.max(1))).zip(velocities.rows.chunks(count.max(1)));
+    try_watched(py, shape, both, |(row, speeds), watch| {
+        OrbitModel::sampled_watched(&times, row, Some(speeds), watch)
+    })
+}
+
+/// Position and velocity along cubic splines through positions at some times, or quintics through positions and velocities.
 ///
 /// Parameters
 /// ----------
 /// times : array_like, shape (n,)
 /// position : array_like, shape (..., n, 3)
 /// t : array_like, shape (m,)
+/// velocity : array_like, shape (..., n, 3), optional
 ///
 /// Returns
 /// -------
 /// tuple of numpy.ndarray, shape (..., m, 3)
 #[pyfunction]
+#[pyo3(signature = (times, position, t, velocity=None))]
 pub(crate) fn sampled_states<'py>(
     py: Python<'py>,
     times: &Bound<'py, PyAny>,
     position: &Bound<'py, PyAny>,
     t: &Bound<'py, PyAny>,
+    velocity: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<(Floats<'py>, Floats<'py>)> {
-    let (times, values) = samples([times, position], ["t", "position"])?;
-    let paths = try_series(py, &values, |row, watch| {
-        OrbitModel::sampled_watched(&times, row, watch)
-    })?;
+    let paths = sampled(py, times, position, velocity)?;
     let asked = list_floats(t, "t", "n", &[])?;
     let asked = asked.as_slice()?;
     // All paths have the same times.

@@ -311,6 +311,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
         "times": [0.0, 1.0, 2.0],
         "position": [[1.0, 0.0, 0.0], [0.5, 1.0, 0.0], [0.0, 1.0, 0.5]],
         "t": [0.5, 1.5],
+        "velocity": [[-0.5, 1.0, 0.0], [-0.5, 0.5, 0.25], [-0.5, 0.0, 0.5]],
     },
     "RigidBody.from_tetrahedra": {"density": 1.5, "at": None},
     "PrincipalAxes.classify": {"rtol": 1e-6},

@@ -74,6 +74,7 @@ mod oblate;
 mod orbit_model;
 pub mod piecewise_signal;
 mod principal_frame;
+mod quintic;
 pub mod schedule;
 mod series_terms;
 mod spline;

@@ -75,20 +75,7 @@ impl Oblate {
     /// # Errors
     /// For numbers that are not finite, a radius that is not positive, a pole without direction.
     pub fn new(orbit: &Orbit, j2: f64, radius: f64, pole: &Vector3<f64>) -> Result<Self, Error> {
-        finite("j2", j2)?;
-        finite("radius", radius)?;
-        all_finite("pole", pole)?;
-        if radius <= 0.0 {
-            return Err(Error::OutOfDomain {
-                what: "radius",
-                law: "positive",
-                value: radius,
-            });
-        }
-        let pole = (pole / pole.amax())
-            .try_normalize(0.0)
-            .filter(|_| pole.amax() > 0.0)
-            .ok_or(Error::NoDirection { what: "pole" })?;
+        let pole = checked_pole(j2, radius, pole)?;
         let (length, _) = orbit.units();
         let scaled = radius / length;
         let bulge = j2 * scaled * scaled;
@@ -258,6 +245,44 @@ impl Piece {
         }
         [r * self.length, v * (self.length / self.time)]
     }
+}
+
+/// What the torque of an oblate attractor knows of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Bulge {
+    /// `J₂ R²`.
+    pub(super) size: f64,
+    /// A unit vector.
+    pub(super) pole: Vector3<f64>,
+}
+
+impl Bulge {
+    /// # Errors
+    /// As [`Oblate::new`].
+    pub(super) fn new(j2: f64, radius: f64, pole: &Vector3<f64>) -> Result<Self, Error> {
+        let pole = checked_pole(j2, radius, pole)?;
+        let size = j2 * radius * radius;
+        finite("j2 radius²", size)?;
+        Ok(Self { size, pole })
+    }
+}
+
+/// The pole as a unit vector, beside numbers that are those of an attractor.
+fn checked_pole(j2: f64, radius: f64, pole: &Vector3<f64>) -> Result<Vector3<f64>, Error> {
+    finite("j2", j2)?;
+    finite("radius", radius)?;
+    all_finite("pole", pole)?;
+    if radius <= 0.0 {
+        return Err(Error::OutOfDomain {
+            what: "radius",
+            law: "positive",
+            value: radius,
+        });
+    }
+    (pole / pole.amax())
+        .try_normalize(0.0)
+        .filter(|_| pole.amax() > 0.0)
+        .ok_or(Error::NoDirection { what: "pole" })
 }
 
 /// The state at a time, where the pieces reach that far.

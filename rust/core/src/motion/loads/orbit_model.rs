@@ -6,8 +6,9 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::kepler::Orbit;
-use super::oblate::Oblate;
-use super::spline::Spline;
+use super::oblate::{Bulge, Oblate};
+use super::quintic::Quintic;
+use super::spline::{Spline, check_within};
 use crate::error::{Error, finite};
 use crate::motion::attitude::from_axes;
 use crate::numerics::threads::Watch;
@@ -33,8 +34,16 @@ use crate::numerics::threads::Watch;
 /// assert_eq!(sampled.breaks(), [0.0, 1.0, 2.0]);
 /// // Where there are very many, somebody may want to end it.
 /// let (times, still) = ([0.0, 1.0], [Vector3::x(); 2]);
-/// let watched = OrbitModel::sampled_watched(&times, &still, &mut |_| ControlFlow::Continue(()))?;
+/// let watched = OrbitModel::sampled_watched(&times, &still, None, &mut |_| ControlFlow::Continue(()))?;
 /// assert_eq!(watched, OrbitModel::sampled(&times, &still)?);
+/// // With velocities, and about an oblate attractor: the path is the same, the torque is not.
+/// let moving = [Vector3::y(), Vector3::new(0.0, 1.0, -1.0)];
+/// let quick = OrbitModel::sampled_watched(&times, &still, Some(&moving), &mut |_| ControlFlow::Continue(()))?;
+/// assert_eq!(quick.at(0.0, 1.0), (still[1], moving[1]));
+/// let flattened = quick.clone().about_oblate(1e-3, 0.9, &Vector3::z())?;
+/// assert_eq!(flattened.at(0.0, 0.3), quick.at(0.0, 0.3));
+/// // Other orbits are not changed by a bulge that they do not feel.
+/// assert!(begun.about_oblate(1e-3, 0.9, &Vector3::z()).is_err());
 /// assert!(sampled.check(0.0, 0.0, 2.0).is_ok() && sampled.check(0.0, 0.0, 2.5).is_err());
 /// # Ok::<(), polhode::Error>(())
 /// ```
@@ -47,8 +56,40 @@ enum OrbitKind {
     Kepler(Orbit, Option<f64>),
     /// As above.
     Oblate(Arc<Oblate>, Option<f64>),
-    /// A cubic spline through positions at some times.
-    Sampled(Arc<Spline>),
+    /// A curve through positions at some times, with the bulge of the attractor where it has one.
+    Sampled(Arc<Curve>, Option<Bulge>),
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Curve {
+    /// Through positions.
+    Cubic(Spline),
+    /// Through positions with velocities.
+    Quintic(Quintic),
+}
+
+impl Curve {
+    fn at(&self, t: f64) -> (Vector3<f64>, Vector3<f64>) {
+        match self {
+            Self::Cubic(spline) => spline.at(t),
+            Self::Quintic(quintic) => quintic.at(t),
+        }
+        .into()
+    }
+
+    fn bend(&self, t: f64) -> Vector3<f64> {
+        match self {
+            Self::Cubic(spline) => spline.bend(t),
+            Self::Quintic(quintic) => quintic.bend(t),
+        }
+    }
+
+    fn knots(&self) -> &[f64] {
+        match self {
+            Self::Cubic(spline) => spline.knots(),
+            Self::Quintic(quintic) => quintic.knots(),
+        }
+    }
 }
 
 impl OrbitModel {
@@ -70,7 +111,7 @@ impl OrbitModel {
         Ok(Self(OrbitKind::Oblate(Arc::new(orbit), epoch)))
     }
 
-    /// The spline through `positions` at the ascending `times`.
+    /// The cubic spline through `positions` at the ascending `times`.
     ///
     /// # Errors
     /// Fewer than two times, times that do not ascend, numbers that are not finite.
@@ -78,29 +119,68 @@ impl OrbitModel {
     /// # Panics
     /// When `times` and `positions` differ in length.
     pub fn sampled(times: &[f64], positions: &[Vector3<f64>]) -> Result<Self, Error> {
-        Self::sampled_watched(times, positions, &mut |_| ControlFlow::Continue(()))
+        Self::sampled_watched(times, positions, None, &mut |_| ControlFlow::Continue(()))
     }
 
-    /// As [`Self::sampled`] of very many samples: now and then `watch` gets a fraction done, and may end it.
+    /// As [`Self::sampled`], or with `velocities` the quintics through both, of very many samples: now and then `watch` gets a
+    /// fraction done, and may end it.
+    ///
+    /// The quintics have the accelerations at the samples that neighbouring positions and velocities show, whatever acts.
     ///
     /// # Errors
     /// As [`Self::sampled`], and [`Error::Stopped`].
     ///
     /// # Panics
-    /// As [`Self::sampled`].
+    /// As [`Self::sampled`]; when `times` and `velocities` differ in length.
     pub fn sampled_watched(
         times: &[f64],
         positions: &[Vector3<f64>],
+        velocities: Option<&[Vector3<f64>]>,
         watch: &mut Watch<'_>,
     ) -> Result<Self, Error> {
-        let names = [
-            "t",
-            "the span of t",
-            "position",
-            "the spline through position",
-        ];
-        let spline = Spline::through(names, times, positions, watch)?;
-        Ok(Self(OrbitKind::Sampled(Arc::new(spline))))
+        let [when, span, what] = ["t", "the span of t", "position"];
+        let curve = if let Some(velocities) = velocities {
+            let through = "the quintics through position and velocity";
+            let names = [when, span, what, "velocity", through];
+            Curve::Quintic(Quintic::through(
+                names,
+                times,
+                [positions, velocities],
+                watch,
+            )?)
+        } else {
+            let names = [when, span, what, "the spline through position"];
+            Curve::Cubic(Spline::through(names, times, positions, watch)?)
+        };
+        Ok(Self(OrbitKind::Sampled(Arc::new(curve), None)))
+    }
+
+    /// The same samples about an attractor with J₂, the radius that it refers to, and its pole: for the torque alone.
+    ///
+    /// # Errors
+    /// As [`Oblate::new`]; [`Error::OutOfDomain`] of an orbit that is none of samples: [`Self::oblate`] is one about such an attractor.
+    pub fn about_oblate(self, j2: f64, radius: f64, pole: &Vector3<f64>) -> Result<Self, Error> {
+        let OrbitKind::Sampled(curve, _) = self.0 else {
+            return Err(Error::OutOfDomain {
+                what: "j2 of an orbit by a law",
+                law: "given with the orbit",
+                value: j2,
+            });
+        };
+        let bulge = Bulge::new(j2, radius, pole)?;
+        Ok(Self(OrbitKind::Sampled(curve, Some(bulge))))
+    }
+
+    /// The bulge of the attractor, where it has one.
+    pub(super) fn bulge(&self) -> Option<Bulge> {
+        match &self.0 {
+            OrbitKind::Kepler(..) => None,
+            OrbitKind::Oblate(orbit, _) => Some(Bulge {
+                size: orbit.bulge(),
+                pole: *orbit.pole(),
+            }),
+            OrbitKind::Sampled(_, bulge) => *bulge,
+        }
     }
 
     /// The Kepler orbit and its epoch, where it is one.
@@ -108,7 +188,7 @@ impl OrbitModel {
     pub fn as_kepler(&self) -> Option<(&Orbit, Option<f64>)> {
         match &self.0 {
             OrbitKind::Kepler(orbit, epoch) => Some((orbit, *epoch)),
-            OrbitKind::Oblate(..) | OrbitKind::Sampled(_) => None,
+            OrbitKind::Oblate(..) | OrbitKind::Sampled(..) => None,
         }
     }
 
@@ -117,7 +197,7 @@ impl OrbitModel {
     pub fn as_oblate(&self) -> Option<&Oblate> {
         match &self.0 {
             OrbitKind::Oblate(orbit, _) => Some(orbit),
-            OrbitKind::Kepler(..) | OrbitKind::Sampled(_) => None,
+            OrbitKind::Kepler(..) | OrbitKind::Sampled(..) => None,
         }
     }
 
@@ -127,7 +207,7 @@ impl OrbitModel {
         match &self.0 {
             OrbitKind::Kepler(orbit, epoch) => orbit.at(t - epoch.unwrap_or(start)),
             OrbitKind::Oblate(orbit, epoch) => orbit.at(t - epoch.unwrap_or(start)),
-            OrbitKind::Sampled(spline) => spline.at(t).into(),
+            OrbitKind::Sampled(curve, _) => curve.at(t),
         }
     }
 
@@ -144,7 +224,7 @@ impl OrbitModel {
         let across = match &self.0 {
             OrbitKind::Kepler(..) => 0.0,
             OrbitKind::Oblate(orbit, _) => orbit.acceleration(&r).dot(&normal),
-            OrbitKind::Sampled(spline) => spline.bend(t).dot(&normal),
+            OrbitKind::Sampled(curve, _) => curve.bend(t).dot(&normal),
         };
         let (y, z) = (-normal, -outward);
         let axes = Matrix3::from_columns(&[y.cross(&z), y, z]);
@@ -178,7 +258,7 @@ impl OrbitModel {
     #[must_use]
     pub fn breaks(&self) -> &[f64] {
         match &self.0 {
-            OrbitKind::Sampled(spline) => spline.knots(),
+            OrbitKind::Sampled(curve, _) => curve.knots(),
             OrbitKind::Kepler(..) | OrbitKind::Oblate(..) => &[],
         }
     }
@@ -196,7 +276,10 @@ impl OrbitModel {
             OrbitKind::Oblate(orbit, epoch) => [from, to]
                 .iter()
                 .try_for_each(|t| orbit.check(t - epoch.unwrap_or(start))),
-            OrbitKind::Sampled(spline) => spline.check_at(from).and_then(|()| spline.check_at(to)),
+            OrbitKind::Sampled(curve, _) => {
+                let knots = curve.knots();
+                check_within(knots, from).and_then(|()| check_within(knots, to))
+            }
         }
     }
 }

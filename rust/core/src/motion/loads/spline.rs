@@ -103,16 +103,24 @@ impl Spline {
     /// # Errors
     /// [`MotionFault::OutsideSamples`].
     pub(super) fn check_at(&self, t: f64) -> Result<(), Error> {
-        let (first, last) = (self.knots[0], self.knots[self.knots.len() - 1]);
-        if (first..=last).contains(&t) {
-            Ok(())
-        } else {
-            Err(Error::Motion(MotionFault::OutsideSamples {
-                t,
-                first,
-                last,
-            }))
-        }
+        check_within(&self.knots, t)
+    }
+}
+
+/// Checks that `t` is within the times of samples.
+///
+/// # Errors
+/// [`MotionFault::OutsideSamples`].
+pub(super) fn check_within(knots: &[f64], t: f64) -> Result<(), Error> {
+    let (first, last) = (knots[0], knots[knots.len() - 1]);
+    if (first..=last).contains(&t) {
+        Ok(())
+    } else {
+        Err(Error::Motion(MotionFault::OutsideSamples {
+            t,
+            first,
+            last,
+        }))
     }
 }
 
@@ -230,10 +238,11 @@ mod tests {
                 .map(|t| Vector3::new(t.sin(), 1.0, *t))
                 .collect();
             let attitudes = vec![UnitQuaternion::identity(); times.len()];
-            let made: [&Make<'_>; 4] = [
+            let made: [&Make<'_>; 5] = [
                 &|watch| Sampled::new_watched(&times, &values, Frame::Body, watch).err(),
                 &|watch| MagneticField::sampled_watched(&times, &values, watch).err(),
-                &|watch| OrbitModel::sampled_watched(&times, &values, watch).err(),
+                &|watch| OrbitModel::sampled_watched(&times, &values, None, watch).err(),
+                &|watch| OrbitModel::sampled_watched(&times, &values, Some(&values), watch).err(),
                 &|watch| AttitudeTarget::sampled_watched(&times, &attitudes, watch).err(),
             ];
             for (make, most) in made.iter().flat_map(|make| [(make, 1), (make, 9)]) {

@@ -117,11 +117,11 @@ impl GravityGradient {
         let strength = self.coefficient() / distance / distance / distance;
         let n = attitude.inverse_transform_vector(&(r / distance));
         let along = n.cross(&(body.inertia * n));
-        let Some(oblate) = self.orbit.as_oblate() else {
+        let Some(bulge) = self.orbit.bulge() else {
             return along * strength;
         };
-        let p = attitude.inverse_transform_vector(oblate.pole());
-        let (s, part) = (n.dot(&p), oblate.bulge() / distance / distance / 6.0);
+        let p = attitude.inverse_transform_vector(&bulge.pole);
+        let (s, part) = (n.dot(&p), bulge.size / distance / distance / 6.0);
         let mixed = n.cross(&(body.inertia * p)) + p.cross(&(body.inertia * n));
         let polar = p.cross(&(body.inertia * p));
         (along * (1.0 + part * (15.0 - 105.0 * s * s)) + mixed * (30.0 * part * s)
