@@ -129,7 +129,8 @@ def test_phase_and_azimuth_are_an_attitude(pole: Any) -> None:
 
 def test_one_of_the_angles_alone_is_no_known_start() -> None:
     for left in ("phase", "azimuth"):
-        found = passed(n=40, pole_sigma=0.01, **{left: None})
+        given: dict[str, Any] = {"pole_sigma": 0.01, left: None}
+        found = passed(n=40, **given)
         assert found.forecast is None
         assert np.ptp(found.spin_ratio) > 0.01
     assert flybys.flyby(KNOWN, ORBIT, 6 * DAY, n=5, **PERIODS, phase=0.3).forecast is None

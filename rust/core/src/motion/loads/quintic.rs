@@ -1,5 +1,7 @@
 //! Quintics through vectors and their rates known at some times.
 
+use std::cmp::Ordering;
+
 use nalgebra::Vector3;
 
 use super::spline::check_ascending;
@@ -57,7 +59,7 @@ impl Quintic {
                 _ => [k, k + 1].map(|sample| {
                     let middle = sample.clamp(1, last - 1);
                     let both = Neighbours::of(&interval(middle - 1), &interval(middle));
-                    both.half_bend(sample as isize - middle as isize)
+                    both.half_bend(sample.cmp(&middle))
                 }),
             };
             pieces.push(here.piece(&values[k], &rates[k], &bends));
@@ -188,16 +190,22 @@ impl Neighbours {
         }
     }
 
-    /// Half of the second derivative of the quintic through all three, at the first (−1), the middle one (0) or the last (1).
+    /// Half of the second derivative of the quintic through all three, at the first (less), the middle one (equal) or the last (greater).
     ///
     /// By Newton's form, with the nodes in an order that begins with two times the one asked for.
-    fn half_bend(&self, place: isize) -> Vector3<f64> {
+    fn half_bend(&self, place: Ordering) -> Vector3<f64> {
         let [a, b] = self.lengths;
         let whole = a + b;
         match place {
-            0 => self.second[1] + (self.third[1] - (self.fourth[0] + self.fifth * a) * b) * a,
-            1 => self.second[3] + (self.third[2] + (self.fourth[1] + self.fifth * whole) * b) * b,
-            _ => self.second[0] - (self.third[0] - (self.fourth[0] - self.fifth * whole) * a) * a,
+            Ordering::Equal => {
+                self.second[1] + (self.third[1] - (self.fourth[0] + self.fifth * a) * b) * a
+            }
+            Ordering::Greater => {
+                self.second[3] + (self.third[2] + (self.fourth[1] + self.fifth * whole) * b) * b
+            }
+            Ordering::Less => {
+                self.second[0] - (self.third[0] - (self.fourth[0] - self.fifth * whole) * a) * a
+            }
         }
     }
 }
