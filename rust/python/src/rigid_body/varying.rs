@@ -329,7 +329,7 @@ impl PyVaryingBody {
     /// --------
     /// >>> from polhode import RigidBody
     /// >>> arms = RigidBody.from_principal(60.0, [(3.0, 3.5, 2.0), (3.0, 3.5, 1.0)])
-    /// >>> RigidBody.varying([0, 2], arms).torque_of_change(1.0, (0, 0, 4.0))[2]
+    /// >>> float(RigidBody.varying([0, 2], arms).torque_of_change(1.0, (0, 0, 4.0))[2])
     /// 2.0
     #[pyo3(signature = (t, omega, about="center_of_mass"))]
     fn torque_of_change<'py>(
