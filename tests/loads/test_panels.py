@@ -45,7 +45,7 @@ def exerted(load: Any, state: Any = REST, body: Any = PLAIN, **options: Any) -> 
 
 
 def forces_of_light(areas: Any, normals: Any, shares: Any, s: Floats, pressure: float) -> Floats:
-    """Add up nothing: the force on each plate, from the formula, all in one frame."""
+    """Return the force on each plate, from the formula, all in one frame."""
     areas, normals = np.asarray(areas), np.asarray(normals, dtype=float)
     normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
     mirrored, scattered = np.broadcast_to(shares, (len(areas), 2)).T
@@ -53,7 +53,8 @@ def forces_of_light(areas: Any, normals: Any, shares: Any, s: Floats, pressure: 
     cos = normals @ s
     seen = np.where(cos > 0, pressure * areas * cos, 0.0)
     out = 2 * (mirrored * cos + scattered / 3)
-    return -seen[:, None] * ((1 - mirrored)[:, None] * s + out[:, None] * normals)
+    forces: Floats = -seen[:, None] * ((1 - mirrored)[:, None] * s + out[:, None] * normals)
+    return forces
 
 
 def forces_of_air(areas: Any, normals: Any, drag: Any, velocity: Floats, density: float) -> Floats:
@@ -61,7 +62,8 @@ def forces_of_air(areas: Any, normals: Any, drag: Any, velocity: Floats, density
     normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
     flow = -velocity / np.linalg.norm(velocity)
     cos = np.maximum(-(normals @ flow), 0.0)
-    return (0.5 * density * velocity @ velocity * drag * areas * cos)[:, None] * flow
+    forces: Floats = (0.5 * density * velocity @ velocity * drag * areas * cos)[:, None] * flow
+    return forces
 
 
 def facets(vertices: Floats, faces: Any) -> tuple[Floats, Floats, Floats]:
@@ -562,7 +564,7 @@ class TestRefused:
             ({"direction": (0, 0, 0)}, "direction must not be the zero vector"),
             ({"direction": (0, np.nan, 0)}, "direction must be finite"),
             ({"direction": (1, 0)}, r"direction: expected shape \(\.\.\., 3\)"),
-            ({"pressure": -1e-9}, "pressure must be positive or zero, got -1e-09"),
+            ({"pressure": -1e-9}, "pressure must be positive or zero, got -1e-9"),
             ({"pressure": np.inf}, "pressure must be finite"),
             ({"times": [0, 1]}, "times: neither direction nor pressure is a table"),
             (
@@ -570,7 +572,7 @@ class TestRefused:
                 "direction: expected one for each of the 2 times",
             ),
             ({"times": [0, 1], "pressure": [1, 1, 1]}, "pressure: expected one for each of the 2 times"),
-            ({"times": [0, 1], "pressure": [1, -1e-9]}, "pressure must be positive or zero, got -1e-09"),
+            ({"times": [0, 1], "pressure": [1, -1e-9]}, "pressure must be positive or zero, got -1e-9"),
             ({"times": [1, 0], "pressure": [1, 1]}, "times must be strictly ascending"),
             ({"times": [0], "direction": [(0, 0, 1)]}, "at least 2"),
             ({"times": [0, 1], "direction": [(1, 0, 0), (0, 1, 0)]}, "less than a quarter of a turn"),
@@ -587,12 +589,12 @@ class TestRefused:
             ({"density": None}, "density: the law .drag. needs"),
             ({"velocity": None}, "velocity: the law .drag. needs"),
             ({"pressure": 1.0}, "pressure: belongs to law=.solar."),
-            ({"density": -1e-9}, "density must be positive or zero, got -1e-09"),
+            ({"density": -1e-9}, "density must be positive or zero, got -1e-9"),
             ({"velocity": 3.0}, r"velocity: expected shape \(\.\.\., 3\)"),
             ({"velocity": (1e200, 0, 0)}, "the square of velocity must be finite"),
             ({"velocity": -1.0, "direction": (1, 0, 0)}, "velocity must be a speed along direction"),
             ({"velocity": 1.0, "direction": (0, 0, 0)}, "direction must not be the zero vector"),
-            ({"coefficients": -1e-9}, "coefficients must be positive or zero, got -1e-09"),
+            ({"coefficients": -1e-9}, "coefficients must be positive or zero, got -1e-9"),
             (
                 {"coefficients": (1.0, 2.0)},
                 r"coefficients: expected the shape \(\) or \(1,\), a drag coefficient",
