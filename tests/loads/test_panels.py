@@ -213,7 +213,7 @@ class TestSums:
             centers, normals = rng.normal(size=(2, count, 3))
             areas = rng.uniform(0.1, 2.0, count)
             shares = rng.dirichlet((1, 1, 1), count)[:, :2]
-            q = rng.normal(size=(20, 4))
+            q = Rotation.random(20, rng=rng).as_quat()
             suns = rng.normal(size=(20, 3)) * 10.0 ** rng.uniform(-3, 3, (20, 1))
             pressures = rng.uniform(0.1, 10.0, 20)
             drags = rng.uniform(0.0, 3.0, count)
@@ -399,10 +399,11 @@ class TestMotions:
         assert run.velocity[-1] == pytest.approx([0, 0, -0.3 * 2.0 * 1.25 / 2.0], abs=1e-14)
 
 
+SHIFTED = (meshes.box((1, 2, 3))[0] + (0.3, 0.2, -0.1), meshes.box((1, 2, 3))[1])
 LOADS: Any = {
     "light": lit(PLATE, (0.3, 0.2)),
     "drag": flown(PLATE, 2.0, 2.0 * SUN),
-    "table": lit(meshes.box((1, 2, 3)), (0.3, 0.2), [SUN, (0, 0, 1)], [1.0, 2.0], times=[0, 1]),
+    "table": lit(SHIFTED, (0.3, 0.2), [SUN, (0, 0, 1)], [1.0, 2.0], times=[0, 1]),
 }
 
 
@@ -410,7 +411,7 @@ class TestAlgebra:
     @pytest.mark.parametrize("name", LOADS)
     def test_factors_sums_and_pickles(self, name: str) -> None:
         load = LOADS[name]
-        state = (0.5, (0.1, 0.2, 0.3), (0.5, -0.5, 0.1, 0.7))
+        state = (0.5, (0.1, 0.2, 0.3), (0.1, 0.1, -0.1, 0.97**0.5))
         want = exerted(load, state)
         assert np.abs(want).min() > 0
         for other, factor in (
@@ -446,7 +447,7 @@ class TestAlgebra:
         assert exerted(drags)[1] == pytest.approx(2 * exerted(drags)[0])
         tables = lit(PLATE, (0, 0), [[SUN, SUN], [SUN, (0, 0, 1)]], [[1.0, 1.0], [2.0, 2.0]], times=[0, 1])
         assert tables.shape == (2,)
-        with pytest.raises(ValueError, match=r"coefficients .* do not broadcast"):
+        with pytest.raises(ValueError, match="do not broadcast: coefficients"):
             lit(PLATE, shares, np.ones((2, 3)))
 
     def test_derivatives(self) -> None:
@@ -476,11 +477,11 @@ class TestRefused:
     @pytest.mark.parametrize(
         ("shares", "words"),
         [
-            ((0.7, 0.3 + 1e-12), "at most 1, got 1.000000000001"),
+            ((0.7, 0.3 + 1e-12), "at most 1, got 1.00000000000"),
             ((-1e-12, 0.5), "from 0 to 1.*got -1e-12"),
             ((0.5, -1e-12), "from 0 to 1.*got -1e-12"),
             ((1.5, 0.0), "got 1.5"),
-            ((np.nan, 0.0), "coefficients must be finite, got nan"),
+            ((np.nan, 0.0), "coefficients must be finite, got NaN"),
             (0.3, r"coefficients: expected the shape \(2,\) or \(1, 2\), the shares of light"),
             ((0.1, 0.2, 0.3), r"got \(3,\)"),
             (((0.1, 0.2), (0.1, 0.2)), r"got \(2, 2\)"),
