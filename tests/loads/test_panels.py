@@ -213,7 +213,7 @@ class TestSums:
             centers, normals = rng.normal(size=(2, count, 3))
             areas = rng.uniform(0.1, 2.0, count)
             shares = rng.dirichlet((1, 1, 1), count)[:, :2]
-            q = Rotation.random(20, rng=rng).as_quat()
+            q = Rotation.from_quat(rng.normal(size=(20, 4))).as_quat()
             suns = rng.normal(size=(20, 3)) * 10.0 ** rng.uniform(-3, 3, (20, 1))
             pressures = rng.uniform(0.1, 10.0, 20)
             drags = rng.uniform(0.0, 3.0, count)
