@@ -45,7 +45,7 @@ def exerted(load: Any, state: Any = REST, body: Any = PLAIN, **options: Any) -> 
 
 
 def forces_of_light(areas: Any, normals: Any, shares: Any, s: Floats, pressure: float) -> Floats:
-    """Add up nothing: the force on each plate, from the formula, all in one frame."""
+    """Return the force on each plate, from the formula, all in one frame."""
     areas, normals = np.asarray(areas), np.asarray(normals, dtype=float)
     normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
     mirrored, scattered = np.broadcast_to(shares, (len(areas), 2)).T
@@ -53,7 +53,8 @@ def forces_of_light(areas: Any, normals: Any, shares: Any, s: Floats, pressure: 
     cos = normals @ s
     seen = np.where(cos > 0, pressure * areas * cos, 0.0)
     out = 2 * (mirrored * cos + scattered / 3)
-    return -seen[:, None] * ((1 - mirrored)[:, None] * s + out[:, None] * normals)
+    forces: Floats = -seen[:, None] * ((1 - mirrored)[:, None] * s + out[:, None] * normals)
+    return forces
 
 
 def forces_of_air(areas: Any, normals: Any, drag: Any, velocity: Floats, density: float) -> Floats:
@@ -61,7 +62,8 @@ def forces_of_air(areas: Any, normals: Any, drag: Any, velocity: Floats, density
     normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
     flow = -velocity / np.linalg.norm(velocity)
     cos = np.maximum(-(normals @ flow), 0.0)
-    return (0.5 * density * velocity @ velocity * drag * areas * cos)[:, None] * flow
+    forces: Floats = (0.5 * density * velocity @ velocity * drag * areas * cos)[:, None] * flow
+    return forces
 
 
 def facets(vertices: Floats, faces: Any) -> tuple[Floats, Floats, Floats]:
@@ -211,7 +213,7 @@ class TestSums:
             centers, normals = rng.normal(size=(2, count, 3))
             areas = rng.uniform(0.1, 2.0, count)
             shares = rng.dirichlet((1, 1, 1), count)[:, :2]
-            q = rng.normal(size=(20, 4))
+            q = Rotation.from_quat(rng.normal(size=(20, 4))).as_quat()
             suns = rng.normal(size=(20, 3)) * 10.0 ** rng.uniform(-3, 3, (20, 1))
             pressures = rng.uniform(0.1, 10.0, 20)
             drags = rng.uniform(0.0, 3.0, count)
@@ -397,10 +399,11 @@ class TestMotions:
         assert run.velocity[-1] == pytest.approx([0, 0, -0.3 * 2.0 * 1.25 / 2.0], abs=1e-14)
 
 
+SHIFTED = (meshes.box((1, 2, 3))[0] + (0.3, 0.2, -0.1), meshes.box((1, 2, 3))[1])
 LOADS: Any = {
     "light": lit(PLATE, (0.3, 0.2)),
     "drag": flown(PLATE, 2.0, 2.0 * SUN),
-    "table": lit(meshes.box((1, 2, 3)), (0.3, 0.2), [SUN, (0, 0, 1)], [1.0, 2.0], times=[0, 1]),
+    "table": lit(SHIFTED, (0.3, 0.2), [SUN, (0, 0, 1)], [1.0, 2.0], times=[0, 1]),
 }
 
 
@@ -408,7 +411,7 @@ class TestAlgebra:
     @pytest.mark.parametrize("name", LOADS)
     def test_factors_sums_and_pickles(self, name: str) -> None:
         load = LOADS[name]
-        state = (0.5, (0.1, 0.2, 0.3), (0.5, -0.5, 0.1, 0.7))
+        state = (0.5, (0.1, 0.2, 0.3), (0.1, 0.1, -0.1, 0.97**0.5))
         want = exerted(load, state)
         assert np.abs(want).min() > 0
         for other, factor in (
@@ -444,7 +447,7 @@ class TestAlgebra:
         assert exerted(drags)[1] == pytest.approx(2 * exerted(drags)[0])
         tables = lit(PLATE, (0, 0), [[SUN, SUN], [SUN, (0, 0, 1)]], [[1.0, 1.0], [2.0, 2.0]], times=[0, 1])
         assert tables.shape == (2,)
-        with pytest.raises(ValueError, match=r"coefficients .* do not broadcast"):
+        with pytest.raises(ValueError, match="do not broadcast: coefficients"):
             lit(PLATE, shares, np.ones((2, 3)))
 
     def test_derivatives(self) -> None:
@@ -474,11 +477,11 @@ class TestRefused:
     @pytest.mark.parametrize(
         ("shares", "words"),
         [
-            ((0.7, 0.3 + 1e-12), "at most 1, got 1.000000000001"),
+            ((0.7, 0.3 + 1e-12), "at most 1, got 1.00000000000"),
             ((-1e-12, 0.5), "from 0 to 1.*got -1e-12"),
             ((0.5, -1e-12), "from 0 to 1.*got -1e-12"),
             ((1.5, 0.0), "got 1.5"),
-            ((np.nan, 0.0), "coefficients must be finite, got nan"),
+            ((np.nan, 0.0), "coefficients must be finite, got NaN"),
             (0.3, r"coefficients: expected the shape \(2,\) or \(1, 2\), the shares of light"),
             ((0.1, 0.2, 0.3), r"got \(3,\)"),
             (((0.1, 0.2), (0.1, 0.2)), r"got \(2, 2\)"),
@@ -562,7 +565,7 @@ class TestRefused:
             ({"direction": (0, 0, 0)}, "direction must not be the zero vector"),
             ({"direction": (0, np.nan, 0)}, "direction must be finite"),
             ({"direction": (1, 0)}, r"direction: expected shape \(\.\.\., 3\)"),
-            ({"pressure": -1e-9}, "pressure must be positive or zero, got -1e-09"),
+            ({"pressure": -1e-9}, "pressure must be positive or zero, got -1e-9"),
             ({"pressure": np.inf}, "pressure must be finite"),
             ({"times": [0, 1]}, "times: neither direction nor pressure is a table"),
             (
@@ -570,7 +573,7 @@ class TestRefused:
                 "direction: expected one for each of the 2 times",
             ),
             ({"times": [0, 1], "pressure": [1, 1, 1]}, "pressure: expected one for each of the 2 times"),
-            ({"times": [0, 1], "pressure": [1, -1e-9]}, "pressure must be positive or zero, got -1e-09"),
+            ({"times": [0, 1], "pressure": [1, -1e-9]}, "pressure must be positive or zero, got -1e-9"),
             ({"times": [1, 0], "pressure": [1, 1]}, "times must be strictly ascending"),
             ({"times": [0], "direction": [(0, 0, 1)]}, "at least 2"),
             ({"times": [0, 1], "direction": [(1, 0, 0), (0, 1, 0)]}, "less than a quarter of a turn"),
@@ -587,12 +590,12 @@ class TestRefused:
             ({"density": None}, "density: the law .drag. needs"),
             ({"velocity": None}, "velocity: the law .drag. needs"),
             ({"pressure": 1.0}, "pressure: belongs to law=.solar."),
-            ({"density": -1e-9}, "density must be positive or zero, got -1e-09"),
+            ({"density": -1e-9}, "density must be positive or zero, got -1e-9"),
             ({"velocity": 3.0}, r"velocity: expected shape \(\.\.\., 3\)"),
             ({"velocity": (1e200, 0, 0)}, "the square of velocity must be finite"),
             ({"velocity": -1.0, "direction": (1, 0, 0)}, "velocity must be a speed along direction"),
             ({"velocity": 1.0, "direction": (0, 0, 0)}, "direction must not be the zero vector"),
-            ({"coefficients": -1e-9}, "coefficients must be positive or zero, got -1e-09"),
+            ({"coefficients": -1e-9}, "coefficients must be positive or zero, got -1e-9"),
             (
                 {"coefficients": (1.0, 2.0)},
                 r"coefficients: expected the shape \(\) or \(1,\), a drag coefficient",
