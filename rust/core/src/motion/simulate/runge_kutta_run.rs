@@ -114,6 +114,10 @@ pub(super) const FEW: usize = 16;
 pub(super) const SOME: usize = 24;
 pub(super) const MANY: usize = 64;
 
+/// Of a body at rest at the origin, on which a force begins to act, nobody knows yet which distance is large: no less than this part of
+/// its radius of gyration.
+const OF_SIZE: f64 = 1e-6;
+
 /// The principal axes P as seen from B.
 #[derive(Clone, Copy, Debug)]
 struct AxesInBody {
@@ -136,6 +140,8 @@ struct PhaseView {
 struct Equations<'a, L, const N: usize> {
     euler: EulerEquations,
     mass: f64,
+    /// The least distance that errors of the position are relative to.
+    least_distance: f64,
     /// Whether the reference point is fixed in N.
     is_held: bool,
     view: PhaseView,
@@ -175,6 +181,7 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
             rates: vec![0.0; states],
             euler: *euler,
             mass: body.mass,
+            least_distance: OF_SIZE * (euler.moments()[2] / body.mass).sqrt(),
             is_held: body.pivoted,
             view: PhaseView {
                 axes: AxesInBody {
@@ -365,10 +372,12 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
             quaternion(error).norm() / relative,
             part(4, self.scales.omega, absolute),
         ];
+        let fastest = self.scales.omega.max(vector(y_new, 4).norm());
         let moving = if N >= MOVING {
+            let least_speed = self.least_distance * fastest;
             [
-                part(7, self.scales.position, 0.0),
-                part(10, self.scales.velocity, 0.0),
+                part(7, self.scales.position.max(self.least_distance), 0.0),
+                part(10, self.scales.velocity.max(least_speed), 0.0),
             ]
         } else {
             [0.0; 2]
@@ -380,7 +389,6 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
                 most
             }
         };
-        let fastest = self.scales.omega.max(vector(y_new, 4).norm());
         let of_states = (0..self.internal_states()).map(|i| {
             let size = error[MOVING + i].abs();
             let [per_omega, least] = self.sizes[i];
