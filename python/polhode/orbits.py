@@ -589,7 +589,7 @@ def sampled(
     >>> speed = np.stack([-np.sin(t), np.cos(t), 0 * t], axis=-1)
     >>> for circle in (orbits.sampled(1.0, t, place), orbits.sampled(1.0, t, place, speed)):
     ...     print(circle.at(1.0).velocity.round(6))
-    [-0.841481  0.540324  0.      ]
+    [-0.841488  0.540273  0.      ]
     [-0.841471  0.540302  0.      ]
     """
     mass = np.array(_core.real_numbers(mu, "mu"))
