@@ -304,6 +304,16 @@ class TestMotions:
         assert np.abs(run.position - want).max() < 1e-13
         assert np.abs(run.omega - (0, 0, 0.7)).max() < 1e-14
 
+    def test_a_body_at_rest_is_lit_at_last(self) -> None:
+        # The normal is along y at the start: cos θ = −sin ωt, from half a turn on.
+        plate: Any = ([(0, 0, 0)], [2.0], [(0, 1, 0)])
+        t = np.linspace(0, 9, 91)
+        load = lit(plate, (0, 0), (1, 0, 0), 0.05)
+        run = PLAIN.simulate(t, (0, 0, 0.7), load=load, rtol=1e-12)
+        push = 1.0 + np.cos(np.clip(0.7 * t, np.pi, 2 * np.pi))
+        want = -0.05 * 2.0 / (0.7 * PLAIN.mass) * push
+        assert np.abs(run.velocity[:, 0] - want).max() < 1e-11
+
     def test_a_torque_about_the_line_of_the_axle(self) -> None:
         # A black plate beside the axle z, on a body that turns a little: I₃ φ̈ = −p A r cos² φ.
         plate: Any = ([(1.0, 0, 0)], [2.0], [(0, 1, 0)])

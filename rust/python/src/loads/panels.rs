@@ -78,9 +78,6 @@ use crate::stack::{BLOCK, Broadcast, Stack};
 /// The force is continuous, and has a kink where a plate turns away. There is no Taylor series: the method
 /// "auto" is "dop853", which makes shorter steps at a kink, and derivatives are by differences.
 ///
-/// Errors of position and velocity are relative to their own size. So a free body that is at rest while no plate is
-/// lit cannot be carried past the time at which the first one is: give it a velocity, such as that in its orbit.
-///
 /// A shadow with a sharp edge is made by :func:`schedule`, which switches the load off and on at given times.
 ///
 /// Examples
