@@ -202,10 +202,10 @@ impl Plates {
             all_finite("the areas times their coefficients", &all)?;
             is_dull &= all[1] == 0.0 && all[2] == 0.0;
             let (block, lane) = (&mut blocks[k / LANES], k % LANES);
-            for i in 0..3 {
+            for (i, weight) in all.into_iter().enumerate() {
                 block.center[i][lane] = self.centers[k][i];
                 block.normal[i][lane] = self.normals[k][i];
-                block.weights[i][lane] = all[i];
+                block.weights[i][lane] = weight;
             }
         }
         Ok(Surface {
