@@ -175,10 +175,20 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "RigidBody.combined": {"axis": None},
     "RigidBody.heavy_top": {"self": [TOP]},
     "RigidBody.stack": {"bodies": [TUMBLER, TOP]},
-    "RigidBody.varying": {"t": [0.0, 2.0], "bodies": RigidBody.stack([TUMBLER, TUMBLER])},
+    "RigidBody.varying": {
+        "t": [0.0, 2.0],
+        "bodies": RigidBody.stack([TUMBLER, TUMBLER]),
+        "outlet": (0.0, 0.0, 0.5),
+    },
     "RigidBody.__getitem__": {"self": [STACK], "key": 1},
     "RigidBody.__len__": {"self": [STACK]},
     "RigidBody.simulate": {"rtol": 1e-8, "max_steps": 100_000},
+    "VaryingBody.simulate": {
+        "t": [0.0, 2.0],
+        "rtol": 1e-8,
+        "max_steps": 100_000,
+        "load": loads.constant_torque((0.5, 0.0, 0.25)),
+    },
     "RigidBody.stepper": {"self": [TUMBLER, TOP], "start": 0.5, "rtol": 1e-8, "max_steps": 100_000},
     "RigidBody.pivot_reaction": {"about": "origin"},
     "RigidBody.free_motion_from_periods": {
