@@ -232,7 +232,7 @@ mod tests {
     #[test]
     fn samples_are_watched_where_there_are_many() {
         // A look is taken after each 4,096 of them.
-        for (count, is_asked) in [(4095, false), (20_000, true)] {
+        for (count, is_asked) in [(4095, false), (40_000, true)] {
             let times: Vec<f64> = (0..count).map(f64::from).collect();
             let values: Vec<_> = (times.iter())
                 .map(|t| Vector3::new(t.sin(), 1.0, *t))
