@@ -522,24 +522,24 @@ def _forecast(
 
     result = propagate(numbers, None, arguments=doubts)
     sigma, linear = np.asarray(result.sigma), np.asarray(result.linear)
-    clones_ = np.array([*_figures(found), *_tilts(_unit(found.after.momentum), toward, sides).T])
-    clones_ = clones_[:, ~found.failed]
+    drawn_figures = np.array([*_figures(found), *_tilts(_unit(found.after.momentum), toward, sides).T])
+    drawn_figures = drawn_figures[:, ~found.failed]
     is_one = not found.failed.any() and len(found.modes()) == 1
     scales = [*figures[:2], 1.0, 1.0, 1.0, 1.0]
     fits = [
         is_one and _fit(values, wide, bool(ok), scale)
-        for values, wide, ok, scale in zip(clones_, sigma, linear, scales, strict=True)
+        for values, wide, ok, scale in zip(drawn_figures, sigma, linear, scales, strict=True)
     ]
     ellipse = np.sqrt(np.maximum(np.linalg.eigvalsh(result.covariance[4:, 4:])[::-1], 0.0))
     spreads = [
         Spread(float(value), float(wide) if ok else np.nan, ok, *_quantiles(these))
-        for value, wide, ok, these in zip(figures, sigma[:4], fits[:4], clones_[:4], strict=True)
+        for value, wide, ok, these in zip(figures, sigma[:4], fits[:4], drawn_figures[:4], strict=True)
     ]
     is_linear = all(fits[4:])
-    off = np.hypot(*clones_[4:])
-    pole_ = Spread(toward, ellipse if is_linear else np.full(2, np.nan), is_linear, *_quantiles(off))
+    off = np.hypot(*drawn_figures[4:])
+    direction = Spread(toward, ellipse if is_linear else np.full(2, np.nan), is_linear, *_quantiles(off))
     rotation, precession, spin, shift = spreads
-    return Forecast(rotation, precession, spin, shift, pole_)
+    return Forecast(rotation, precession, spin, shift, direction)
 
 
 def _figures(found: Flyby) -> Floats:

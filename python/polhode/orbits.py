@@ -626,11 +626,11 @@ def _check_velocities(times: Floats, places: Floats, speeds: Floats) -> None:
     """Refuse velocities that contradict the positions, which is mostly a question of units."""
     with np.errstate(all="ignore"):
         spans = np.diff(times)[:, np.newaxis]
-        moved, told = np.diff(places, axis=-2), 0.5 * (speeds[..., 1:, :] + speeds[..., :-1, :]) * spans
+        moved, flown = np.diff(places, axis=-2), 0.5 * (speeds[..., 1:, :] + speeds[..., :-1, :]) * spans
         paces = np.linalg.norm(speeds, axis=-1)
         lengths = np.linalg.norm(moved, axis=-1), 0.5 * (paces[..., 1:] + paces[..., :-1]) * spans[:, 0]
         rounding = 8 * np.finfo(float).eps * np.abs(places).max(initial=0.0)
-        off = np.linalg.norm(moved - told, axis=-1) - APART * np.maximum(*lengths) - rounding
+        off = np.linalg.norm(moved - flown, axis=-1) - APART * np.maximum(*lengths) - rounding
         off = np.where(np.isfinite(off), off, -np.inf)  # of numbers whose squares leave the range
     worst = np.unravel_index(np.argmax(off), off.shape) if off.size else None
     if worst is None or not off[worst] > 0.0:
@@ -639,8 +639,8 @@ def _check_velocities(times: Floats, places: Floats, speeds: Floats) -> None:
     stack = f" of orbit {tuple(int(k) for k in worst[:-1])}" if len(worst) > 1 else ""
     raise PolhodeError(
         f"velocity: from row {row} to row {row + 1}{stack} the position moves by {moved[worst].tolist()}, "
-        f"but by {told[worst].tolist()} at the mean of the two velocities; the two must agree within half of "
-        "the larger. Give velocities in units of position per unit of t, relative to the attractor, in axes "
+        f"but by {flown[worst].tolist()} at the mean of the two velocities; the two must agree within half "
+        "of the larger. Give velocities in units of position per unit of t, relative to the attractor, in axes "
         "that do not turn, at times that are near enough; or leave velocity out"
     )
 

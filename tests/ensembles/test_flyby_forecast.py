@@ -34,7 +34,7 @@ def passed(body: RigidBody = KNOWN, n: int = 200, **options: Any) -> flybys.Flyb
 
 
 def small() -> tuple[RigidBody, dict[str, Any]]:
-    """Give a body, periods and angles so well known that the first order is enough."""
+    """Return a body, periods and angles so well known that the first order is enough."""
     body: Any = RigidBody.from_principal(1.0, Uncertain(MOMENTS, (2e-4, 2e-4, 1e-4)))
     return body, {
         "rotation_period": Uncertain(P_PSI, 100.0),
@@ -46,14 +46,14 @@ def small() -> tuple[RigidBody, dict[str, Any]]:
 
 
 def wide() -> tuple[RigidBody, dict[str, Any]]:
-    """Give what light curves tell: moments to a few percent."""
+    """Return what light curves tell: moments to a few percent."""
     body: Any = RigidBody.from_principal(1.0, Uncertain(MOMENTS, (0.03, 0.02, 0.0)))
     angles = {"phase": Uncertain(0.3, 0.03), "azimuth": Uncertain(0.7, 0.05), "pole_sigma": 0.1}
     return body, angles | {"precession_period": Uncertain(P_PHI, 1.0)}
 
 
 def drawn(n: int, seed: int) -> dict[str, np.ndarray]:
-    """Give figures after the passage of clones that NumPy draws, as of :func:`small`."""
+    """Return figures after the passage of clones that NumPy draws, as of :func:`small`."""
     rng = np.random.default_rng(seed)
     moments = MOMENTS + np.array([2e-4, 2e-4, 1e-4]) * rng.normal(size=(n, 3))
     bodies = RigidBody.from_principal(1.0, moments)
@@ -162,8 +162,8 @@ def test_between_the_two_it_is_linear_or_not() -> None:
         assert found is not None
         seen.append(found.rotation_period.linear)
         if seen[-1]:
-            wide_ = (found.rotation_period.high - found.rotation_period.low) / (2 * 1.6449)
-            assert found.rotation_period.sigma == pytest.approx(wide_, rel=0.08)
+            width = (found.rotation_period.high - found.rotation_period.low) / (2 * 1.6449)
+            assert found.rotation_period.sigma == pytest.approx(width, rel=0.08)
     assert seen == sorted(seen, reverse=True)
     assert (seen[0], seen[-1]) == (True, False)
 
@@ -211,10 +211,10 @@ found = flybys.flyby(body, orbit, {6 * DAY}, n=300, rotation_period={P_PSI}, pre
 assert type(found.spin_ratio) is np.ndarray
 print(json.dumps([found.spin_ratio.tolist(), found.forecast.spin_ratio.sigma]))
 """
-    told = subprocess.run(
+    run = subprocess.run(
         [sys.executable, "-c", code], check=True, capture_output=True, text=True, timeout=120
     )
-    ratios, sigma = json.loads(told.stdout)
+    ratios, sigma = json.loads(run.stdout)
     here = passed(n=300, phase=Uncertain(0.3, 5e-4))
     assert here.forecast is not None
     assert ratios == here.spin_ratio.tolist()

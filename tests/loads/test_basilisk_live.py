@@ -150,10 +150,12 @@ def run(scenario: Scenario) -> Rows:
     """Return the rows of Basilisk's run, by polhode."""
     body = RigidBody(mass=scenario.mass, inertia=scenario.inertia, center_of_mass=scenario.center)
     start = Rotation.from_mrp(scenario.mrp).as_quat()
-    moves = {} if scenario.mu else {"position": scenario.position, "velocity": scenario.velocity}
+    moves: dict[str, Any] = (
+        {} if scenario.mu else {"position": scenario.position, "velocity": scenario.velocity}
+    )
     t = np.array([0.0, *scenario.t])
     load = all_loads(scenario)
-    motion = body.simulate(t, scenario.omega, start, load=load, rtol=1e-13, **moves)  # type: ignore[arg-type]
+    motion = body.simulate(t, scenario.omega, start, load=load, rtol=1e-13, **moves)
     place, speed = motion.position, motion.velocity
     if scenario.mu:
         place, speed = orbits.kepler(scenario.mu, scenario.position, scenario.velocity, epoch=0.0).at(t)

@@ -194,19 +194,19 @@ class _Run:
         command = messaging.MTBCmdMsg()
         fields, gain, damping = coils.fields, coils.gain, coils.damping
 
-        class Law(sysModel.SysModel):  # type: ignore[misc]
-            def UpdateState(self, now: int) -> None:
-                state = craft.scStateOutMsg.read()
-                omega = np.array(state.omega_BN_B)
-                field = RigidBodyKinematics.MRP2C(np.array(state.sigma_BN)) @ np.array(fields.at(now * 1e-9))
-                # The rate of the field in the body is -ω × B.
-                dipole = gain * np.cross(omega, field)
-                dipole -= np.cross(field, damping * omega) / (field @ field)
-                payload = messaging.MTBCmdMsgPayload()
-                payload.mtbDipoleCmds = dipole.tolist()
-                command.write(payload, now)
+        def update(_: object, now: int) -> None:
+            state = craft.scStateOutMsg.read()
+            omega = np.array(state.omega_BN_B)
+            field = RigidBodyKinematics.MRP2C(np.array(state.sigma_BN)) @ np.array(fields.at(now * 1e-9))
+            # The rate of the field in the body is -ω × B.
+            dipole = gain * np.cross(omega, field)
+            dipole -= np.cross(field, damping * omega) / (field @ field)
+            payload = messaging.MTBCmdMsgPayload()
+            payload.mtbDipoleCmds = dipole.tolist()
+            command.write(payload, now)
 
-        self.add(Law(), "control")
+        law = type("Law", (sysModel.SysModel,), {"UpdateState": update})
+        self.add(law(), "control")
         self.kept.append(command)
         return command
 
@@ -293,7 +293,8 @@ class _Run:
 
 
 def _column(vector: Any) -> list[list[float]]:
-    return np.array(vector, float)[:, None].tolist()  # type: ignore[no-any-return]
+    rows: list[list[float]] = np.array(vector, float)[:, None].tolist()
+    return rows
 
 
 def run(scenario: Scenario, step: float) -> Rows:

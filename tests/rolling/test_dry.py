@@ -290,3 +290,17 @@ def test_friction_that_is_only_just_enough_to_brake(rtol: float) -> None:
     assert found.events.kind.tolist() == ["slip", "roll", "slip"]
     exact = [1.26533433291030, 1.31306749, 1.39866647]
     assert np.abs(found.events.t - exact).max() < 1e-7 + 1e3 * rtol
+
+
+@pytest.mark.parametrize("rtol", [1e-10, 1e-13, 3e-14, 1e-14, 2.3e-15])
+def test_a_slip_that_falls_too_fast_for_the_clock(rtol: float) -> None:
+    """It falls by 120 m/s²: the last of it would be gone within the rounding of the time."""
+    rng = np.random.default_rng(47)
+    for _ in range(6925):
+        body, surface, start, mu = draw(rng)
+    contact = rolling.plane(surface, law="dry", friction=mu)
+    found = body.simulate([0, 1.5], **start, load=G, contact=contact, rtol=rtol)
+    assert found.status == "complete"
+    assert found.events.kind.tolist() == ["roll", "slip", "roll", "slip", "roll"]
+    exact = [0.05740471, 0.95579188, 1.07259607, 1.07596028, 1.43159563]
+    assert np.abs(found.events.t - exact).max() < 1e-7

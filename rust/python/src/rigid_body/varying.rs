@@ -82,7 +82,7 @@ impl PyRigidBody {
     /// References
     /// ----------
     /// F. O. Eke, Dynamics of Variable Mass Systems, NASA/CR-1998-208246; W. T. Thomson, Introduction to Space
-    /// Dynamics, section 7.6.
+    /// Dynamics.
     ///
     /// Examples
     /// --------

@@ -30,7 +30,7 @@ use crate::numerics::threads::Watch;
 /// ```
 ///
 /// With several outlets each passes the same share. The momentum of what moves inside, relative to the body, is left out: it moves straight to and fro, and slowly. The thrust is a
-/// load. Source: Thomson, Introduction to Space Dynamics, §7.6; Eke, Dynamics of Variable Mass Systems, NASA CR-1998-208246.
+/// load. Source: Thomson, Introduction to Space Dynamics; Eke, Dynamics of Variable Mass Systems, NASA CR-1998-208246.
 ///
 /// # Examples
 ///
