@@ -639,8 +639,8 @@ def _check_velocities(times: Floats, places: Floats, speeds: Floats) -> None:
     stack = f" of orbit {tuple(int(k) for k in worst[:-1])}" if len(worst) > 1 else ""
     raise PolhodeError(
         f"velocity: from row {row} to row {row + 1}{stack} the position moves by {moved[worst].tolist()}, "
-        f"but by {flown[worst].tolist()} at the mean of the two velocities; the two must agree within half "
-        "of the larger. Give velocities in units of position per unit of t, relative to the attractor, in axes "
+        f"but by {flown[worst].tolist()} at the mean of both velocities; the two must agree within half of "
+        "the larger. Give velocities in units of position per unit of t, relative to the attractor, in axes "
         "that do not turn, at times that are near enough; or leave velocity out"
     )
 

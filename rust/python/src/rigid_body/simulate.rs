@@ -239,58 +239,40 @@ impl<'py> Wanted<'_, 'py> {
         bodies: &Stack<RigidBody>,
         varying: Option<&VaryingBody>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let Self {
-            t,
-            omega,
-            attitude,
-            load,
-            contact,
-            position,
-            velocity,
-            about,
-            method,
-            rtol,
-            atol,
-            events,
-            on_failure,
-            progress,
-            states,
-            max_steps,
-        } = self;
         let _guard = RecursionGuard::run("simulate")?;
-        let pivoted = is_pivot(about)?;
-        check_velocity(pivoted, velocity)?;
-        let contact = read_rolling(contact, velocity)?;
-        let raises = raises(on_failure)?;
-        let times = read_times(py, t)?;
-        let tolerance = Tolerance::new(rtol, atol.unwrap_or(0.0))
+        let pivoted = is_pivot(self.about)?;
+        check_velocity(pivoted, self.velocity)?;
+        let contact = read_rolling(self.contact, self.velocity)?;
+        let raises = raises(self.on_failure)?;
+        let times = read_times(py, self.t)?;
+        let tolerance = Tolerance::new(self.rtol, self.atol.unwrap_or(0.0))
             .map_err(|error| to_py(py, &error))?
-            .within(most_steps(max_steps)?);
+            .within(most_steps(self.max_steps)?);
         let nothing = PyLoad::default();
-        let load = load.filter(|load| !load.is_none());
+        let load = self.load.filter(|load| !load.is_none());
         let acts = load.map_or(Ok(&nothing), cast_load)?;
-        let given = StartArguments::read(omega, attitude)?;
+        let given = StartArguments::read(self.omega, self.attitude)?;
         if varying.is_some() && given.uncertain.is_any() {
             return Err(PyValueError::new_err(
                 "omega, attitude: of a varying body the start is without uncertainty; draw starts with polhode.ensembles, or give numbers",
             ));
         }
-        let start = Start::read(py, bodies, &given, [position, velocity], acts, states)?;
+        let places = [self.position, self.velocity];
+        let start = Start::read(py, bodies, &given, places, acts, self.states)?;
         let rolling = (contact.map(|contact| {
-            let given =
-                [position, velocity].map(|given| given.is_some_and(|given| !given.is_none()));
+            let given = places.map(|given| given.is_some_and(|given| !given.is_none()));
             Rolling::new(py, contact.get().contact, &start, acts, given)
         }))
         .transpose()?;
-        let events = Functions::read(events, acts, &start.terms)?;
+        let events = Functions::read(self.events, acts, &start.terms)?;
         let of_one = most_demanding(&start.terms.rows, pivoted);
-        let interrupt = Interrupt::new(progress);
+        let interrupt = Interrupt::new(self.progress);
         let plan = Plan::new(
             &start.bodies.rows,
             pivoted,
             &times,
             // Rolling has series, and no closed form that serves here.
-            match method {
+            match self.method {
                 Method::Auto if rolling.is_some() => Method::Taylor,
                 method => method,
             },
@@ -320,7 +302,7 @@ impl<'py> Wanted<'_, 'py> {
             let known = trajectory.getattr("__dict__")?;
             known.set_item("uncertain_start", given.uncertain.to_python(py)?)?;
         }
-        if let Some(Ok(states)) = states.map(|states| states.cast::<PyDict>()) {
+        if let Some(Ok(states)) = self.states.map(|states| states.cast::<PyDict>()) {
             // Those of the load that do not follow from its numbers.
             let known = trajectory.getattr("__dict__")?;
             known.set_item("_origin", origin(py, "states", states.keys().to_tuple())?)?;
