@@ -349,3 +349,43 @@ class TestStacks:
 
     def test_an_empty_stack_has_empty_motion(self) -> None:
         assert BRICK.simulate(TIMES, np.zeros((0, 3))).omega.shape == (0, 4, 3)
+
+
+class TestFirstStep:
+    """The first step of the methods for functions."""
+
+    @pytest.mark.parametrize("method", ["dop853", "radau"])
+    @pytest.mark.parametrize("power", [-20, -3, 3, 20])
+    def test_is_the_same_in_any_unit_of_time(self, method: str, power: int) -> None:
+        """A power of two changes no digit of a number: all digits of the motion are the same."""
+
+        def run(unit: float) -> Trajectory:
+            def torque(t: float, omega: np.ndarray, _: np.ndarray) -> np.ndarray:
+                swing = np.array([np.sin(unit * t), 0.3, np.cos(2 * unit * t)])
+                return unit * (unit * swing - 0.3 * omega)
+
+            body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
+            load, omega = loads.torque_callback(torque), unit * np.array([0.5, -1.0, 0.25])
+            return body.simulate([0.0, 4.0 / unit], omega, load=load, method=method, rtol=1e-8)
+
+        unit = 2.0**power
+        one, other = run(1.0), run(unit)
+        assert one.evaluations == other.evaluations
+        np.testing.assert_array_equal(one.quaternion, other.quaternion)
+        np.testing.assert_array_equal(unit * one.omega, other.omega)
+
+    @pytest.mark.parametrize("span", [1e-6, 1e-3, 0.1, 1.0])
+    def test_short_time_takes_one_step(self, span: float) -> None:
+        """A slow body for less than a tenth of a radian, as in a step of a control loop."""
+        body = RigidBody.from_principal(20.0, (0.30, 0.25, 0.13))
+        load = loads.torque_callback(lambda t, omega, quaternion: (1e-4, -2e-4, 5e-5))
+        run = body.simulate([0.0, span], (0.05, -0.03, 0.02), load=load, method="dop853")
+        assert (run.steps, run.evaluations) == (1, 14)
+
+    def test_slope_that_begins_at_zero(self) -> None:
+        """ω = (1 - cos t)/I: at the start neither ω nor its rate tells how fast it will change."""
+        body = RigidBody.from_principal(1.0, (1.0, 1.0, 1.0))
+        load = loads.torque_callback(lambda t, omega, quaternion: (0.0, 0.0, np.sin(t)))
+        for method, rtol in (("dop853", 1e-10), ("radau", 1e-7)):
+            run = body.simulate([0.0, 3.0, 40.0], (0, 0, 0), load=load, method=method, rtol=rtol)
+            np.testing.assert_allclose(run.omega[1:, 2], 1 - np.cos([3.0, 40.0]), rtol=0, atol=30 * rtol)

@@ -195,6 +195,10 @@ pub(crate) struct ActingLoad<'a, 'py> {
     follows: Vec<Option<usize>>,
     /// The states by name, where Python is called with them.
     slots: Vec<Slot>,
+    /// The numbers of the first states of functions and of controllers. Those of the analytic terms come first; then those of functions:
+    /// of Python, compiled ones, thrusters.
+    first_of_functions: usize,
+    first_of_controllers: usize,
     /// Where the run begins, as far as it has been told.
     start: f64,
     /// A time within the span last entered.
@@ -214,13 +218,17 @@ impl<'a, 'py> ActingLoad<'a, 'py> {
         let names_states = has_states(load)
             || load.thrusters().any(Firing::calls_python)
             || controllers.iter().any(|one| has_states(one));
+        let functions = LoadFunctions::new(load);
+        let first_of_functions = terms.iter().map(Term::internal_states).sum();
         Self {
+            first_of_functions,
+            first_of_controllers: first_of_functions + functions.states(),
             controllers: controllers.into_iter().map(LoadFunctions::new).collect(),
             follows,
             analytic: Analytic::new(terms, subject),
             load,
             py,
-            functions: LoadFunctions::new(load),
+            functions,
             slots: if names_states {
                 load.slots()
             } else {
@@ -256,11 +264,6 @@ impl<'a, 'py> ActingLoad<'a, 'py> {
         Ok(all)
     }
 
-    /// The number of the first state of the controllers.
-    fn first_of_controllers(&self) -> usize {
-        self.first_of_functions() + self.functions.states()
-    }
-
     fn call<'s>(&'s self, t: f64, phase: &'s Phase) -> Call<'s, 'py> {
         Call {
             py: self.py,
@@ -281,15 +284,6 @@ impl<'a, 'py> ActingLoad<'a, 'py> {
                 self.analytic.command(term, torques[*number]);
             }
         }
-    }
-
-    /// The states of the analytic terms come first, then those of functions of Python, then those of compiled ones, then those of thrusters.
-    fn first_of_functions(&self) -> usize {
-        self.analytic
-            .terms()
-            .iter()
-            .map(Term::internal_states)
-            .sum()
     }
 }
 
@@ -359,7 +353,7 @@ impl Load for ActingLoad<'_, '_> {
             return self.analytic.over_limit(wheel, t, phase);
         }
         // What fails here fails in the equations too, which say so.
-        let Ok(torques) = self.commands(t, phase, self.first_of_controllers(), &mut []) else {
+        let Ok(torques) = self.commands(t, phase, self.first_of_controllers, &mut []) else {
             return f64::NAN;
         };
         let mut analytic = self.analytic.clone();
@@ -384,11 +378,11 @@ impl Load for ActingLoad<'_, '_> {
     #[inline]
     fn act(&mut self, t: f64, phase: &Phase, rates: &mut [f64]) -> Result<Wrench, Fault> {
         if !self.controllers.is_empty() {
-            let torques = self.commands(t, phase, self.first_of_controllers(), rates)?;
+            let torques = self.commands(t, phase, self.first_of_controllers, rates)?;
             self.command(&torques);
         }
         let mut sum = self.analytic.act(t, phase, rates)?;
-        let first = self.first_of_functions();
+        let first = self.first_of_functions;
         self.functions
             .add(&self.call(t, phase), first, rates, &mut sum)?;
         Ok(sum)
@@ -406,7 +400,7 @@ impl Load for ActingLoad<'_, '_> {
     }
 
     fn cuts(&self, from: f64, to: f64, phase: &Phase) -> Vec<f64> {
-        let firing = self.functions.firing(self.first_of_functions());
+        let firing = self.functions.firing(self.first_of_functions);
         let mut cuts: Vec<f64> = firing
             .flat_map(|(one, own)| one.cuts((from, to), self.start, &phase.internal_state[own]))
             .collect();
@@ -415,7 +409,7 @@ impl Load for ActingLoad<'_, '_> {
     }
 
     fn firing(&self, t: f64, is_before: bool, phase: &Phase) -> Vec<(usize, bool)> {
-        let firing = self.functions.firing(self.first_of_functions());
+        let firing = self.functions.firing(self.first_of_functions);
         let all = firing.flat_map(|(one, own)| {
             let (first, states) = (own.start, &phase.internal_state[own]);
             let fires = if is_before {
@@ -437,8 +431,8 @@ impl Load for ActingLoad<'_, '_> {
         let states = py.map(|_| Named::of(&self.slots, self.analytic.terms(), phase));
         let mut after = phase.internal_state.clone();
         if let (Some(py), Some(states)) = (py, &states) {
-            let own = (self.first_of_functions(), self.load);
-            let mut of_controllers = self.first_of_controllers();
+            let own = (self.first_of_functions, self.load);
+            let mut of_controllers = self.first_of_controllers;
             let controllers = self.controllers.iter().map(|one| {
                 let first = of_controllers;
                 of_controllers += one.states();
@@ -460,7 +454,7 @@ impl Load for ActingLoad<'_, '_> {
                 }
             }
         }
-        for (one, own) in self.functions.firing(self.first_of_functions()) {
+        for (one, own) in self.functions.firing(self.first_of_functions) {
             let before = &phase.internal_state[own.clone()];
             let begun = one.begin_period(py, now, phase, states.as_ref(), before);
             if let Some(new) = begun.map_err(Fault::Python)? {

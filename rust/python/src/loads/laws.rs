@@ -7,6 +7,7 @@ use polhode::motion::loads::{
     Rotor, Sampled, Slug, Term, Thrusters,
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -389,7 +390,7 @@ pub(crate) fn magnetic(
     let kept = |given: &Bound<'_, PyAny>| -> PyResult<Py<PyAny>> {
         Ok(numpy.call_method1("array", (given, "float64"))?.unbind())
     };
-    let field = if field.hasattr("orbit")? {
+    let field = if field.hasattr(intern!(py, "orbit"))? {
         field.clone().unbind()
     } else {
         kept(field)?
@@ -422,7 +423,9 @@ fn fields(
     field: &Bound<'_, PyAny>,
     times: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Stack<MagneticField>> {
-    if let (Ok(orbit), Ok(strength)) = (field.getattr("orbit"), field.getattr("strength")) {
+    if field.hasattr(intern!(py, "orbit"))?
+        && let (Ok(orbit), Ok(strength)) = (field.getattr("orbit"), field.getattr("strength"))
+    {
         if times.is_some() {
             return Err(PyTypeError::new_err(
                 "times: not beside a field along an orbit, which is known at all times",

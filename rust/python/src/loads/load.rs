@@ -181,6 +181,11 @@ impl PyLoad {
             || self.controllers().0.into_iter().any(Self::calls_python)
     }
 
+    /// Whether a part counts from where its motion starts.
+    pub(crate) fn needs_epoch(&self) -> bool {
+        self.parts.iter().any(Part::needs_epoch)
+    }
+
     /// The load with `t` as the epoch of those orbits that have none. It serves to continue a motion that
     /// started at `t`.
     pub(crate) fn copy_with_epoch(&self, py: Python<'_>, t: f64) -> PyResult<Self> {
@@ -200,8 +205,8 @@ impl PyLoad {
         };
         self.map(|part| {
             let mut part = part.clone_ref(py)?;
-            let starts = |one: &Py<Self>| one.get().with_states().any(WithStates::needs_epoch);
-            if let Some(controller) = part.controller.take_if(|one| starts(one)) {
+            let starts = |one: &mut Py<Self>| clock_needs_epoch(one.get());
+            if let Some(controller) = part.controller.take_if(starts) {
                 part.recipe = recipe(py, "_with_epoch", (&part.recipe, t))?;
                 part.controller = Some(begin(&controller)?);
             }
@@ -228,6 +233,11 @@ impl PyLoad {
             Ok(part)
         })
     }
+}
+
+/// Whether a controller has a clock that counts from where its motion starts.
+fn clock_needs_epoch(controller: &PyLoad) -> bool {
+    controller.with_states().any(WithStates::needs_epoch)
 }
 
 /// The load of one recipe.
@@ -324,6 +334,29 @@ impl Part {
             name: self.name.clone(),
             controller: self.controller.as_ref().map(|one| one.clone_ref(py)),
         })
+    }
+
+    /// Whether it counts from where its motion starts.
+    fn needs_epoch(&self) -> bool {
+        let mut controllers = self.controller.iter();
+        controllers.any(|one| clock_needs_epoch(one.get()))
+            || match &self.acts {
+                LoadPart::Term(terms) => terms.rows.iter().any(Term::needs_epoch),
+                LoadPart::WithStates(one) => one.needs_epoch(),
+                LoadPart::Thrusters(firing) => firing.needs_epoch(),
+                LoadPart::Callback(_) | LoadPart::Compiled(_) => false,
+            }
+    }
+
+    /// The number of its states.
+    fn count_states(&self) -> usize {
+        match &self.acts {
+            LoadPart::Term(terms) => terms.rows.first().map_or(0, Term::internal_states),
+            LoadPart::WithStates(one) => one.initial.len(),
+            LoadPart::Compiled(one) => one.initial.len(),
+            LoadPart::Thrusters(firing) => firing.initial.len(),
+            LoadPart::Callback(_) => 0,
+        }
     }
 
     pub(super) fn shape(&self) -> &[usize] {
@@ -690,9 +723,16 @@ impl PyLoad {
         Ok(())
     }
 
+    /// The number of states of its own.
+    fn count_states(&self) -> usize {
+        let parts = self.parts.iter().map(Part::count_states);
+        let controllers = self.controllers().0.into_iter();
+        parts.sum::<usize>() + controllers.map(Self::count_states).sum::<usize>()
+    }
+
     /// That a run from one time to another can be made.
     pub(crate) fn check_run(&self, py: Python<'_>, from: f64, to: f64) -> PyResult<()> {
-        let count: usize = self.slots().iter().map(|slot| slot.count).sum();
+        let count = self.count_states();
         if count > MOST_STATES && !self.is_analytic() {
             return Err(PyValueError::new_err(format!(
                 "load: {count} states of its own, more than the {MOST_STATES} of a load that calls functions"

@@ -37,7 +37,7 @@ struct Acting {
     /// As it was given.
     given: Option<Py<PyAny>>,
     /// For a motion that began at its start.
-    load: PyLoad,
+    load: Py<PyLoad>,
     terms: Vec<Term>,
     slots: Vec<Slot>,
 }
@@ -46,17 +46,20 @@ impl Acting {
     fn new(py: Python<'_>, given: Given<'_, '_>, start: f64) -> PyResult<Self> {
         let given = given.filter(|given| !given.is_none());
         let load = match given {
-            None => PyLoad::default(),
-            Some(given) => cast_load(given)?.copy_with_epoch(py, start)?,
+            None => Py::new(py, PyLoad::default())?,
+            Some(given) if cast_load(given)?.needs_epoch() => {
+                Py::new(py, cast_load(given)?.copy_with_epoch(py, start)?)?
+            }
+            Some(given) => given.cast::<PyLoad>()?.clone().unbind(),
         };
-        let mut terms = load.terms(py)?;
+        let mut terms = load.get().terms(py)?;
         if !terms.is_one() {
             return Err(not_one("load", &terms.shape));
         }
         Ok(Self {
             given: given.map(|given| given.clone().unbind()),
             terms: terms.rows.swap_remove(0),
-            slots: load.slots(),
+            slots: load.get().slots(),
             load,
         })
     }
@@ -146,7 +149,7 @@ impl PyStepper {
     fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
         visit.call(&self.body)?;
         visit.call(&self.acting.given)?;
-        self.acting.load.visit_parts(&visit)?;
+        visit.call(&self.acting.load)?;
         self.events.traverse(&visit)
     }
 
@@ -212,13 +215,15 @@ impl PyStepper {
         }
         let next = Acting::new(py, load, self.times[0])?;
         let states = next.states_of(&self.acting, &now.internal_state)?;
-        (next.load).check_given(&next.terms, times[0], &now.omega, &states)?;
+        next.load
+            .get()
+            .check_given(&next.terms, times[0], &now.omega, &states)?;
         let mut chain = self.chain.clone();
-        let terms = next.load.is_analytic().then_some(&next.terms[..]);
+        let terms = next.load.get().is_analytic().then_some(&next.terms[..]);
         (chain.take(self.method, terms, next.carried())).map_err(|error| to_py(py, &error))?;
         self.check_momentum(py, &chain, &next, &states)?;
         let mut events = self.events.clone_ref(py);
-        events.aim(py, &next.load, &next.terms)?;
+        events.aim(py, next.load.get(), &next.terms)?;
         let run = self.run(py, times, &chain, &next, &states, &events)?;
         if next.slots != self.acting.slots {
             self.slots.push((self.samples.len(), next.slots.clone()));
@@ -359,6 +364,7 @@ impl PyStepper {
         events: &Functions,
     ) -> PyResult<Run<Fault>> {
         let Acting { load, terms, .. } = acting;
+        let load = load.get();
         load.check_run(py, times[0], times[1])?;
         let now = &self.samples[self.samples.len() - 1];
         let initial = Phase {
@@ -438,7 +444,7 @@ impl PyStepper {
     ) -> PyResult<()> {
         let (t, now) = (self.t(), &self.samples[self.samples.len() - 1]);
         let begun = Phase {
-            internal_state: next.load.initial_states(&next.terms, t, &now.omega, states),
+            internal_state: (next.load.get()).initial_states(&next.terms, t, &now.omega, states),
             ..now.clone()
         };
         let reported = report_states(&next.terms, &begun);
@@ -622,7 +628,7 @@ impl PyRigidBody {
             bodies,
             &given,
             [position, velocity],
-            &acting.load,
+            acting.load.get(),
             states,
         )?;
         let grid = first.grid()?;
@@ -636,20 +642,23 @@ impl PyRigidBody {
         }
         first.check_finite(py)?;
         let omega = first.omega[0];
-        (acting.load).check_given(&acting.terms, start, &omega, &first.states[0])?;
+        acting
+            .load
+            .get()
+            .check_given(&acting.terms, start, &omega, &first.states[0])?;
         let method = parse_method(method)?;
         let mut chain = Chain::new(bodies[0], pivoted, tolerance);
-        let terms = acting.load.is_analytic().then_some(&acting.terms[..]);
+        let terms = acting.load.get().is_analytic().then_some(&acting.terms[..]);
         chain
             .take(method, terms, acting.carried())
             .map_err(|error| to_py(py, &error))?;
-        let events = Functions::read(events, &acting.load, &first.terms)?;
+        let events = Functions::read(events, acting.load.get(), &first.terms)?;
         let mut phase = Phase {
             attitude: first.attitude[0],
             omega,
             position: first.position[0],
             velocity: first.velocity[0],
-            internal_state: (acting.load).initial_states(
+            internal_state: acting.load.get().initial_states(
                 &acting.terms,
                 start,
                 &omega,

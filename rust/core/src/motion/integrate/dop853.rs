@@ -3,14 +3,19 @@
 
 use nalgebra::SVector;
 
-use super::runge_kutta::{Progress, RungeKutta, System};
+use super::runge_kutta::{Progress, RungeKutta, StepError, System};
 
 /// The factor by which a step may shrink or grow, and the part of the optimal factor that is used.
 const SHRINK: f64 = 1.0 / 3.0;
 const GROW: f64 = 6.0;
 const SAFETY: f64 = 0.9;
 /// One over the order of the error that the estimate controls.
-const EXPONENT: f64 = 1.0 / 8.0;
+const EXPONENT: f64 = 1.0 / STEP_ERROR.order;
+/// Of the error that the estimate controls; the constant is that of short steps of `y' = i y`.
+const STEP_ERROR: StepError = StepError {
+    constant: 4.3e-7,
+    order: 8.0,
+};
 
 /// An integration under way.
 #[derive(Clone, Debug)]
@@ -32,7 +37,7 @@ impl<const N: usize> RungeKutta<N> for Dop853<N> {
         y: SVector<f64, N>,
         step: Option<f64>,
     ) -> Result<Self, S::Error> {
-        let (progress, slope) = Progress::new(system, [start, end], y, step, EXPONENT)?;
+        let (progress, slope) = Progress::new(system, [start, end], y, step, STEP_ERROR)?;
         let mut slopes = [SVector::zeros(); EXTENDED_STAGES];
         slopes[STAGES] = slope;
         Ok(Self {

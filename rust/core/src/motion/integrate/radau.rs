@@ -7,7 +7,7 @@ use std::ops::AddAssign;
 use nalgebra::{Complex, DMatrix, Dyn, PermutationSequence, SVector};
 
 use super::runge_kutta::System;
-use super::runge_kutta::{Progress, RungeKutta};
+use super::runge_kutta::{Progress, RungeKutta, StepError};
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
 
 /// Newton's iterations before the step is shortened.
@@ -17,7 +17,12 @@ const STAGE_TOLERANCE: f64 = 1e-3;
 const SHRINK: f64 = 0.2;
 const GROW: f64 = 8.0;
 /// One over the order of the error that the estimate controls.
-const EXPONENT: f64 = 0.25;
+const EXPONENT: f64 = 1.0 / STEP_ERROR.order;
+/// Of the error that the estimate controls; the constant is that of short steps of `y' = i y`.
+const STEP_ERROR: StepError = StepError {
+    constant: 4.6e-3,
+    order: 4.0,
+};
 
 /// An integration under way.
 #[derive(Clone, Debug)]
@@ -41,7 +46,7 @@ impl<const N: usize> RungeKutta<N> for Radau<N> {
         y: SVector<f64, N>,
         step: Option<f64>,
     ) -> Result<Self, S::Error> {
-        let (progress, slope) = Progress::new(system, [start, end], y, step, EXPONENT)?;
+        let (progress, slope) = Progress::new(system, [start, end], y, step, STEP_ERROR)?;
         let mut stepper = Self {
             progress,
             slope,

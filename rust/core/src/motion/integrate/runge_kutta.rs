@@ -91,13 +91,13 @@ pub(crate) struct Progress<const N: usize> {
 
 impl<const N: usize> Progress<N> {
     /// Begin in the state `y` at time `start`; return the slope there too. The first step is `step`, or one that is chosen for a method
-    /// whose error is of the order 1/`exponent`.
+    /// with this error.
     pub(super) fn new<S: System<N>>(
         system: &mut S,
         [start, end]: [f64; 2],
         y: SVector<f64, N>,
         step: Option<f64>,
-        exponent: f64,
+        method: StepError,
     ) -> Result<(Self, SVector<f64, N>), S::Error> {
         let mut state = Compensated::new(y);
         system.accept(&mut state);
@@ -120,7 +120,7 @@ impl<const N: usize> Progress<N> {
             Some(step) if step != 0.0 => step.abs().min(span.abs()).copysign(span),
             _ => {
                 progress.evaluations += 1;
-                first_step(system, start, span, &y, &slope, exponent)?
+                first_step(system, start, span, &y, &slope, method)?
             }
         };
         Ok((progress, slope))
@@ -250,10 +250,30 @@ pub(crate) trait RungeKutta<const N: usize>: Sized {
     }
 }
 
-/// Choose the first step, at most `span` and with its sign, for a method whose error is of the order 1/`exponent`, from the sizes of
-/// state, slope and change of slope; with one evaluation of the equations.
+/// How the estimate of the error of a step grows with its length.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StepError {
+    /// Of a step h of `y' = λ y` it is this times `|λ h|` to the power of the order.
+    pub constant: f64,
+    /// The order.
+    pub order: f64,
+}
+
+/// The least rate of change of the slope, as a part of that of the state: where the slope at the start is at a maximum, it seems to
+/// change at no rate.
+const LEAST_RATE: f64 = 0.0625;
+
+/// The part of the longest first step that the error allows.
+const FIRST: f64 = 0.5;
+
+/// Choose the first step, at most `span` and with its sign, from the sizes of state, slope and change of slope; with one evaluation of
+/// the equations.
 ///
-/// `y`, `slope`: the state and `f(start, y)`. Source: Hairer, Nørsett & Wanner, Solving ODEs I, §II.4.
+/// If all derivatives grow at the rate ρ at which the slope changes, the error of a step h is that of `y' = ρ y` with the slope at the
+/// start. So the choice is the same in any unit of time, unlike that of Hairer, Nørsett & Wanner, Solving ODEs I, §II.4, from which
+/// the trial and the longest step are.
+///
+/// `y`, `slope`: the state and `f(start, y)`.
 ///
 /// # Errors
 /// Errors of the equations.
@@ -263,7 +283,7 @@ fn first_step<S: System<N>, const N: usize>(
     span: f64,
     y: &SVector<f64, N>,
     slope: &SVector<f64, N>,
-    exponent: f64,
+    method: StepError,
 ) -> Result<f64, S::Error> {
     let (size, speed) = (system.error_norm(y, y, y), system.error_norm(y, y, slope));
     let trial = if speed > 0.0 && speed.is_finite() {
@@ -276,9 +296,10 @@ fn first_step<S: System<N>, const N: usize>(
     let mut later = SVector::zeros();
     system.derivative(start + trial, &there, &mut later)?;
     let bend = system.error_norm(y, &there, &(later - slope)) / trial.abs();
-    let fastest = speed.max(bend);
-    let step = if fastest > 0.0 && fastest.is_finite() {
-        (0.01 / fastest).powf(exponent).min(100.0 * trial.abs())
+    let rate = (bend / speed).max(LEAST_RATE * speed / size);
+    let step = if rate > 0.0 && rate.is_finite() {
+        let allowed = (rate / (method.constant * speed)).powf(1.0 / method.order);
+        (FIRST * allowed / rate).min(100.0 * trial.abs())
     } else {
         trial.abs()
     };

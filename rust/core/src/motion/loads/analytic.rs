@@ -182,8 +182,8 @@ impl Load for Analytic<'_> {
         self.terms.iter().any(Term::depends_on_rates)
     }
 
-    fn breaks(&self, _: f64, _: f64) -> Vec<f64> {
-        self.terms.iter().flat_map(Term::breaks).collect()
+    fn breaks(&self, from: f64, to: f64) -> Vec<f64> {
+        (self.terms.iter().flat_map(|term| term.breaks(from, to))).collect()
     }
 
     fn enter(&mut self, from: f64, to: f64) -> Result<(), Error> {

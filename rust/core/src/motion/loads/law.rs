@@ -92,8 +92,10 @@ pub(super) trait Law: Sized {
     #[must_use]
     fn with_epoch(self, t: f64) -> Self;
 
-    /// The times at which it is not smooth, where a step must end; not sorted.
-    fn breaks(&self) -> Vec<f64>;
+    /// The times in a run from one time to another at which it is not smooth, where a step must end; not sorted.
+    fn breaks(&self, _from: f64, _to: f64) -> Vec<f64> {
+        Vec::new()
+    }
 
     /// Checks that it can act on `body` from one time to another.
     ///

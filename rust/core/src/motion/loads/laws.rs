@@ -147,19 +147,20 @@ macro_rules! laws {
                 }
             }
 
-            /// The times at which it is not smooth, where a step must end; not sorted.
+            /// The times in a run from one time to another at which it is not smooth, where a step must end; not sorted, and the switches
+            /// of windows at other times may be among them.
             #[must_use]
-            pub fn breaks(&self) -> Vec<f64> {
+            pub fn breaks(&self, from: f64, to: f64) -> Vec<f64> {
                 match self {
-                    $(Self::$law(law) => law.breaks(),)+
+                    $(Self::$law(law) => law.breaks(from, to),)+
                     Self::Scheduled { windows, term } => {
                         let mut breaks = windows.switches();
-                        breaks.extend(term.breaks());
+                        breaks.extend(term.breaks(from, to));
                         breaks
                     }
                     Self::Controlled { term, controller } => {
-                        let mut breaks = term.breaks();
-                        breaks.extend(controller.iter().flat_map(Term::breaks));
+                        let mut breaks = term.breaks(from, to);
+                        breaks.extend(controller.iter().flat_map(|law| law.breaks(from, to)));
                         breaks
                     }
                 }

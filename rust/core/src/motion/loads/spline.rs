@@ -124,6 +124,14 @@ pub(super) fn check_within(knots: &[f64], t: f64) -> Result<(), Error> {
     }
 }
 
+/// Those of the ascending times that lie between one time and another.
+pub(super) fn within(times: &[f64], from: f64, to: f64) -> &[f64] {
+    let (low, high) = (from.min(to), from.max(to));
+    let first = times.partition_point(|t| *t <= low);
+    let count = times[first..].partition_point(|t| *t < high);
+    &times[first..first + count]
+}
+
 /// The cubics between the samples, from the slopes at them.
 pub(super) fn pieces<X: Real>(
     t: &[f64],

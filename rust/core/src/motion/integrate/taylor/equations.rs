@@ -85,7 +85,8 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         let ([i1, i2, i3], [d1, d2, d3]) = (principal.moments, principal.differences);
         let one = X::one();
         let (start, end) = (task.times[0], task.times[task.times.len() - 1]);
-        let mut breaks: Vec<f64> = terms.iter().flat_map(Term::breaks).collect();
+        let each = terms.iter().map(|term| term.breaks(start, end));
+        let mut breaks: Vec<f64> = each.flatten().collect();
         breaks.retain(|t| (t - start) * (t - end) < 0.0);
         breaks.push(end);
         breaks.sort_by(f64::total_cmp);

@@ -85,10 +85,6 @@ impl Law for Damping {
         self
     }
 
-    fn breaks(&self) -> Vec<f64> {
-        Vec::new()
-    }
-
     fn check(&self, _: &BodyAtPoint, _: f64, _: f64) -> Result<(), Error> {
         Ok(())
     }

@@ -11,6 +11,7 @@ use crate::motion::loads::carried_momentum::LawContext;
 use crate::motion::loads::law::{ConservedMomentum, Law, Traits};
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
 use crate::motion::loads::series_terms::SeriesTerms;
+use crate::motion::loads::spline::within;
 use crate::motion::loads::switch::{Switch, attitude_error};
 use crate::motion::loads::variables::Parameter;
 use crate::motion::loads::variables::Variables;
@@ -142,8 +143,8 @@ impl Law for Feedback {
         }
     }
 
-    fn breaks(&self) -> Vec<f64> {
-        self.target.breaks().to_vec()
+    fn breaks(&self, from: f64, to: f64) -> Vec<f64> {
+        within(self.target.breaks(), from, to).to_vec()
     }
 
     fn check(&self, body: &BodyAtPoint, from: f64, to: f64) -> Result<(), Error> {

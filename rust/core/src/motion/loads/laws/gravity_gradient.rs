@@ -11,6 +11,7 @@ use crate::motion::loads::orbit_model::OrbitModel;
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
 use crate::motion::loads::series_terms::SeriesTerms;
 use crate::motion::loads::series_terms::{OrbitState, OrbitTorque, StepTime};
+use crate::motion::loads::spline::within;
 use crate::motion::loads::variables::Parameter;
 use crate::motion::loads::variables::Variables;
 use crate::motion::loads::wrench::Wrench;
@@ -166,8 +167,8 @@ impl Law for GravityGradient {
         }
     }
 
-    fn breaks(&self) -> Vec<f64> {
-        self.orbit.breaks().to_vec()
+    fn breaks(&self, from: f64, to: f64) -> Vec<f64> {
+        within(self.orbit.breaks(), from, to).to_vec()
     }
 
     fn check(&self, body: &BodyAtPoint, from: f64, to: f64) -> Result<(), Error> {

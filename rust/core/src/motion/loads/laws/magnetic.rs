@@ -14,7 +14,7 @@ use crate::motion::loads::orbit_model::OrbitModel;
 use crate::motion::loads::piecewise_signal::PiecewiseSignal;
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
 use crate::motion::loads::series_terms::SeriesTerms;
-use crate::motion::loads::spline::Spline;
+use crate::motion::loads::spline::{Spline, within};
 use crate::motion::loads::variables::Parameter;
 use crate::motion::loads::wrench::{Wrench, times};
 use crate::motion::state::Phase;
@@ -404,14 +404,15 @@ impl Law for Magnetic {
         }
     }
 
-    fn breaks(&self) -> Vec<f64> {
-        let mut breaks = match &self.field.0 {
-            FieldModel::Sampled(spline) => spline.knots().to_vec(),
-            FieldModel::Dipole { orbit, .. } => orbit.breaks().to_vec(),
-            FieldModel::Uniform(_) => Vec::new(),
+    fn breaks(&self, from: f64, to: f64) -> Vec<f64> {
+        let of_field = match &self.field.0 {
+            FieldModel::Sampled(spline) => spline.knots(),
+            FieldModel::Dipole { orbit, .. } => orbit.breaks(),
+            FieldModel::Uniform(_) => &[],
         };
+        let mut breaks = within(of_field, from, to).to_vec();
         if let Moment::Table(parts) = &self.moment {
-            breaks.extend(parts[0].times());
+            breaks.extend(within(parts[0].times(), from, to));
         }
         breaks
     }

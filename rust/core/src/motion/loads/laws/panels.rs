@@ -13,7 +13,7 @@ use crate::motion::loads::law::{ConservedMomentum, Law, Traits};
 use crate::motion::loads::piecewise_signal::PiecewiseSignal;
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame};
 use crate::motion::loads::series_terms::SeriesTerms;
-use crate::motion::loads::spline::Spline;
+use crate::motion::loads::spline::{Spline, within};
 use crate::motion::loads::variables::Parameter;
 use crate::motion::loads::wrench::Wrench;
 use crate::motion::state::Phase;
@@ -543,8 +543,12 @@ impl Law for Panels {
         self
     }
 
-    fn breaks(&self) -> Vec<f64> {
-        self.tables().concat()
+    fn breaks(&self, from: f64, to: f64) -> Vec<f64> {
+        let tables = self.tables().into_iter();
+        tables
+            .flat_map(|table| within(table, from, to))
+            .copied()
+            .collect()
     }
 
     fn check(&self, _: &BodyAtPoint, from: f64, to: f64) -> Result<(), Error> {

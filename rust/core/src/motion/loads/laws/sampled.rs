@@ -12,7 +12,7 @@ use crate::motion::loads::law::{ConservedMomentum, Law, Traits};
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame, exact};
 use crate::motion::loads::series_terms::SeriesTerms;
 use crate::motion::loads::series_terms::{CubicTorque, StepTime};
-use crate::motion::loads::spline::{Spline, pieces};
+use crate::motion::loads::spline::{Spline, pieces, within};
 use crate::motion::loads::variables::Parameter;
 use crate::motion::loads::variables::Variables;
 use crate::motion::loads::wrench::{Wrench, in_body};
@@ -185,8 +185,8 @@ impl Law for Sampled {
         self
     }
 
-    fn breaks(&self) -> Vec<f64> {
-        self.knots().to_vec()
+    fn breaks(&self, from: f64, to: f64) -> Vec<f64> {
+        within(self.knots(), from, to).to_vec()
     }
 
     fn check(&self, _: &BodyAtPoint, from: f64, to: f64) -> Result<(), Error> {

@@ -82,10 +82,6 @@ impl Law for Slug {
         self
     }
 
-    fn breaks(&self) -> Vec<f64> {
-        Vec::new()
-    }
-
     fn check(&self, _: &BodyAtPoint, _: f64, _: f64) -> Result<(), Error> {
         Ok(())
     }

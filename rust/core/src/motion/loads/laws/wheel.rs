@@ -11,6 +11,7 @@ use crate::motion::loads::law::{ConservedMomentum, Law, Traits};
 use crate::motion::loads::piecewise_signal::PiecewiseSignal;
 use crate::motion::loads::principal_frame::{LawNumber, PrincipalFrame, exact};
 use crate::motion::loads::series_terms::{InternalState, SeriesTerms};
+use crate::motion::loads::spline::within;
 use crate::motion::loads::switch::Switch;
 use crate::motion::loads::variables::{Parameter, ParameterColumns};
 use crate::motion::loads::wrench::Wrench;
@@ -252,8 +253,8 @@ impl Law for Wheel {
         self
     }
 
-    fn breaks(&self) -> Vec<f64> {
-        self.drive.breaks()
+    fn breaks(&self, from: f64, to: f64) -> Vec<f64> {
+        self.drive.breaks(from, to)
     }
 
     fn check(&self, body: &BodyAtPoint, from: f64, to: f64) -> Result<(), Error> {
@@ -518,10 +519,10 @@ impl Drive {
     }
 
     /// The times at which it is not smooth.
-    pub(super) fn breaks(&self) -> Vec<f64> {
+    pub(super) fn breaks(&self, from: f64, to: f64) -> Vec<f64> {
         match self {
-            Self::Torque(held) | Self::Speed(held) => held.times().to_vec(),
-            Self::Feedback(law) => law.breaks(),
+            Self::Torque(held) | Self::Speed(held) => within(held.times(), from, to).to_vec(),
+            Self::Feedback(law) => law.breaks(from, to),
             Self::Controller => Vec::new(),
         }
     }
