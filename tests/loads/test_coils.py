@@ -172,7 +172,8 @@ class TestControllers:
         law = loads.feedback(K=0.3, D=0.2) + loads.torque_callback(lambda t, *_: (0.1 * np.sin(t), 0, 0))
         coils = loads.magnetic(law, field, gain=0.05, max_dipole=most)
         t = np.array([0.0, 1.7, 6.0])
-        run = BODY.simulate(t, OMEGA, ATTITUDE, load=coils, rtol=1e-13)
+        # The moments reach their limit at times that no step is cut at: the step control finds them.
+        run = BODY.simulate(t, OMEGA, ATTITUDE, load=coils, rtol=1e-14)
 
         def in_space(s: float) -> tuple[np.ndarray, np.ndarray]:
             r, v = orbit.at(s)

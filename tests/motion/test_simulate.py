@@ -378,14 +378,14 @@ class TestFirstStep:
     def test_short_time_takes_one_step(self, span: float) -> None:
         """A slow body for less than a tenth of a radian, as in a step of a control loop."""
         body = RigidBody.from_principal(20.0, (0.30, 0.25, 0.13))
-        load = loads.torque_callback(lambda t, omega, quaternion: (1e-4, -2e-4, 5e-5))
+        load = loads.torque_callback(lambda *_: (1e-4, -2e-4, 5e-5))
         run = body.simulate([0.0, span], (0.05, -0.03, 0.02), load=load, method="dop853")
         assert (run.steps, run.evaluations) == (1, 14)
 
     def test_slope_that_begins_at_zero(self) -> None:
         """ω = (1 - cos t)/I: at the start neither ω nor its rate tells how fast it will change."""
         body = RigidBody.from_principal(1.0, (1.0, 1.0, 1.0))
-        load = loads.torque_callback(lambda t, omega, quaternion: (0.0, 0.0, np.sin(t)))
+        load = loads.torque_callback(lambda t, *_: (0.0, 0.0, np.sin(t)))
         for method, rtol in (("dop853", 1e-10), ("radau", 1e-7)):
             run = body.simulate([0.0, 3.0, 40.0], (0, 0, 0), load=load, method=method, rtol=rtol)
             np.testing.assert_allclose(run.omega[1:, 2], 1 - np.cos([3.0, 40.0]), rtol=0, atol=30 * rtol)

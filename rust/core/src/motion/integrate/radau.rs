@@ -16,6 +16,8 @@ const ITERATIONS: i32 = 7;
 const STAGE_TOLERANCE: f64 = 1e-3;
 const SHRINK: f64 = 0.2;
 const GROW: f64 = 8.0;
+/// For as many steps a length is kept that may grow a little. In a steady motion it would be kept for ever.
+const MOST_KEPT: u32 = 8;
 /// One over the order of the error that the estimate controls.
 const EXPONENT: f64 = 1.0 / STEP_ERROR.order;
 /// Of the error that the estimate controls; the constant is that of short steps of `y' = i y`.
@@ -34,6 +36,8 @@ pub(crate) struct Radau<const N: usize> {
     /// Whether the Jacobian is that of the present state.
     is_current: bool,
     factors: Option<Factors<N>>,
+    /// How many steps had the length of the one before, though longer ones would do.
+    kept: u32,
     /// The last accepted step, and the error it was accepted with.
     last: Option<(Dense<N>, f64)>,
 }
@@ -53,6 +57,7 @@ impl<const N: usize> RungeKutta<N> for Radau<N> {
             jacobian: Jacobian::zero(),
             is_current: false,
             factors: None,
+            kept: 0,
             last: None,
         };
         stepper.linearize(system)?;
@@ -91,11 +96,13 @@ impl<const N: usize> RungeKutta<N> for Radau<N> {
                 if iterations > 2 && rate > 1e-3 {
                     self.linearize(system)?;
                     self.progress.step = h * growth;
-                } else if (1.0..1.2).contains(&growth) {
+                } else if (1.0..1.2).contains(&growth) && self.kept < MOST_KEPT {
                     self.progress.step = h; // a little more would cost new factors
                     self.factors = Some(factors);
+                    self.kept += 1;
                 } else {
                     self.progress.step = h * growth;
+                    self.kept = 0;
                 }
                 return Ok(());
             }

@@ -77,6 +77,20 @@ impl<L: Number, const R: usize> Batch<L, R> {
         self.0[row].real()
     }
 
+    /// Return `H` rows from row `FIRST` on.
+    #[inline(always)]
+    pub(super) fn rows<const FIRST: usize, const H: usize>(&self) -> Batch<L, H> {
+        Batch(std::array::from_fn(|i| self.0[FIRST + i]))
+    }
+
+    /// Set `H` rows from row `FIRST` on.
+    #[inline(always)]
+    pub(super) fn put_rows<const FIRST: usize, const H: usize>(&mut self, rows: Batch<L, H>) {
+        for i in 0..H {
+            self.0[FIRST + i] = rows.0[i];
+        }
+    }
+
     /// Set the number of one row to a double.
     #[inline(always)]
     pub(super) fn set(&mut self, row: usize, x: f64) {

@@ -3,7 +3,7 @@
 use super::batch::{Batch, CacheAligned};
 use super::directions::{add_squares, axis, from_squares, halve, roots};
 use super::series::{AnyNumber, COUNT, Coefficient, Coefficients};
-use crate::numerics::dispatch::{Kernel, dispatch};
+use crate::numerics::dispatch::{Kernel, Level, dispatch, level};
 use crate::numerics::lane::Lane;
 
 /// The series of `R` motions, one in each lane.
@@ -41,6 +41,49 @@ struct Order<T> {
     q: [T; 4],
 }
 
+impl<L: Lane, const R: usize> BatchSums<Batch<L, R>> {
+    #[inline(always)]
+    fn new() -> Self {
+        let zero = Batch::new(0.0);
+        Self {
+            spins: [zero; 3],
+            turned: [zero; 4],
+        }
+    }
+
+    /// Set the sums of `H` rows from row `FIRST` on.
+    #[inline(always)]
+    fn put<const FIRST: usize, const H: usize>(&mut self, rows: &BatchSums<Batch<L, H>>) {
+        for i in 0..3 {
+            self.spins[i].put_rows::<FIRST, H>(rows.spins[i]);
+        }
+        for i in 0..4 {
+            self.turned[i].put_rows::<FIRST, H>(rows.turned[i]);
+        }
+    }
+}
+
+impl<L: Lane, const R: usize> Order<Batch<L, R>> {
+    /// Return `H` rows from row `FIRST` on.
+    #[inline(always)]
+    fn rows<const FIRST: usize, const H: usize>(&self) -> Order<Batch<L, H>> {
+        let ([w0, w1, w2], [x, y, z, w]) = (self.w, self.q);
+        Order {
+            w: [
+                w0.rows::<FIRST, H>(),
+                w1.rows::<FIRST, H>(),
+                w2.rows::<FIRST, H>(),
+            ],
+            q: [
+                x.rows::<FIRST, H>(),
+                y.rows::<FIRST, H>(),
+                z.rows::<FIRST, H>(),
+                w.rows::<FIRST, H>(),
+            ],
+        }
+    }
+}
+
 impl<L: Lane, const R: usize> Products<Batch<L, R>> {
     #[inline(always)]
     fn new() -> Self {
@@ -56,25 +99,31 @@ impl<L: Lane, const R: usize> Products<Batch<L, R>> {
     /// Add the products of `a` with ω of `b`. Products with component `CONSTANT` of ω are zero and are left out. Sums of two
     /// coefficients are computed here each time: additions run beside multiplications, and a stored sum would have to be loaded.
     #[inline(always)]
-    fn add<const CONSTANT: usize>(&mut self, a: &Order<Batch<L, R>>, b: &Order<Batch<L, R>>) {
+    fn add<const CONSTANT: usize, const GROUPS: u8>(
+        &mut self,
+        a: &Order<Batch<L, R>>,
+        b: &Order<Batch<L, R>>,
+    ) {
         // Written out, since a loop would keep the sums in memory.
         let ([_, a1, a2], [x, y, z, w]) = (a.w, a.q);
         let [b0, b1, b2] = b.w;
-        let (sum, difference) = (b0 + b1, b1 - b0);
-        if CONSTANT == NONE {
+        if CONSTANT == NONE && GROUPS & THIRD != 0 {
             self.spins[0] = a1.mul_add(b2, self.spins[0]);
             self.spins[1] = a2.mul_add(b0, self.spins[1]);
             self.spins[2] = a1.mul_add(b0, self.spins[2]);
         }
-        if CONSTANT != 0 {
-            self.alpha[0] = (w + z).mul_add(b0, self.alpha[0]);
-            self.beta[0] = (x + y).mul_add(b0, self.beta[0]);
+        if GROUPS & COMPLEX != 0 {
+            let (sum, difference) = (b0 + b1, b1 - b0);
+            if CONSTANT != 0 {
+                self.alpha[0] = (w + z).mul_add(b0, self.alpha[0]);
+                self.beta[0] = (x + y).mul_add(b0, self.beta[0]);
+            }
+            self.alpha[1] = w.mul_add(difference, self.alpha[1]);
+            self.alpha[2] = z.mul_add(sum, self.alpha[2]);
+            self.beta[1] = x.mul_add(sum, self.beta[1]);
+            self.beta[2] = y.mul_add(difference, self.beta[2]);
         }
-        self.alpha[1] = w.mul_add(difference, self.alpha[1]);
-        self.alpha[2] = z.mul_add(sum, self.alpha[2]);
-        self.beta[1] = x.mul_add(sum, self.beta[1]);
-        self.beta[2] = y.mul_add(difference, self.beta[2]);
-        if CONSTANT != 2 {
+        if CONSTANT != 2 && GROUPS & THIRD != 0 {
             self.third[0] = x.mul_add(b2, self.third[0]);
             self.third[1] = y.mul_add(b2, self.third[1]);
             self.third[2] = z.mul_add(b2, self.third[2]);
@@ -93,9 +142,7 @@ impl<L: Lane, const R: usize> Products<Batch<L, R>> {
     }
 }
 
-impl<L: Lane, const B: usize, const R: usize> Coefficients<Batch<L, R>, B>
-    for BatchSeries<L, B, R>
-{
+impl<L: Lane, const B: usize> Coefficients<Batch<L, ALL>, B> for BatchSeries<L, B, ALL> {
     #[inline(always)]
     fn new() -> Self {
         let zero = Batch::new(0.0);
@@ -114,7 +161,7 @@ impl<L: Lane, const B: usize, const R: usize> Coefficients<Batch<L, R>, B>
     }
 
     #[inline(always)]
-    fn get(&self, k: usize) -> Coefficient<Batch<L, R>, B> {
+    fn get(&self, k: usize) -> Coefficient<Batch<L, ALL>, B> {
         let Order { w, q } = self.orders[k];
         Coefficient {
             w,
@@ -123,80 +170,131 @@ impl<L: Lane, const B: usize, const R: usize> Coefficients<Batch<L, R>, B>
         }
     }
 
-    type Sums = BatchSums<Batch<L, R>>;
+    type Sums = BatchSums<Batch<L, ALL>>;
 
     #[inline(always)]
     fn sums(&mut self, k: usize) -> Self::Sums {
         match self.constant {
-            0 => dispatch(Sum::<_, B, R, 0>(self, k)).0,
-            2 => dispatch(Sum::<_, B, R, 2>(self, k)).0,
-            _ => dispatch(Sum::<_, B, R, NONE>(self, k)).0,
+            0 => dispatch(Sum::<_, B, ALL, 0>(self, k)).0,
+            2 => dispatch(Sum::<_, B, ALL, 2>(self, k)).0,
+            _ => dispatch(Sum::<_, B, ALL, NONE>(self, k)).0,
         }
     }
 
     #[inline(always)]
-    fn spins(sums: &Self::Sums) -> [Batch<L, R>; 3] {
+    fn spins(sums: &Self::Sums) -> [Batch<L, ALL>; 3] {
         sums.spins
     }
 }
 
-impl<L: Lane, const B: usize, const R: usize> AnyNumber<Batch<L, R>, B> for BatchSeries<L, B, R> {
+impl<L: Lane, const B: usize> AnyNumber<Batch<L, ALL>, B> for BatchSeries<L, B, ALL> {
     #[inline(always)]
-    fn put_omega(&mut self, k: usize, i: usize, x: Batch<L, R>) {
+    fn put_omega(&mut self, k: usize, i: usize, x: Batch<L, ALL>) {
         self.orders[k].w[i] = x;
     }
 
     #[inline(always)]
-    fn put_attitude(&mut self, k: usize, i: usize, x: Batch<L, R>) {
+    fn put_attitude(&mut self, k: usize, i: usize, x: Batch<L, ALL>) {
         self.orders[k].q[i] = x;
     }
 
     #[inline(always)]
-    fn put_direction(&mut self, k: usize, b: usize, i: usize, x: Batch<L, R>) {
+    fn put_direction(&mut self, k: usize, b: usize, i: usize, x: Batch<L, ALL>) {
         self.directions[k][b][i] = x;
     }
 
     #[inline(always)]
-    fn attitude_sum(sums: &Self::Sums, i: usize) -> Batch<L, R> {
+    fn attitude_sum(sums: &Self::Sums, i: usize) -> Batch<L, ALL> {
         sums.turned[i]
     }
 
     #[inline(always)]
-    fn direction_sum(_: &Self::Sums, _: usize, _: usize) -> Option<Batch<L, R>> {
+    fn direction_sum(_: &Self::Sums, _: usize, _: usize) -> Option<Batch<L, ALL>> {
         None
     }
 }
 
+/// The rows whose sums are computed at a time: all of them in the 32 registers of AVX-512. Other machines have fewer or narrower ones,
+/// so that sums would go to the stack and back: there half of the rows are computed at a time, and one group of sums after the other.
+const ALL: usize = 8;
+const HALF: usize = 4;
+
+/// Groups of sums: of the spins and the products with ω₃; of α and β; of the squares.
+const THIRD: u8 = 1;
+const COMPLEX: u8 = 2;
+const SQUARES: u8 = 4;
+
 impl<L: Lane, const B: usize, const R: usize> BatchSeries<L, B, R> {
-    /// Compute the sums of order `k`. Component `CONSTANT` of ω is constant: its coefficients of orders above zero are zero, and
-    /// their products are left out.
+    /// Compute the sums of order `k` of `H` rows from row `FIRST` on into `sums`. Component `CONSTANT` of ω is constant: its coefficients
+    /// of orders above zero are zero, and their products are left out.
     #[inline(always)]
-    fn products<const CONSTANT: usize>(&mut self, k: usize) -> BatchSums<Batch<L, R>> {
-        let mut products = Products::new();
+    fn add_products<const CONSTANT: usize, const FIRST: usize, const H: usize>(
+        &mut self,
+        k: usize,
+        sums: &mut BatchSums<Batch<L, R>>,
+    ) {
+        const EVERY: u8 = THIRD | COMPLEX | SQUARES;
+        let mut products = Products::<Batch<L, H>>::new();
+        let mut squares = Squares::<Batch<L, H>, B>::new();
         let orders = &self.orders[..=k];
-        if k == 0 {
-            products.add::<NONE>(&orders[0], &orders[0]);
-            return products.sums();
+        let into = (&mut products, &mut squares);
+        if H == ALL {
+            add_groups::<L, B, R, CONSTANT, FIRST, H, EVERY>(orders, into);
+        } else {
+            add_groups::<L, B, R, CONSTANT, FIRST, H, THIRD>(orders, (into.0, into.1));
+            add_groups::<L, B, R, CONSTANT, FIRST, H, COMPLEX>(orders, (into.0, into.1));
+            add_groups::<L, B, R, CONSTANT, FIRST, H, SQUARES>(orders, into);
         }
-        let mut squares = Squares::new();
-        if k.is_multiple_of(2) {
-            products.add::<CONSTANT>(&orders[k / 2], &orders[k / 2]);
-            squares.add_middle(&orders[k / 2]);
+        if k > 0 {
+            let found = squares.directions();
+            for b in 0..B {
+                for i in 0..3 {
+                    self.directions[k][b][i].put_rows::<FIRST, H>(found[b][i]);
+                }
+            }
         }
-        let inner = usize::from(CONSTANT != NONE);
-        let early = orders[inner..k.div_ceil(2)].iter().rev();
-        for (early, late) in early.zip(&orders[k / 2 + 1..=k - inner]) {
-            products.add::<CONSTANT>(early, late);
-            products.add::<CONSTANT>(late, early);
-            squares.add(early, late);
-        }
-        if CONSTANT != NONE {
-            products.add::<NONE>(&orders[0], &orders[k]);
-            products.add::<NONE>(&orders[k], &orders[0]);
-            squares.add(&orders[0], &orders[k]);
-        }
-        self.directions[k] = squares.directions();
-        products.sums()
+        sums.put::<FIRST, H>(&products.sums());
+    }
+}
+
+/// Add the products of these orders, from the middle outward, to the sums of the `GROUPS`.
+#[inline(always)]
+fn add_groups<
+    L: Lane,
+    const B: usize,
+    const R: usize,
+    const CONSTANT: usize,
+    const FIRST: usize,
+    const H: usize,
+    const GROUPS: u8,
+>(
+    orders: &[Order<Batch<L, R>>],
+    (products, squares): (&mut Products<Batch<L, H>>, &mut Squares<Batch<L, H>, B>),
+) {
+    let k = orders.len() - 1;
+    let rows = |order: &Order<Batch<L, R>>| order.rows::<FIRST, H>();
+    if k == 0 {
+        let first = rows(&orders[0]);
+        return products.add::<NONE, GROUPS>(&first, &first);
+    }
+    if k.is_multiple_of(2) {
+        let middle = rows(&orders[k / 2]);
+        products.add::<CONSTANT, GROUPS>(&middle, &middle);
+        squares.add_middle::<GROUPS>(&middle);
+    }
+    let inner = usize::from(CONSTANT != NONE);
+    let early = orders[inner..k.div_ceil(2)].iter().rev();
+    for (early, late) in early.zip(&orders[k / 2 + 1..=k - inner]) {
+        let (early, late) = (rows(early), rows(late));
+        products.add::<CONSTANT, GROUPS>(&early, &late);
+        products.add::<CONSTANT, GROUPS>(&late, &early);
+        squares.add::<GROUPS>(&early, &late);
+    }
+    if CONSTANT != NONE {
+        let (first, last) = (rows(&orders[0]), rows(&orders[k]));
+        products.add::<NONE, GROUPS>(&first, &last);
+        products.add::<NONE, GROUPS>(&last, &first);
+        squares.add::<GROUPS>(&first, &last);
     }
 }
 
@@ -206,14 +304,20 @@ struct Sum<'a, L, const B: usize, const R: usize, const CONSTANT: usize>(
     usize,
 );
 
-impl<N: Lane, const B: usize, const R: usize, const CONSTANT: usize> Kernel
-    for Sum<'_, N, B, R, CONSTANT>
-{
-    type Output = CacheAligned<BatchSums<Batch<N, R>>>;
+impl<N: Lane, const B: usize, const CONSTANT: usize> Kernel for Sum<'_, N, B, ALL, CONSTANT> {
+    type Output = CacheAligned<BatchSums<Batch<N, ALL>>>;
 
     #[inline(always)]
     fn run<L: Lane>(self) -> Self::Output {
-        CacheAligned(self.0.products::<CONSTANT>(self.1))
+        let Self(series, k) = self;
+        let mut sums = BatchSums::new();
+        if level() == Level::Avx512 {
+            series.add_products::<CONSTANT, 0, ALL>(k, &mut sums);
+        } else {
+            series.add_products::<CONSTANT, 0, HALF>(k, &mut sums);
+            series.add_products::<CONSTANT, HALF, HALF>(k, &mut sums);
+        }
+        CacheAligned(sums)
     }
 }
 
@@ -229,7 +333,10 @@ impl<L: Lane, const R: usize, const B: usize> Squares<Batch<L, R>, B> {
     // One axis after the other, written out: a loop would keep the sums in memory.
 
     #[inline(always)]
-    fn add(&mut self, one: &Order<Batch<L, R>>, other: &Order<Batch<L, R>>) {
+    fn add<const GROUPS: u8>(&mut self, one: &Order<Batch<L, R>>, other: &Order<Batch<L, R>>) {
+        if GROUPS & SQUARES == 0 {
+            return;
+        }
         self.add_along(0, one, other);
         self.add_along(1, one, other);
         self.add_along(2, one, other);
@@ -244,7 +351,10 @@ impl<L: Lane, const R: usize, const B: usize> Squares<Batch<L, R>, B> {
     }
 
     #[inline(always)]
-    fn add_middle(&mut self, middle: &Order<Batch<L, R>>) {
+    fn add_middle<const GROUPS: u8>(&mut self, middle: &Order<Batch<L, R>>) {
+        if GROUPS & SQUARES == 0 {
+            return;
+        }
         self.add_middle_along(0, middle);
         self.add_middle_along(1, middle);
         self.add_middle_along(2, middle);
