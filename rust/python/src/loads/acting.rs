@@ -142,7 +142,9 @@ impl<'a> LoadFunctions<'a> {
     ) -> Result<(), Fault> {
         let Call { t, phase, .. } = *call;
         let asked = !rates.is_empty();
-        for (firing, own) in self.firing(first) {
+        // Their place among the states is looked for only if there are any.
+        let firing = (!self.thrusters.is_empty()).then(|| self.firing(first));
+        for (firing, own) in firing.into_iter().flatten() {
             let fires = firing.fires(call.middle, call.start, &phase.internal_state[own.clone()]);
             if asked {
                 firing.rates(&fires, &mut rates[own]);
