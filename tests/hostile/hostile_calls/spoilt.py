@@ -89,8 +89,8 @@ def forms(values: Any) -> dict[str, Callable[[], Any]]:
             result["int64"] = lambda: plain.astype(np.int64)
             result["int8"] = lambda: plain.astype(np.int8) if _exact(plain, np.int8) else plain
     else:
-        result["int32"] = lambda: plain.astype(np.int32)
-        result["int16"] = lambda: plain.astype(np.int16)
+        result["int32"] = lambda: plain.astype(np.int32) if _exact(plain, np.int32) else plain
+        result["int16"] = lambda: plain.astype(np.int16) if _exact(plain, np.int16) else plain
     if plain.ndim:
         result["subclass"] = lambda: plain.copy().view(Sub)
         result["has-array"] = lambda: HasArray(plain.copy())
