@@ -234,6 +234,17 @@ mod tests {
     use super::*;
     use crate::motion::loads::{AttitudeTarget, Frame, MagneticField, OrbitModel, Sampled};
 
+    #[test]
+    fn times_between_two_times() {
+        let times = [0.0, 1.0, 2.0, 3.0];
+        assert_eq!(within(&times, 0.0, 3.0), [1.0, 2.0]); // without the ends
+        assert_eq!(within(&times, 2.5, 0.5), [1.0, 2.0]); // backward
+        assert_eq!(within(&times, -1.0, 9.0), times);
+        assert_eq!(within(&times, 0.0_f64.next_down(), 1.0), [0.0]);
+        assert!(within(&times, 1.0, 2.0).is_empty() && within(&times, 1.0, 1.0).is_empty());
+        assert!(within(&times, 3.0, 5.0).is_empty() && within(&[], 0.0, 1.0).is_empty());
+    }
+
     /// Makes something of samples; tells what is wrong with it.
     type Make<'a> = dyn Fn(&mut Watch<'_>) -> Option<Error> + 'a;
 
