@@ -381,6 +381,18 @@ class TestFirstStep:
         load = loads.torque_callback(lambda *_: (1e-4, -2e-4, 5e-5))
         run = body.simulate([0.0, span], (0.05, -0.03, 0.02), load=load, method="dop853")
         assert (int(run.steps), int(run.evaluations)) == (1, 14)
+        far = body.simulate([0.0, 60.0], (0.05, -0.03, 0.02), load=load, method="dop853")
+        assert far.steps > 1
+
+    @pytest.mark.parametrize("phase", [0.0, 0.5 * np.pi, 1.0])
+    def test_slope_at_its_maximum(self, phase: float) -> None:
+        """N = cos(t + phase): the slope may not change at the start; one step at most is tried in vain."""
+        body = RigidBody.from_principal(1.0, (1.0, 1.0, 1.0))
+        load = loads.torque_callback(lambda t, *_: (0.0, 0.0, np.cos(t + phase)))
+        run = body.simulate([0.0, 1.0], (0, 0, 0.5), load=load, method="dop853", rtol=1e-10)
+        exact = 0.5 + np.sin(1.0 + phase) - np.sin(phase)
+        np.testing.assert_allclose(run.omega[-1, 2], exact, rtol=0, atol=1e-10)
+        assert run.evaluations <= 2 + 12 * run.steps + 11
 
     def test_slope_that_begins_at_zero(self) -> None:
         """ω = (1 - cos t)/I: at the start neither ω nor its rate tells how fast it will change."""

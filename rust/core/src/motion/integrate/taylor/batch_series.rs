@@ -142,7 +142,7 @@ impl<L: Lane, const R: usize> Products<Batch<L, R>> {
     }
 }
 
-impl<L: Lane, const B: usize> Coefficients<Batch<L, ALL>, B> for BatchSeries<L, B, ALL> {
+impl<L: Lane, const B: usize> Coefficients<Batch<L, ROWS>, B> for BatchSeries<L, B, ROWS> {
     #[inline(always)]
     fn new() -> Self {
         let zero = Batch::new(0.0);
@@ -161,7 +161,7 @@ impl<L: Lane, const B: usize> Coefficients<Batch<L, ALL>, B> for BatchSeries<L, 
     }
 
     #[inline(always)]
-    fn get(&self, k: usize) -> Coefficient<Batch<L, ALL>, B> {
+    fn get(&self, k: usize) -> Coefficient<Batch<L, ROWS>, B> {
         let Order { w, q } = self.orders[k];
         Coefficient {
             w,
@@ -170,54 +170,55 @@ impl<L: Lane, const B: usize> Coefficients<Batch<L, ALL>, B> for BatchSeries<L, 
         }
     }
 
-    type Sums = BatchSums<Batch<L, ALL>>;
+    type Sums = BatchSums<Batch<L, ROWS>>;
 
     #[inline(always)]
     fn sums(&mut self, k: usize) -> Self::Sums {
         match self.constant {
-            0 => dispatch(Sum::<_, B, ALL, 0>(self, k)).0,
-            2 => dispatch(Sum::<_, B, ALL, 2>(self, k)).0,
-            _ => dispatch(Sum::<_, B, ALL, NONE>(self, k)).0,
+            0 => dispatch(Sum::<_, B, 0>(self, k)).0,
+            2 => dispatch(Sum::<_, B, 2>(self, k)).0,
+            _ => dispatch(Sum::<_, B, NONE>(self, k)).0,
         }
     }
 
     #[inline(always)]
-    fn spins(sums: &Self::Sums) -> [Batch<L, ALL>; 3] {
+    fn spins(sums: &Self::Sums) -> [Batch<L, ROWS>; 3] {
         sums.spins
     }
 }
 
-impl<L: Lane, const B: usize> AnyNumber<Batch<L, ALL>, B> for BatchSeries<L, B, ALL> {
+impl<L: Lane, const B: usize> AnyNumber<Batch<L, ROWS>, B> for BatchSeries<L, B, ROWS> {
     #[inline(always)]
-    fn put_omega(&mut self, k: usize, i: usize, x: Batch<L, ALL>) {
+    fn put_omega(&mut self, k: usize, i: usize, x: Batch<L, ROWS>) {
         self.orders[k].w[i] = x;
     }
 
     #[inline(always)]
-    fn put_attitude(&mut self, k: usize, i: usize, x: Batch<L, ALL>) {
+    fn put_attitude(&mut self, k: usize, i: usize, x: Batch<L, ROWS>) {
         self.orders[k].q[i] = x;
     }
 
     #[inline(always)]
-    fn put_direction(&mut self, k: usize, b: usize, i: usize, x: Batch<L, ALL>) {
+    fn put_direction(&mut self, k: usize, b: usize, i: usize, x: Batch<L, ROWS>) {
         self.directions[k][b][i] = x;
     }
 
     #[inline(always)]
-    fn attitude_sum(sums: &Self::Sums, i: usize) -> Batch<L, ALL> {
+    fn attitude_sum(sums: &Self::Sums, i: usize) -> Batch<L, ROWS> {
         sums.turned[i]
     }
 
     #[inline(always)]
-    fn direction_sum(_: &Self::Sums, _: usize, _: usize) -> Option<Batch<L, ALL>> {
+    fn direction_sum(_: &Self::Sums, _: usize, _: usize) -> Option<Batch<L, ROWS>> {
         None
     }
 }
 
-/// The rows whose sums are computed at a time: all of them in the 32 registers of AVX-512. Other machines have fewer or narrower ones,
-/// so that sums would go to the stack and back: there half of the rows are computed at a time, and one group of sums after the other.
-const ALL: usize = 8;
-const HALF: usize = 4;
+/// The number of motions side by side: a register of the widest machines.
+pub(super) const ROWS: usize = 8;
+/// How many of them have their sums computed at a time: all of them in the 32 registers of AVX-512. Other machines have fewer or narrower
+/// registers, so that sums would go to the stack and back: there half of the motions, and one group of sums after the other.
+const HALF: usize = ROWS / 2;
 
 /// Groups of sums: of the spins and the products with ω₃; of α and β; of the squares.
 const THIRD: u8 = 1;
@@ -238,7 +239,7 @@ impl<L: Lane, const B: usize, const R: usize> BatchSeries<L, B, R> {
         let mut squares = Squares::<Batch<L, H>, B>::new();
         let orders = &self.orders[..=k];
         let into = (&mut products, &mut squares);
-        if H == ALL {
+        if H == ROWS {
             add_groups::<L, B, R, CONSTANT, FIRST, H, EVERY>(orders, into);
         } else {
             add_groups::<L, B, R, CONSTANT, FIRST, H, THIRD>(orders, (into.0, into.1));
@@ -299,20 +300,17 @@ fn add_groups<
 }
 
 /// Computes the sums of one order. A separate function: within a larger one the sums are not kept in registers.
-struct Sum<'a, L, const B: usize, const R: usize, const CONSTANT: usize>(
-    &'a mut BatchSeries<L, B, R>,
-    usize,
-);
+struct Sum<'a, L, const B: usize, const CONSTANT: usize>(&'a mut BatchSeries<L, B, ROWS>, usize);
 
-impl<N: Lane, const B: usize, const CONSTANT: usize> Kernel for Sum<'_, N, B, ALL, CONSTANT> {
-    type Output = CacheAligned<BatchSums<Batch<N, ALL>>>;
+impl<N: Lane, const B: usize, const CONSTANT: usize> Kernel for Sum<'_, N, B, CONSTANT> {
+    type Output = CacheAligned<BatchSums<Batch<N, ROWS>>>;
 
     #[inline(always)]
     fn run<L: Lane>(self) -> Self::Output {
         let Self(series, k) = self;
         let mut sums = BatchSums::new();
         if level() == Level::Avx512 {
-            series.add_products::<CONSTANT, 0, ALL>(k, &mut sums);
+            series.add_products::<CONSTANT, 0, ROWS>(k, &mut sums);
         } else {
             series.add_products::<CONSTANT, 0, HALF>(k, &mut sums);
             series.add_products::<CONSTANT, HALF, HALF>(k, &mut sums);

@@ -5,7 +5,7 @@ use std::ops::{ControlFlow, Range};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use super::batch_series::BatchSeries;
+use super::batch_series::{BatchSeries, ROWS};
 use super::double_double::DoubleDoubleSeries;
 use super::driver::{Job, SampleSink, Settings, drive};
 use super::equations::{PiecewiseEquations, Precision, parts};
@@ -369,9 +369,6 @@ fn prepare_jobs<'a, X: Precision<Variables = Fixed>>(
         prepare_job(&task, terms, run.insert(Run::at_start(&task, End::Stopped)))
     })
 }
-
-/// The number of motions side by side: a register of the widest machines.
-const ROWS: usize = 8;
 
 /// Runs motions one after the other in double-double.
 struct InDoubleDouble<'a, 'b> {
