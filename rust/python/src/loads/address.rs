@@ -82,23 +82,7 @@ impl Compiled {
     /// What the function says at a time and a state; the rates of its own states, which are `own`, into `rates`.
     #[inline]
     pub(super) fn call(&self, t: f64, phase: &Phase, own: &[f64], rates: &mut [f64]) -> Wrench {
-        // Most have no states of their own: to set so many zeros takes as long as a small function.
-        if own.is_empty() {
-            self.call_with::<13, 6>(t, phase, own, rates)
-        } else {
-            self.call_with::<{ 13 + MOST_STATES }, { 6 + MOST_STATES }>(t, phase, own, rates)
-        }
-    }
-
-    #[inline]
-    fn call_with<const IN: usize, const OUT: usize>(
-        &self,
-        t: f64,
-        phase: &Phase,
-        own: &[f64],
-        rates: &mut [f64],
-    ) -> Wrench {
-        let (mut state, mut out) = ([0.0; IN], [0.0; OUT]);
+        let (mut state, mut out) = ([0.0; 13 + MOST_STATES], [0.0; 6 + MOST_STATES]);
         state[..13].copy_from_slice(&phase.numbers());
         state[13..13 + own.len()].copy_from_slice(own);
         // SAFETY: whoever passed the address to `loads.compiled` states that a function of this signature lives there, which
