@@ -9,8 +9,8 @@ export CARGO_TERM_COLOR ?= auto
 INSTALL := $(BIN)/python -m pip install --quiet --no-compile
 export PYTHONDONTWRITEBYTECODE :=
 
-# Extension and tests of the core share what is compiled: same features, and the profile `editable`.
-SHARED := --features polhode/serde
+# Extension and tests of the core share what is compiled: same features, and the profile `editable`. For this machine alone.
+SHARED := --features polhode/serde,polhode/native-levels
 
 RUST := Cargo.toml Cargo.lock pyproject.toml $(shell find rust -name target -prune -o \( -name '*.rs' -o -name Cargo.toml \) -print)
 

@@ -198,7 +198,7 @@ fn read_event(
         ));
     }
     let slots = load.slots();
-    let Some(slot) = slots.iter().find(|slot| slot.name == name) else {
+    let Some(slot) = slots.iter().find(|slot| *slot.name == *name) else {
         let known: Vec<_> = slots
             .iter()
             .map(|slot| format!("{:?}", slot.name))
@@ -254,7 +254,7 @@ fn read_event(
 fn read_pulse(event: &Bound<'_, PyAny>, number: i64, load: &PyLoad) -> PyResult<EventTrigger> {
     let (_, name): (String, String) = event.getattr("_of_load")?.extract()?;
     let (slots, pulses) = (load.slots(), format!("{name}_pulse"));
-    let find = |name: &str| slots.iter().find(|slot| slot.name == name);
+    let find = |name: &str| slots.iter().find(|slot| *slot.name == *name);
     let (Some(slot), Some(_)) = (find(&name), find(&pulses)) else {
         return Err(PyValueError::new_err(format!(
             "events: Event.pulse asks for thrusters with the name {name:?}; the load has none, as loads.thrusters(..., name={name:?}) \
@@ -283,7 +283,7 @@ pub(crate) struct EventCalls<'a, 'py> {
 
 /// The states of the load under which a body is simulated.
 pub(crate) struct States<'a> {
-    pub(crate) slots: Vec<Slot>,
+    pub(crate) slots: &'a [Slot],
     pub(crate) terms: &'a [Term],
 }
 

@@ -64,7 +64,7 @@ pub(crate) fn motion_sensitivity<'py>(
         given: load
             .slots()
             .iter()
-            .flat_map(|slot| vec![given.contains(&slot.name); slot.count])
+            .flat_map(|slot| vec![given.iter().any(|name| **name == *slot.name); slot.count])
             .collect(),
         load,
         times: &times,

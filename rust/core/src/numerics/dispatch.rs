@@ -6,7 +6,8 @@
 //! with `unsafe` in it: calling a function compiled for an instruction set asserts that the machine has it.
 //!
 //! With `--cfg baseline_alone` there is no other level: kernels compile in a third of the time, for measuring coverage. Nor
-//! is there in the unit tests of this crate; those in `tests`, and of the package, run the levels of the machine.
+//! is there in the unit tests of this crate; those in `tests`, and of the package, run the levels of the machine. With the feature
+//! `native-levels` the level AVX-512 is there only if the machine that compiles has it.
 
 use std::fmt;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -54,7 +55,7 @@ impl Level {
                     && is_x86_feature_detected!("bmi2")
                     && is_x86_feature_detected!("lzcnt")
             }
-            #[cfg(all(target_arch = "x86_64", not(any(baseline_alone, test))))]
+            #[cfg(all(target_arch = "x86_64", not(any(baseline_alone, without_avx512, test))))]
             Self::Avx512 => {
                 Self::Avx2.is_available()
                     && is_x86_feature_detected!("avx512f")
@@ -63,7 +64,12 @@ impl Level {
                     && is_x86_feature_detected!("avx512vl")
             }
             #[cfg(not(all(target_arch = "x86_64", not(any(baseline_alone, test)))))]
-            Self::Avx2 | Self::Avx512 => false,
+            Self::Avx2 => false,
+            #[cfg(not(all(
+                target_arch = "x86_64",
+                not(any(baseline_alone, without_avx512, test))
+            )))]
+            Self::Avx512 => false,
         }
     }
 
@@ -122,7 +128,7 @@ pub fn set_level(level: Level) -> bool {
 #[inline]
 pub fn dispatch<K: Kernel>(kernel: K) -> K::Output {
     match level() {
-        #[cfg(all(target_arch = "x86_64", not(any(baseline_alone, test))))]
+        #[cfg(all(target_arch = "x86_64", not(any(baseline_alone, without_avx512, test))))]
         #[expect(
             unsafe_code,
             reason = "`level` is only ever a level whose instructions were detected"
@@ -152,7 +158,7 @@ fn avx2<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<Double<true>>()
 }
 
-#[cfg(all(target_arch = "x86_64", not(any(baseline_alone, test))))]
+#[cfg(all(target_arch = "x86_64", not(any(baseline_alone, without_avx512, test))))]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw,avx2,fma,bmi1,bmi2,lzcnt")]
 fn avx512<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<Double<true>>()

@@ -1,5 +1,6 @@
 //! A load at work on a body.
 
+use std::mem::take;
 use std::ops::Range;
 
 use nalgebra::Vector3;
@@ -195,6 +196,8 @@ pub(crate) struct ActingLoad<'a, 'py> {
     controllers: Vec<LoadFunctions<'a>>,
     /// For each of the analytic terms the number of the controller that its motor follows.
     follows: Vec<Option<usize>>,
+    /// What the controllers asked for last; kept so that no evaluation makes room for it.
+    torques: Vec<Vector3<f64>>,
     /// The states by name, where Python is called with them.
     slots: Vec<Slot>,
     /// The numbers of the first states of functions and of controllers. Those of the analytic terms come first; then those of functions:
@@ -227,6 +230,7 @@ impl<'a, 'py> ActingLoad<'a, 'py> {
             first_of_controllers: first_of_functions + functions.states(),
             controllers: controllers.into_iter().map(LoadFunctions::new).collect(),
             follows,
+            torques: Vec::new(),
             analytic: Analytic::new(terms, subject),
             load,
             py,
@@ -241,15 +245,17 @@ impl<'a, 'py> ActingLoad<'a, 'py> {
         }
     }
 
-    /// What the controllers ask of the motors, as torques on the body; the rates of their states into `rates`, where there is room.
+    /// What the controllers ask of the motors, as torques on the body, into `all`; the rates of their states into `rates`, where there is
+    /// room.
     fn commands(
         &self,
         t: f64,
         phase: &Phase,
         mut first: usize,
         rates: &mut [f64],
-    ) -> Result<Vec<Vector3<f64>>, Fault> {
-        let mut all = Vec::with_capacity(self.controllers.len());
+        all: &mut Vec<Vector3<f64>>,
+    ) -> Result<(), Fault> {
+        all.clear();
         for one in &self.controllers {
             let mut sum = Wrench::default();
             one.add(&self.call(t, phase), first, rates, &mut sum)?;
@@ -263,7 +269,7 @@ impl<'a, 'py> ActingLoad<'a, 'py> {
             }
             all.push(sum.torque);
         }
-        Ok(all)
+        Ok(())
     }
 
     fn call<'s>(&'s self, t: f64, phase: &'s Phase) -> Call<'s, 'py> {
@@ -355,9 +361,10 @@ impl Load for ActingLoad<'_, '_> {
             return self.analytic.over_limit(wheel, t, phase);
         }
         // What fails here fails in the equations too, which say so.
-        let Ok(torques) = self.commands(t, phase, self.first_of_controllers, &mut []) else {
+        let (first, torques) = (self.first_of_controllers, &mut Vec::new());
+        if self.commands(t, phase, first, &mut [], torques).is_err() {
             return f64::NAN;
-        };
+        }
         let mut analytic = self.analytic.clone();
         for (term, follows) in self.follows.iter().enumerate() {
             if let Some(number) = follows {
@@ -380,8 +387,10 @@ impl Load for ActingLoad<'_, '_> {
     #[inline]
     fn act(&mut self, t: f64, phase: &Phase, rates: &mut [f64]) -> Result<Wrench, Fault> {
         if !self.controllers.is_empty() {
-            let torques = self.commands(t, phase, self.first_of_controllers, rates)?;
+            let mut torques = take(&mut self.torques);
+            self.commands(t, phase, self.first_of_controllers, rates, &mut torques)?;
             self.command(&torques);
+            self.torques = torques;
         }
         let mut sum = self.analytic.act(t, phase, rates)?;
         let first = self.first_of_functions;
@@ -527,7 +536,7 @@ impl PyLoad {
     fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let named = PyDict::new(py);
         for slot in self.slots() {
-            named.set_item(slot.name, slot.count)?;
+            named.set_item(&*slot.name, slot.count)?;
         }
         Ok(named)
     }
@@ -546,22 +555,12 @@ pub(crate) fn carried_along(
             .get(first..first + carried.count())
             .unwrap_or_default();
         first += carried.count();
-        let own = own_of(carried, mine, t, omega);
+        let mut own = mine.to_vec();
+        if carried.count() > 0 {
+            carried.resume_states(&mut own, t, omega);
+        }
         momentum += carried.momentum(&own, omega);
         energy += carried.energy(&own, omega);
     }
     (momentum, energy)
-}
-
-fn own_of(
-    carried: &dyn CarriedMomentum,
-    reported: &[f64],
-    t: f64,
-    omega: &Vector3<f64>,
-) -> Vec<f64> {
-    if carried.count() == 0 {
-        Vec::new()
-    } else {
-        carried.resume_states(reported, t, omega)
-    }
 }

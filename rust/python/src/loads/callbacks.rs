@@ -1,5 +1,7 @@
 //! Loads that are Python functions.
 
+use std::sync::Arc;
+
 use nalgebra::Vector3;
 use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use polhode::motion::attitude::components;
@@ -452,7 +454,7 @@ pub(super) fn check_name(name: &str) -> PyResult<()> {
 /// The states of one part of a load among those of all.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Slot {
-    pub(crate) name: String,
+    pub(crate) name: Arc<str>,
     pub(crate) first: usize,
     pub(crate) count: usize,
 }
@@ -481,7 +483,7 @@ impl<'a> Named<'a> {
     pub(crate) fn dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
         for slot in self.slots {
-            dict.set_item(&slot.name, PyArray1::from_slice(py, slot.of(&self.states)))?;
+            dict.set_item(&*slot.name, PyArray1::from_slice(py, slot.of(&self.states)))?;
         }
         Ok(dict)
     }
@@ -494,8 +496,7 @@ pub(crate) fn report_states(terms: &[Term], phase: &Phase) -> Vec<f64> {
     for carried in terms.iter().filter_map(Term::carried) {
         let mine = first..first + carried.count();
         if let Some(own) = states.get_mut(mine.clone()) {
-            let told = carried.report_states(own, &phase.omega);
-            own.copy_from_slice(&told);
+            carried.report_states(own, &phase.omega);
         }
         first = mine.end;
     }

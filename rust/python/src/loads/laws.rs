@@ -19,8 +19,8 @@ use super::pickle_recipe::recipe;
 use super::registry::register;
 use super::wheel::controller_terms;
 use crate::arrays::{
-    as_array, list_floats, read, read_list, read_scalar, samples, try_rows, try_series, write,
-    write_of,
+    as_array, copy_of, list_floats, read, read_list, read_scalar, samples, try_rows, try_series,
+    write, write_of,
 };
 use crate::attitudes::read_attitude;
 use crate::errors::to_py;
@@ -97,7 +97,7 @@ pub(crate) fn feedback(
     })?;
     let arguments = (write(py, &stiffness)?, write(py, &damping)?, kept);
     let recipe = recipe(py, "feedback", arguments)?;
-    Ok(PyLoad::one(LoadPart::Term(terms), recipe))
+    Ok(PyLoad::one(LoadPart::Term(terms.into()), recipe))
 }
 
 register!(Feedback by feedback);
@@ -183,8 +183,7 @@ fn as_given<'py>(target: Option<&Bound<'py, PyAny>>) -> PyResult<Option<Bound<'p
     } else {
         target.clone()
     };
-    let numpy = crate::arrays::numpy(target.py())?;
-    numpy.call_method1("array", (numbers, "float64")).map(Some)
+    copy_of(&numbers).map(Some)
 }
 
 // The functions that make loads of fields: of gravity along an orbit, and magnetic ones.
@@ -248,7 +247,7 @@ pub(crate) fn gravity_gradient(
             GravityGradient::along(number[m], paths[p].clone()).map(Term::GravityGradient)
         })?;
         let recipe = recipe(py, "gravity_gradient", (mu.clone(),))?;
-        return Ok(PyLoad::one(LoadPart::Term(terms), recipe));
+        return Ok(PyLoad::one(LoadPart::Term(terms.into()), recipe));
     }
     let (Some(position), Some(velocity)) = (position, velocity) else {
         return Err(PyTypeError::new_err(
@@ -270,7 +269,7 @@ pub(crate) fn gravity_gradient(
         epoch,
     );
     let recipe = recipe(py, "gravity_gradient", arguments)?;
-    Ok(PyLoad::one(LoadPart::Term(terms), recipe))
+    Ok(PyLoad::one(LoadPart::Term(terms.into()), recipe))
 }
 
 register!(GravityGradient by gravity_gradient);
@@ -386,27 +385,29 @@ pub(crate) fn magnetic(
         }
     })?;
     // Arrays are copied; a field along an orbit never changes, nor does a controller.
-    let numpy = crate::arrays::numpy(py)?;
-    let kept = |given: &Bound<'_, PyAny>| -> PyResult<Py<PyAny>> {
-        Ok(numpy.call_method1("array", (given, "float64"))?.unbind())
-    };
     let field = if field.hasattr(intern!(py, "orbit"))? {
-        field.clone().unbind()
+        field.clone()
     } else {
-        kept(field)?
+        copy_of(field)?
     };
     let dipole = if controller.is_some() {
-        dipole.clone().unbind()
+        dipole.clone()
     } else {
-        kept(dipole)?
+        copy_of(dipole)?
     };
     let options = PyDict::new(py);
-    options.set_item("gain", gain.map(&kept).transpose()?)?;
-    options.set_item("times", times.map(&kept).transpose()?)?;
-    options.set_item("dipole_times", dipole_times.map(&kept).transpose()?)?;
-    options.set_item("max_dipole", max_dipole.map(kept).transpose()?)?;
+    for (name, given) in [
+        (intern!(py, "gain"), gain),
+        (intern!(py, "times"), times),
+        (intern!(py, "dipole_times"), dipole_times),
+        (intern!(py, "max_dipole"), max_dipole),
+    ] {
+        if let Some(given) = given {
+            options.set_item(name, copy_of(given)?)?;
+        }
+    }
     let recipe = recipe(py, "magnetic", (dipole, field, options))?;
-    let mut load = PyLoad::one(LoadPart::Term(terms), recipe);
+    let mut load = PyLoad::one(LoadPart::Term(terms.into()), recipe);
     if let Some(controller) = controller.filter(|one| !one.get().is_analytic())
         && let Some(part) = load.parts.first_mut()
     {
@@ -575,14 +576,10 @@ pub(crate) fn thrusters(
     }
     let firing = Firing::new(set, command, times)?;
     let options = PyDict::new(py);
-    let copy = |given: &Bound<'_, PyAny>| -> PyResult<Py<PyAny>> {
-        let array = crate::arrays::numpy(py)?.call_method1("array", (given, "float64"))?;
-        Ok(array.unbind())
-    };
     if firing.calls_python() {
         options.set_item("command", command)?;
     } else {
-        options.set_item("command", copy(command)?)?;
+        options.set_item("command", copy_of(command)?)?;
     }
     options.set_item("period", period)?;
     for (what, given) in [
@@ -592,9 +589,14 @@ pub(crate) fn thrusters(
     ] {
         options.set_item(what, given)?;
     }
-    options.set_item("times", times.map(copy).transpose()?)?;
+    options.set_item("times", times.map(copy_of).transpose()?)?;
     options.set_item("name", name)?;
-    let arguments = (write(py, &at)?, write(py, &along)?, copy(forces)?, options);
+    let arguments = (
+        write(py, &at)?,
+        write(py, &along)?,
+        copy_of(forces)?,
+        options,
+    );
     let recipe = recipe(py, "thrusters", arguments)?;
     Ok(PyLoad::one(LoadPart::Thrusters(firing), recipe).with_name(name))
 }
@@ -837,7 +839,7 @@ pub(crate) fn constant_torque(
     let vector: Stack<Vector3<f64>> = read(vector, "vector")?;
     let terms = try_rows(py, &vector, |vector| Term::constant_torque(vector, axes))?;
     let recipe = recipe(py, "constant_torque", (write(py, &vector)?, frame))?;
-    Ok(PyLoad::one(LoadPart::Term(terms), recipe))
+    Ok(PyLoad::one(LoadPart::Term(terms.into()), recipe))
 }
 
 register!(ConstantTorque by constant_torque);
@@ -887,7 +889,7 @@ pub(crate) fn constant_force(
     })?;
     let point = point.map(|point| write(py, &point)).transpose()?;
     let recipe = recipe(py, "constant_force", (write(py, &vector)?, frame, point))?;
-    Ok(PyLoad::one(LoadPart::Term(terms), recipe))
+    Ok(PyLoad::one(LoadPart::Term(terms.into()), recipe))
 }
 
 register!(ConstantForce by constant_force);
@@ -916,7 +918,7 @@ pub(crate) fn uniform_gravity(py: Python<'_>, gravity: &Bound<'_, PyAny>) -> PyR
     let gravity: Stack<Vector3<f64>> = read(gravity, "gravity")?;
     let terms = try_rows(py, &gravity, Term::uniform_gravity)?;
     let recipe = recipe(py, "uniform_gravity", (write(py, &gravity)?,))?;
-    Ok(PyLoad::one(LoadPart::Term(terms), recipe))
+    Ok(PyLoad::one(LoadPart::Term(terms.into()), recipe))
 }
 
 register!(UniformGravity by uniform_gravity);
@@ -960,7 +962,7 @@ pub(crate) fn damping(
         Damping::new(&linear[d], &quadratic[e]).map(Term::Damping)
     })?;
     let recipe = recipe(py, "damping", (write(py, &linear)?, write(py, &quadratic)?))?;
-    Ok(PyLoad::one(LoadPart::Term(terms), recipe))
+    Ok(PyLoad::one(LoadPart::Term(terms.into()), recipe))
 }
 
 register!(Damping by damping);
@@ -1016,7 +1018,7 @@ pub(crate) fn sampled(
         frame,
     );
     let recipe = recipe(py, "sampled", arguments)?;
-    Ok(PyLoad::one(LoadPart::Term(terms), recipe))
+    Ok(PyLoad::one(LoadPart::Term(terms.into()), recipe))
 }
 
 register!(Sampled by sampled);
@@ -1120,7 +1122,7 @@ pub(crate) fn rotor(py: Python<'_>, momentum: &Bound<'_, PyAny>) -> PyResult<PyL
     let momentum: Stack<Vector3<f64>> = read(momentum, "momentum")?;
     let terms = try_rows(py, &momentum, |h| Rotor::new(h).map(Term::Rotor))?;
     let recipe = recipe(py, "rotor", (write(py, &momentum)?,))?;
-    Ok(PyLoad::one(LoadPart::Term(terms), recipe))
+    Ok(PyLoad::one(LoadPart::Term(terms.into()), recipe))
 }
 
 register!(Rotor by rotor);
@@ -1176,7 +1178,7 @@ pub(crate) fn slug(
     })?;
     let number = |stack: &Stack<f64>| write_of(py, stack, |x| *x);
     let recipe = recipe(py, "slug", (number(&inertia)?, number(&damping)?, name))?;
-    Ok(PyLoad::one(LoadPart::Term(terms), recipe).with_name(name))
+    Ok(PyLoad::one(LoadPart::Term(terms.into()), recipe).with_name(name))
 }
 
 register!(Slug by slug);

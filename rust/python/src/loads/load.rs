@@ -1,6 +1,7 @@
 //! The class `Load`: a sum of terms, and what Python's operators do with it.
 
 use std::cell::RefCell;
+use std::iter::repeat_n;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
@@ -17,7 +18,7 @@ use super::address::Compiled;
 use super::callbacks::{Callback, MOST_STATES, Slot, WithStates, report_states};
 use super::firing::Firing;
 use super::pickle_recipe::{describe, recipe, unfold};
-use crate::arrays::{floats, numpy, read_list, read_scalar, try_rows};
+use crate::arrays::{copy_of, floats, read_list, read_scalar, try_rows};
 use crate::errors::to_py;
 use crate::indexing::{picked_by, to_index};
 use crate::interrupt::Beat;
@@ -87,6 +88,9 @@ impl PyLoad {
 
     /// The shape to which the terms broadcast.
     pub(super) fn stack_shape(&self) -> PyResult<Vec<usize>> {
+        if self.parts.iter().all(|part| part.shape().is_empty()) {
+            return Ok(Vec::new());
+        }
         self.parts.iter().try_fold(Vec::new(), |shape, part| {
             Ok(Broadcast::of(["load", "load"], [&shape, part.shape()])?.shape)
         })
@@ -104,6 +108,9 @@ impl PyLoad {
             LoadPart::Term(terms) => Some(terms),
             _ => None,
         });
+        if shape.is_empty() {
+            return Ok(Stack::one(analytic.map(|terms| terms[0].clone()).collect()));
+        }
         let parts = analytic
             .map(|terms| {
                 Ok((
@@ -214,7 +221,8 @@ impl PyLoad {
                 && terms.rows.iter().any(Term::needs_epoch)
             {
                 part.recipe = recipe(py, "_with_epoch", (&part.recipe, t))?;
-                part.acts = LoadPart::Term(terms.map(py, |term| term.clone().with_epoch(t))?);
+                let begun = terms.map(py, |term| term.clone().with_epoch(t))?;
+                part.acts = LoadPart::Term(begun.into());
             }
             let begins = match &mut part.acts {
                 LoadPart::WithStates(one) if one.needs_epoch() => {
@@ -282,7 +290,7 @@ pub(super) fn schedule_load(
     let pairs: Stack<[f64; 2]> = read_list(windows, "windows", "n")?;
     let pairs: Vec<(f64, f64)> = pairs.rows.iter().map(|&[on, off]| (on, off)).collect();
     let opened = Windows::new(&pairs).map_err(|error| to_py(py, &error))?;
-    let kept = numpy(py)?.call_method1("array", (windows, "float64"))?;
+    let kept = copy_of(windows)?;
     load.map(|part| part.schedule(py, &opened, &kept))
 }
 
@@ -300,7 +308,8 @@ pub(super) struct Part {
 }
 
 pub(super) enum LoadPart {
-    Term(Stack<Term>),
+    /// Shared by the sums that it is a part of.
+    Term(Arc<Stack<Term>>),
     Callback(Callback),
     Compiled(Compiled),
     WithStates(WithStates),
@@ -324,7 +333,7 @@ impl Part {
     pub(super) fn clone_ref(&self, py: Python<'_>) -> PyResult<Self> {
         Ok(Self {
             acts: match &self.acts {
-                LoadPart::Term(terms) => LoadPart::Term(terms.map(py, Term::clone)?),
+                LoadPart::Term(terms) => LoadPart::Term(Arc::clone(terms)),
                 LoadPart::Callback(callback) => LoadPart::Callback(callback.clone_ref(py)),
                 LoadPart::Compiled(compiled) => LoadPart::Compiled(compiled.clone_ref(py)),
                 LoadPart::WithStates(one) => LoadPart::WithStates(one.clone_ref(py)),
@@ -370,7 +379,9 @@ impl Part {
         self.check_changes(py, "scaled")?;
         let mut scaled = self.clone_ref(py)?;
         match &mut scaled.acts {
-            LoadPart::Term(terms) => *terms = try_rows(py, terms, |term| term.scaled(factor))?,
+            LoadPart::Term(terms) => {
+                *terms = try_rows(py, terms, |term| term.scaled(factor))?.into();
+            }
             LoadPart::Callback(callback) => callback.factor *= factor,
             LoadPart::Compiled(compiled) => compiled.factor *= factor,
             LoadPart::WithStates(_) | LoadPart::Thrusters(_) => (),
@@ -407,9 +418,10 @@ impl Part {
         if let LoadPart::Term(terms) = &part.acts {
             let grid = Broadcast::of(["load", "load"], [shape, &terms.shape])?;
             let taken = Broadcast::of(["key"], [picked.shape()])?;
-            part.acts = LoadPart::Term(taken.try_map(py, |[k]| {
+            let picked = taken.try_map(py, |[k]| {
                 Ok(terms[grid.operands(to_index(rows[k]))[1]].clone())
-            })?);
+            })?;
+            part.acts = LoadPart::Term(picked.into());
         }
         part.recipe = recipe(py, "_picked", (&self.recipe, shape.to_vec(), key))?;
         Ok(part)
@@ -431,7 +443,7 @@ impl Part {
         };
         match &mut part.acts {
             LoadPart::Term(terms) => {
-                *terms = try_rows(py, terms, |term| term.clone().schedule(windows))?;
+                *terms = try_rows(py, terms, |term| term.clone().schedule(windows))?.into();
             }
             LoadPart::Callback(callback) => callback.windows = within(&callback.windows),
             LoadPart::Compiled(compiled) => compiled.windows = within(&compiled.windows),
@@ -634,10 +646,11 @@ impl PyLoad {
                 if of_kind != kind || count == 0 {
                     continue;
                 }
-                let name = unused_name(part.name.as_deref().unwrap_or("states"), &slots);
-                let pulses = (kind == 3).then(|| format!("{name}_pulse"));
+                let name = part.name.clone().unwrap_or_else(|| "states".into());
+                let name = unused_name(name, &slots);
+                let pulses = (kind == 3).then(|| format!("{name}_pulse").into());
                 for name in [Some(name), pulses].into_iter().flatten() {
-                    let name = unused_name(&name, &slots);
+                    let name = unused_name(name, &slots);
                     slots.push(Slot { name, first, count });
                     first += count;
                 }
@@ -645,7 +658,7 @@ impl PyLoad {
         }
         for controller in self.controllers().0 {
             for slot in controller.slots() {
-                let (name, count) = (unused_name(&slot.name, &slots), slot.count);
+                let (name, count) = (unused_name(slot.name, &slots), slot.count);
                 slots.push(Slot { name, first, count });
                 first += count;
             }
@@ -665,10 +678,13 @@ impl PyLoad {
         let mut states = Vec::new();
         for carried in terms.iter().filter_map(Term::carried) {
             let mine = given.get(states.len()..states.len() + carried.count());
-            states.extend(match mine.filter(|mine| !mine.iter().any(|x| x.is_nan())) {
-                Some(mine) => carried.resume_states(mine, t, omega),
-                None => carried.begin(t, omega),
-            });
+            if let Some(mine) = mine.filter(|mine| !mine.iter().any(|x| x.is_nan())) {
+                let first = states.len();
+                states.extend_from_slice(mine);
+                carried.resume_states(&mut states[first..], t, omega);
+            } else {
+                states.extend(carried.begin(t, omega));
+            }
         }
         for initial in self.initial_of_functions() {
             for &value in initial {
@@ -693,34 +709,7 @@ impl PyLoad {
             internal_state: kept,
             ..Phase::nan()
         };
-        let kept = report_states(terms, &phase);
-        let sizes = (terms.iter().filter_map(Term::carried))
-            .flat_map(|carried| vec![carried.size() * omega.norm(); carried.count()]);
-        for ((value, kept), size) in given.iter().zip(kept).zip(sizes) {
-            let large = value.abs().max(kept.abs()).max(size);
-            if (value - kept).abs() > SAME * large {
-                return Err(PyValueError::new_err(format!(
-                    "states: a wheel whose speed is known has the momentum {kept:?} at t = {t:?}, got {value:?}; leave it out, or give \
-                     the wheel another speed"
-                )));
-            }
-        }
-        let mut first = 0;
-        for carried in terms.iter().filter_map(Term::carried) {
-            if let (Some((axis, inertia, most)), Some(momentum)) =
-                (carried.rate_limit(), phase.internal_state.get(first))
-            {
-                let rate = momentum / inertia - axis.dot(omega);
-                if rate.abs() > most * (1.0 + SAME) {
-                    return Err(PyValueError::new_err(format!(
-                        "states: a wheel has the rate {rate:?} at t = {t:?}, beyond its limit {most:?} (max_rate, or max_momentum divided \
-                         by its inertia); give it a larger limit, or another state"
-                    )));
-                }
-            }
-            first += carried.count();
-        }
-        Ok(())
+        check_start(terms, t, &phase, &report_states(terms, &phase), given)
     }
 
     /// The number of states of its own.
@@ -799,7 +788,7 @@ impl PyLoad {
             let name: String = key.extract().map_err(|_| {
                 PyTypeError::new_err(format!("states: names are strings, got {key}"))
             })?;
-            if !slots.iter().any(|slot| slot.name == name) {
+            if !slots.iter().any(|slot| *slot.name == *name) {
                 let known = if slots.is_empty() {
                     "the load has none".to_owned()
                 } else {
@@ -812,7 +801,7 @@ impl PyLoad {
         }
         let mut found = Stack::one(Vec::new());
         for slot in &slots {
-            let values = match given.get_item(&slot.name)? {
+            let values = match given.get_item(&*slot.name)? {
                 Some(values) => one(&values, slot, all)?,
                 None if all => {
                     return Err(PyTypeError::new_err(format!(
@@ -832,13 +821,50 @@ impl PyLoad {
     }
 }
 
+/// As [`PyLoad::check_given`], at a time and a state from which the load begins with the states `given`, and reports those that are `kept`.
+pub(crate) fn check_start(
+    terms: &[Term],
+    t: f64,
+    phase: &Phase,
+    kept: &[f64],
+    given: &[f64],
+) -> PyResult<()> {
+    let sizes = (terms.iter().filter_map(Term::carried))
+        .flat_map(|carried| repeat_n(carried.size() * phase.omega.norm(), carried.count()));
+    for ((value, kept), size) in given.iter().zip(kept).zip(sizes) {
+        let large = value.abs().max(kept.abs()).max(size);
+        if (value - kept).abs() > SAME * large {
+            return Err(PyValueError::new_err(format!(
+                "states: a wheel whose speed is known has the momentum {kept:?} at t = {t:?}, got {value:?}; leave it out, or give \
+                 the wheel another speed"
+            )));
+        }
+    }
+    let mut first = 0;
+    for carried in terms.iter().filter_map(Term::carried) {
+        if let (Some((axis, inertia, most)), Some(momentum)) =
+            (carried.rate_limit(), phase.internal_state.get(first))
+        {
+            let rate = momentum / inertia - axis.dot(&phase.omega);
+            if rate.abs() > most * (1.0 + SAME) {
+                return Err(PyValueError::new_err(format!(
+                    "states: a wheel has the rate {rate:?} at t = {t:?}, beyond its limit {most:?} (max_rate, or max_momentum divided \
+                     by its inertia); give it a larger limit, or another state"
+                )));
+            }
+        }
+        first += carried.count();
+    }
+    Ok(())
+}
+
 /// A name that no slot has yet: the one that is asked for, or with the first number that makes it one.
-fn unused_name(name: &str, slots: &[Slot]) -> String {
-    let is_taken = |name: &str| slots.iter().any(|slot| slot.name == name);
-    let mut found = name.to_owned();
+fn unused_name(name: Arc<str>, slots: &[Slot]) -> Arc<str> {
+    let is_taken = |name: &Arc<str>| slots.iter().any(|slot| slot.name == *name);
+    let mut found = Arc::clone(&name);
     let mut number = 2;
     while is_taken(&found) {
-        found = format!("{name}_{number}");
+        found = format!("{name}_{number}").into();
         number += 1;
     }
     found

@@ -31,6 +31,6 @@ mod wheel;
 pub(crate) use acting::{ActingLoad, Fault, carried_along};
 pub(crate) use callbacks::{Named, Slot, report_states};
 pub(crate) use laws::{callback, compiled, schedule, thrusters, torque_callback, with_states};
-pub(crate) use load::PyLoad;
+pub(crate) use load::{PyLoad, check_start};
 pub(crate) use registry::declare_laws;
 pub(crate) use wheel::{PyWheel, Turns, wheels};

@@ -12,7 +12,9 @@ use pyo3::types::{PyDict, PyList, PyTuple};
 use super::load::{LoadPart, PyLoad};
 use super::pickle_recipe::recipe;
 use super::registry::register;
-use crate::arrays::{floats, list_floats, read, read_list, read_scalar, try_rows, try_series};
+use crate::arrays::{
+    copy_of, floats, list_floats, read, read_list, read_scalar, try_rows, try_series,
+};
 use crate::errors::{at_row, new, to_py};
 use crate::interrupt::{Beat, watched};
 use crate::meshes::{read_mesh, with_mesh};
@@ -165,12 +167,8 @@ pub(crate) fn panels(
         Panels::new(surfaces[c].clone(), streams[s].clone(), levels[l].clone()).map(Term::Panels)
     })?;
     // Arrays are copied.
-    let numpy = crate::arrays::numpy(py)?;
-    let kept = |given: &Bound<'_, PyAny>| -> PyResult<Py<PyAny>> {
-        Ok(numpy.call_method1("array", (given, "float64"))?.unbind())
-    };
     let options = PyDict::new(py);
-    options.set_item("coefficients", kept(coefficients)?)?;
+    options.set_item("coefficients", copy_of(coefficients)?)?;
     for (name, given) in [
         ("direction", direction),
         ("pressure", pressure),
@@ -178,10 +176,10 @@ pub(crate) fn panels(
         ("velocity", velocity),
         ("times", times),
     ] {
-        options.set_item(name, given.map(kept).transpose()?)?;
+        options.set_item(name, given.map(copy_of).transpose()?)?;
     }
     let recipe = recipe(py, "panels", (kept_surface, law, options))?;
-    Ok(PyLoad::one(LoadPart::Term(terms), recipe))
+    Ok(PyLoad::one(LoadPart::Term(terms.into()), recipe))
 }
 
 register!(Panels by panels);

@@ -17,8 +17,8 @@ use super::load::{LoadPart, PyLoad};
 use super::pickle_recipe::{recipe, unfold};
 use super::registry::register;
 use crate::arrays::{
-    floats, list_floats, numpy, read, read_list, read_scalar, try_rows, write, write_numbers,
-    write_of,
+    copy_of, floats, list_floats, numpy, read, read_list, read_scalar, try_rows, write,
+    write_numbers, write_of,
 };
 use crate::errors::to_py;
 use crate::indexing::{picked_by, to_index};
@@ -288,7 +288,7 @@ impl PyWheel {
         };
         numbers.acting(
             py,
-            PyLoad::one(LoadPart::Term(terms), recipe).with_name(name),
+            PyLoad::one(LoadPart::Term(terms.into()), recipe).with_name(name),
         )
     }
 
@@ -686,7 +686,7 @@ pub(crate) fn wheel(
     let moment = write_of(py, &inertia, |x| *x)?;
     let arguments = (write(py, &axis)?, moment, number(rate, &rates)?, options);
     let recipe = recipe(py, "wheel", arguments)?;
-    let mut load = PyLoad::one(LoadPart::Term(terms), recipe).with_name(name);
+    let mut load = PyLoad::one(LoadPart::Term(terms.into()), recipe).with_name(name);
     if let Some(Ok(controller)) = torque.map(|torque| torque.cast::<PyLoad>())
         && !controller.get().is_analytic()
         && let Some(part) = load.parts.first_mut()
@@ -717,7 +717,7 @@ fn keep<'py>(given: Option<&Bound<'py, PyAny>>) -> PyResult<Option<Bound<'py, Py
             if given.is_instance_of::<PyLoad>() {
                 return Ok(given.clone());
             }
-            numpy(given.py())?.call_method1("array", (given, "float64"))
+            copy_of(given)
         })
         .transpose()
 }

@@ -77,7 +77,7 @@ impl Outcome {
             let values = found.flat_map(|(_, crossing)| slot.of(&crossing.phase.internal_state));
             let values = PyArray1::from_vec(py, values.copied().collect());
             named.set_item(
-                &slot.name,
+                &*slot.name,
                 values.reshape([self.crossings.len(), slot.count])?,
             )?;
         }
@@ -406,7 +406,7 @@ fn states<'py>(
                 out.extend(std::iter::repeat_n(f64::NAN, slot.count));
             })?;
         }
-        named.set_item(&slot.name, numbers.finish::<f64>(&shape)?)?;
+        named.set_item(&*slot.name, numbers.finish::<f64>(&shape)?)?;
     }
     Ok(named)
 }

@@ -282,10 +282,8 @@ impl Batch for Ensemble<'_> {
                 return row.roll(contact, gravity, &mut NoEvents::new());
             }
             return Python::attach(|py| {
-                let states = States {
-                    slots: self.load.slots(),
-                    terms,
-                };
+                let slots = &self.load.slots();
+                let states = States { slots, terms };
                 let events = &mut self.events.with_callbacks(py, states);
                 row.roll(contact, gravity, events)
             });
@@ -297,10 +295,8 @@ impl Batch for Ensemble<'_> {
             }
             CallbackPolicy::OnThisThread => Python::attach(|py| {
                 let load = ActingLoad::new(load, terms, subject, Some(py));
-                let states = States {
-                    slots: self.load.slots(),
-                    terms,
-                };
+                let slots = &self.load.slots();
+                let states = States { slots, terms };
                 self.integrate(row, load, &mut self.events.with_callbacks(py, states))
             }),
         }

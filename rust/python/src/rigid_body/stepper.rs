@@ -24,7 +24,7 @@ use crate::errors::to_py;
 use crate::events::{Functions, States};
 use crate::hints;
 use crate::interrupt::Interrupt;
-use crate::loads::{ActingLoad, Fault, PyLoad, Slot, carried_along, report_states};
+use crate::loads::{ActingLoad, Fault, PyLoad, Slot, carried_along, check_start, report_states};
 use crate::shape::tuple;
 use crate::stack::Stack;
 use crate::uncertain::{StartArguments, UncertainStart};
@@ -40,6 +40,12 @@ struct Acting {
     load: Py<PyLoad>,
     terms: Vec<Term>,
     slots: Vec<Slot>,
+}
+
+/// Where a step begins: the state, with the states of the load as the equations have them, and these as they are reported.
+struct Begun {
+    phase: Phase,
+    reported: Vec<f64>,
 }
 
 impl Acting {
@@ -62,6 +68,19 @@ impl Acting {
             slots: load.get().slots(),
             load,
         })
+    }
+
+    /// A step from time `t` and the state `now`, with these states of the load.
+    fn begin(&self, t: f64, now: &Phase, states: &[f64]) -> Begun {
+        let load = self.load.get();
+        let phase = Phase {
+            internal_state: load.initial_states(&self.terms, t, &now.omega, states),
+            ..*now
+        };
+        Begun {
+            reported: report_states(&self.terms, &phase),
+            phase,
+        }
     }
 
     fn carried(&self) -> impl Iterator<Item = &dyn CarriedMomentum> {
@@ -202,29 +221,28 @@ impl PyStepper {
         });
         let now = &self.samples[self.samples.len() - 1];
         if same {
-            let run = self.run(
-                py,
-                times,
-                &self.chain,
-                &self.acting,
-                &now.internal_state,
-                &self.events,
-            )?;
+            let begun = self.acting.begin(times[0], now, &now.internal_state);
+            let run = self.run(py, times, &self.chain, &self.acting, begun, &self.events)?;
             self.add(run);
             return self.state(py);
         }
         let next = Acting::new(py, load, self.times[0])?;
         let states = next.states_of(&self.acting, &now.internal_state)?;
-        next.load
-            .get()
-            .check_given(&next.terms, times[0], &now.omega, &states)?;
+        let begun = next.begin(times[0], now, &states);
+        check_start(
+            &next.terms,
+            times[0],
+            &begun.phase,
+            &begun.reported,
+            &states,
+        )?;
         let mut chain = self.chain.clone();
         let terms = next.load.get().is_analytic().then_some(&next.terms[..]);
         (chain.take(self.method, terms, next.carried())).map_err(|error| to_py(py, &error))?;
-        self.check_momentum(py, &chain, &next, &states)?;
+        self.check_momentum(py, &chain, &next, &begun)?;
         let mut events = self.events.clone_ref(py);
         events.aim(py, next.load.get(), &next.terms)?;
-        let run = self.run(py, times, &chain, &next, &states, &events)?;
+        let run = self.run(py, times, &chain, &next, begun, &events)?;
         if next.slots != self.acting.slots {
             self.slots.push((self.samples.len(), next.slots.clone()));
         }
@@ -249,7 +267,7 @@ impl PyStepper {
         } else {
             let named = PyDict::new(py);
             for slot in slots {
-                named.set_item(&slot.name, array(slot.of(&phase.internal_state)))?;
+                named.set_item(&*slot.name, array(slot.of(&phase.internal_state)))?;
             }
             Some(named)
         };
@@ -353,31 +371,27 @@ impl PyStepper {
         Ok([t, end])
     }
 
-    /// One step from the state now, with these states of the load, which are reported again after it.
+    /// One step. The states of the load are reported again after it.
     fn run(
         &self,
         py: Python<'_>,
         times: [f64; 2],
         chain: &Chain,
         acting: &Acting,
-        states: &[f64],
+        begun: Begun,
         events: &Functions,
     ) -> PyResult<Run<Fault>> {
         let Acting { load, terms, .. } = acting;
         let load = load.get();
         load.check_run(py, times[0], times[1])?;
-        let now = &self.samples[self.samples.len() - 1];
-        let initial = Phase {
-            internal_state: load.initial_states(terms, times[0], &now.omega, states),
-            ..now.clone()
-        };
+        let initial = begun.phase;
         let subject = chain.body_at_point(times[0]);
         let interrupt = Interrupt::new(None);
         let watch = &mut |done| interrupt.poll(Some(done));
         let run = if load.calls_python() || !events.is_empty() {
             let mut load = ActingLoad::new(load, terms, subject, Some(py));
             let states = States {
-                slots: acting.slots.clone(),
+                slots: &acting.slots,
                 terms,
             };
             chain.run(
@@ -440,18 +454,13 @@ impl PyStepper {
         py: Python<'_>,
         chain: &Chain,
         next: &Acting,
-        states: &[f64],
+        begun: &Begun,
     ) -> PyResult<()> {
-        let (t, now) = (self.t(), &self.samples[self.samples.len() - 1]);
-        let begun = Phase {
-            internal_state: (next.load.get()).initial_states(&next.terms, t, &now.omega, states),
-            ..now.clone()
-        };
-        let reported = report_states(&next.terms, &begun);
+        let (t, omega) = (self.t(), &begun.phase.omega);
         let of = self.carried[self.carried.len() - 1].0;
-        let (into, _) = carried_along(&next.terms, t, &now.omega, &reported);
+        let (into, _) = carried_along(&next.terms, t, omega, &begun.reported);
         let point = chain.body_at_point(t).point;
-        let spin = chain.body().inertia_about(&point) * now.omega;
+        let spin = chain.body().inertia_about(&point) * omega;
         if (into - of).norm() <= EQUAL_MOMENTA * (into.norm() + of.norm() + spin.norm()) {
             return Ok(());
         }

@@ -317,10 +317,8 @@ impl Load for Analytic<'_> {
                     side: switch.map_or_else(unsettled, |switch| switch.side),
                     command: self.commanded(number, t, phase, &mut asked),
                 };
-                if let Some(rates) = all_rates.split_off_mut(..carried.count()) {
-                    carried.rates(&now, mine, rates);
-                }
-                Wrench::couple(carried.torque(&now, mine))
+                let rates = all_rates.split_off_mut(..carried.count());
+                Wrench::couple(carried.torque(&now, mine, rates))
             } else if let Some(coils) = term.coils() {
                 let command = self.commanded(number, t, phase, &mut asked);
                 let idle = LawContext::without_command(&self.body, t, self.middle, phase);

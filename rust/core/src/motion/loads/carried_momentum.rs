@@ -26,18 +26,18 @@ pub trait CarriedMomentum {
         false
     }
 
-    /// The states as they are reported, of the same number: those of a wheel are its momentum `h = J (Ω + a·ω)`.
-    fn report_states(&self, state: &[f64], omega: &Vector3<f64>) -> Vec<f64>;
+    /// Replace the states by those that are reported: those of a wheel are its momentum `h = J (Ω + a·ω)`.
+    fn report_states(&self, states: &mut [f64], omega: &Vector3<f64>);
 
-    /// Its states where a motion starts at time `t` with `omega`, from those reported.
-    fn resume_states(&self, reported: &[f64], t: f64, omega: &Vector3<f64>) -> Vec<f64>;
+    /// Replace the states that are reported by those where a motion starts at time `t` with `omega`.
+    fn resume_states(&self, states: &mut [f64], t: f64, omega: &Vector3<f64>);
 
     /// The axis (not of unit length) and the moment J of what turns freely in the body: the equations of motion have the tensor
     /// `I − J a aᵀ`.
     fn turning(&self) -> Option<(Vector3<f64>, f64)>;
 
     /// The unit axis, the moment J and the torque of dry friction of a wheel with such friction in its bearing. Its first state is the
-    /// wheel's momentum; [`Self::torque`] and [`Self::rates`] leave the friction out.
+    /// wheel's momentum; [`Self::torque`] leaves the friction out.
     fn bearing(&self) -> Option<(Vector3<f64>, f64, f64)> {
         None
     }
@@ -69,14 +69,17 @@ pub trait CarriedMomentum {
     ) -> Vector3<f64> {
         let state = self.begin(t, &phase.omega);
         let idle = LawContext::without_command(body, t, t, phase);
-        self.torque(&LawContext { command, ..idle }, &state) - self.torque(&idle, &state)
+        self.torque(&LawContext { command, ..idle }, &state, None)
+            - self.torque(&idle, &state, None)
     }
 
-    /// The torque about the reference point that stands beside that tensor.
-    fn torque(&self, now: &LawContext<'_>, state: &[f64]) -> Vector3<f64>;
-
-    /// The rates of its states, into `rates`.
-    fn rates(&self, now: &LawContext<'_>, state: &[f64], rates: &mut [f64]);
+    /// The torque about the reference point that stands beside that tensor; the rates of its states into `rates`, where they are asked for.
+    fn torque(
+        &self,
+        now: &LawContext<'_>,
+        state: &[f64],
+        rates: Option<&mut [f64]>,
+    ) -> Vector3<f64>;
 
     /// Its momentum beside I ω.
     fn momentum(&self, state: &[f64], omega: &Vector3<f64>) -> Vector3<f64>;

@@ -1,5 +1,7 @@
 //! What is to be simulated, by which method and how accurately.
 
+use std::sync::Arc;
+
 use super::limits::{MOST_STEPS, check_times};
 use crate::error::{Error, all_finite, finite};
 use crate::mass::RigidBody;
@@ -56,7 +58,7 @@ pub struct Task<'a> {
     /// How accurately.
     pub tolerance: Tolerance,
     /// Principal moments and axes about the reference point of a body whose wheels turn freely, without what turns.
-    pub body_without_wheels: Option<Box<RefinedPrincipal>>,
+    pub body_without_wheels: Option<Arc<RefinedPrincipal>>,
 }
 
 impl<'a> Task<'a> {
@@ -160,7 +162,7 @@ impl<'a> Task<'a> {
             RefinedPrincipal::about(self.body, &self.body_at_point.point).without(&turning)?;
         Ok(Self {
             euler: EulerEquations::of_refined(&body_without_wheels),
-            body_without_wheels: Some(Box::new(body_without_wheels)),
+            body_without_wheels: Some(Arc::new(body_without_wheels)),
             ..self
         })
     }

@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 use std::slice;
+use std::sync::Arc;
 
 use nalgebra::Vector3;
 
@@ -50,16 +51,16 @@ pub struct Chain {
     body: RigidBody,
     reference_point: ReferencePoint,
     /// The wheels that turn freely (axis and moment), and the body without them.
-    without_wheels: Option<WithoutWheels>,
+    without_wheels: Option<Arc<WithoutWheels>>,
     method: Method,
     tolerance: Tolerance,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 struct WithoutWheels {
     turning: Vec<(Vector3<f64>, f64)>,
     euler: EulerEquations,
-    principal: Box<RefinedPrincipal>,
+    principal: Arc<RefinedPrincipal>,
 }
 
 impl Chain {
@@ -129,11 +130,11 @@ impl Chain {
             } else {
                 let point = &self.reference_point.body_at_point.point;
                 let principal = RefinedPrincipal::about(&self.body, point).without(&turning)?;
-                Some(WithoutWheels {
+                Some(Arc::new(WithoutWheels {
                     turning,
                     euler: EulerEquations::of_refined(&principal),
-                    principal: Box::new(principal),
-                })
+                    principal: Arc::new(principal),
+                }))
             };
         }
         self.method = method;
@@ -163,7 +164,7 @@ impl Chain {
         let mut task = plan.task(Some(&reference_point), 0, initial);
         if let Some(without) = &self.without_wheels {
             task.euler = without.euler;
-            task.body_without_wheels = Some(without.principal.clone());
+            task.body_without_wheels = Some(Arc::clone(&without.principal));
         }
         task.check_start()?;
         Ok(by_method(&task, load, events, watch))

@@ -128,9 +128,20 @@ pub(super) fn by_method<L: Load>(
     events: &mut dyn Events<Error = L::Error>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Run<L::Error> {
-    let task = &match task.clone().with_carried(load.carried().into_iter()) {
-        Ok(task) => task,
-        Err(error) => return Run::at_start(task, End::Failed(error.into())),
+    let carried = load.carried();
+    let has_equations =
+        task.body_without_wheels.is_some() && !task.initial.internal_state.is_empty();
+    let completed;
+    let task = if carried.is_empty() || has_equations {
+        task
+    } else {
+        match task.clone().with_carried(carried.into_iter()) {
+            Ok(task) => {
+                completed = task;
+                &completed
+            }
+            Err(error) => return Run::at_start(task, End::Failed(error.into())),
+        }
     };
     let has_events = !events.rules().is_empty();
     if let (Method::Taylor, Some(terms)) = (task.method, load.analytic()) {

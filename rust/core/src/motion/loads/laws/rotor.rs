@@ -116,23 +116,17 @@ impl CarriedMomentum for Rotor {
         Vec::new()
     }
 
-    fn report_states(&self, _: &[f64], _: &Vector3<f64>) -> Vec<f64> {
-        Vec::new()
-    }
+    fn report_states(&self, _: &mut [f64], _: &Vector3<f64>) {}
 
-    fn resume_states(&self, _: &[f64], _: f64, _: &Vector3<f64>) -> Vec<f64> {
-        Vec::new()
-    }
+    fn resume_states(&self, _: &mut [f64], _: f64, _: &Vector3<f64>) {}
 
     fn turning(&self) -> Option<(Vector3<f64>, f64)> {
         None
     }
 
-    fn torque(&self, now: &LawContext<'_>, _: &[f64]) -> Vector3<f64> {
+    fn torque(&self, now: &LawContext<'_>, _: &[f64], _: Option<&mut [f64]>) -> Vector3<f64> {
         self.momentum.cross(&now.phase.omega)
     }
-
-    fn rates(&self, _: &LawContext<'_>, _: &[f64], _: &mut [f64]) {}
 
     fn momentum(&self, _: &[f64], _: &Vector3<f64>) -> Vector3<f64> {
         self.momentum

@@ -145,26 +145,27 @@ impl CarriedMomentum for Slug {
             .collect()
     }
 
-    fn report_states(&self, state: &[f64], _: &Vector3<f64>) -> Vec<f64> {
-        state.to_vec()
-    }
+    fn report_states(&self, _: &mut [f64], _: &Vector3<f64>) {}
 
-    fn resume_states(&self, reported: &[f64], _: f64, _: &Vector3<f64>) -> Vec<f64> {
-        reported.to_vec()
-    }
+    fn resume_states(&self, _: &mut [f64], _: f64, _: &Vector3<f64>) {}
 
     fn turning(&self) -> Option<(Vector3<f64>, f64)> {
         None
     }
 
-    fn torque(&self, now: &LawContext<'_>, state: &[f64]) -> Vector3<f64> {
-        self.drag(&now.phase.omega, state)
-    }
-
-    fn rates(&self, now: &LawContext<'_>, state: &[f64], rates: &mut [f64]) {
+    fn torque(
+        &self,
+        now: &LawContext<'_>,
+        state: &[f64],
+        rates: Option<&mut [f64]>,
+    ) -> Vector3<f64> {
         let (sigma, omega) = (Vector3::from_column_slice(state), &now.phase.omega);
-        let rate = -self.drag(omega, state) / self.inertia - omega.cross(&sigma);
-        rates.copy_from_slice(rate.as_slice());
+        let drag = self.drag(omega, state);
+        if let Some(rates) = rates {
+            let rate = -drag / self.inertia - omega.cross(&sigma);
+            rates.copy_from_slice(rate.as_slice());
+        }
+        drag
     }
 
     fn momentum(&self, state: &[f64], _: &Vector3<f64>) -> Vector3<f64> {

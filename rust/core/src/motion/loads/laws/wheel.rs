@@ -279,7 +279,7 @@ impl Law for Wheel {
             side: (self.switch(body, t, phase)).map_or(1.0, |switch| switch.side),
             command: Vector3::zeros(),
         };
-        let mut torque = self.torque(&now, &state);
+        let mut torque = self.torque(&now, &state, None);
         if self.bearing().is_some() && self.rate != 0.0 {
             torque += self.unit * (self.dry_friction * self.rate.signum());
         }
@@ -399,19 +399,15 @@ impl CarriedMomentum for Wheel {
         self.has_speed()
     }
 
-    fn report_states(&self, state: &[f64], omega: &Vector3<f64>) -> Vec<f64> {
-        vec![if self.has_speed() {
-            state[0] + self.inertia * self.unit.dot(omega)
-        } else {
-            state[0]
-        }]
+    fn report_states(&self, states: &mut [f64], omega: &Vector3<f64>) {
+        if self.has_speed() {
+            states[0] += self.inertia * self.unit.dot(omega);
+        }
     }
 
-    fn resume_states(&self, reported: &[f64], t: f64, omega: &Vector3<f64>) -> Vec<f64> {
+    fn resume_states(&self, states: &mut [f64], t: f64, omega: &Vector3<f64>) {
         if self.has_speed() {
-            self.begin(t, omega)
-        } else {
-            reported.to_vec()
+            states.copy_from_slice(&self.begin(t, omega));
         }
     }
 
@@ -445,13 +441,17 @@ impl CarriedMomentum for Wheel {
         (share - 1.0) * (share + 1.0)
     }
 
-    fn torque(&self, now: &LawContext<'_>, state: &[f64]) -> Vector3<f64> {
+    fn torque(
+        &self,
+        now: &LawContext<'_>,
+        state: &[f64],
+        rates: Option<&mut [f64]>,
+    ) -> Vector3<f64> {
         let rate = self.rate_of_state(now, state);
+        if let Some(rates) = rates {
+            rates[0] = rate;
+        }
         self.unit.cross(&now.phase.omega) * state[0] - self.unit * rate
-    }
-
-    fn rates(&self, now: &LawContext<'_>, state: &[f64], rates: &mut [f64]) {
-        rates[0] = self.rate_of_state(now, state);
     }
 
     /// JΩ a.
