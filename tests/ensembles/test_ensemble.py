@@ -306,7 +306,10 @@ class TestTheObject:
     @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="the system does not tell")
     @pytest.mark.parametrize(
         "options",
-        ["n=10_000, t=[k / 50 for k in range(100)]", pytest.param("n=100_000, t=(0, 1)", marks=pytest.mark.long)],
+        [
+            "n=10_000, t=[k / 50 for k in range(100)]",
+            pytest.param("n=100_000, t=(0, 1)", marks=pytest.mark.long),
+        ],
     )
     def test_a_chunk_takes_as_much_memory_as_is_told(self, options: str) -> None:
         code = (

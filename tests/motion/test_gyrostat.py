@@ -338,7 +338,12 @@ def test_every_regime_has_its_cases() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["symmetric: oblate, h along its axis", "spherical: h along none", "generic: two lobes, one"]
+    "name",
+    [
+        "symmetric: oblate, h along its axis",
+        "spherical: h along none",
+        pytest.param("generic: two lobes, one", marks=pytest.mark.long),
+    ],
 )
 def test_the_generator_makes_the_table(name: str) -> None:
     made = next(proven(case) for case in cases() if case.name == name)
