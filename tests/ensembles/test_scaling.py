@@ -8,7 +8,7 @@ import re
 from typing import Any
 
 import pytest
-from ensemble_cases import all_reductions, pushed, twisted
+from ensemble_cases import all_reductions, pushed
 from places import ROOT
 from polhode import RigidBody, flybys, orbits
 from polhode.ensembles.merge_tree import nodes_of_chunk

@@ -114,7 +114,7 @@ def motions(inertias: Floats, starts: Floats, t: Floats, rotor: Any) -> Floats:
 
 
 def motion_slopes(inertia: Floats, start: Floats, t: Floats, rotor: Any, size: float) -> Floats:
-    """Derivatives of ω, in units of its sigma, by start and tensor: central differences of motions at once."""
+    """Derivatives of ω, in units of its sigma, by start and tensor: by differences of motions at once."""
     steps = np.repeat([1e-5, 1e-5 * size], [3, 6])
     rows = np.concatenate([start, elements(inertia)]) + np.concatenate([np.diag(steps), -np.diag(steps)])
     found = motions(np.array([tensor(row[3:]) for row in rows]), rows[:, :3], t, rotor)

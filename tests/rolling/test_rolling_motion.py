@@ -195,7 +195,7 @@ def test_force_and_pressure_of_lying_bodies(row: Any) -> None:
 
 @pytest.mark.parametrize(("row", "steps"), list(zip(LYING, (4, 4, 8, 6, 12), strict=True)))
 def test_motions_of_lying_bodies(row: Any, steps: int) -> None:
-    """The oracle takes as many steps as it needs for an error of 1e-15, or 1e-13 of the cone that turns most."""
+    """The oracle takes the steps that it needs for errors of 1e-15, or 1e-12 for the cone that turns most."""
     case, motion = lying(*row)
     exact = lying_motion(case, flat(motion.at(0.0)), 1.0, steps)
     assert off(flat(motion.at(1.0)), exact, 10.0) < 1e-12
