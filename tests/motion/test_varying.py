@@ -217,7 +217,7 @@ def test_a_wheel_in_a_boom_that_opens() -> None:
 
 
 @cache
-def by_scipy(seed: int, about: Any) -> tuple[RigidBody, Any, Floats, Floats, Floats]:
+def by_scipy(seed: int, about: Any) -> tuple[Any, Any, Floats, Floats, Floats]:
     """Return a body and a load, the start, and by SciPy the state at 3 s and its slope."""
     draw = np.random.default_rng(seed)
     knots = np.sort(np.concatenate([[0.0, 3.0], draw.uniform(0.3, 2.7, 4)]))
