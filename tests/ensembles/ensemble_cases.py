@@ -29,6 +29,12 @@ def twisted(n: int = 300, *, t: Any = TIMES, seed: int = 5, **options: Any) -> p
     )
 
 
+def pushed(n: int, *, t: Any, seed: int = 5, **options: Any) -> polhode.Ensemble:
+    """One body with starts that are drawn: many members cost little."""
+    twist = loads.constant_torque((0.0, 0.1, 0.0))
+    return polhode.ensemble(BODY, t, SPIN, distributions.uniform_rotation(), twist, n=n, seed=seed, **options)
+
+
 def last_spin(motion: polhode.Trajectory) -> Any:
     """The angular velocity at the end; a function that every process can import or unpickle."""
     return motion.omega[:, -1]
@@ -55,8 +61,8 @@ def all_bytes(result: Any) -> bytes:
 
 
 def slow(**options: Any) -> polhode.Ensemble:
-    """Chunks that take about a tenth of a second each."""
-    return twisted(2000, t=(0.0, 80.0), chunk=100, **options)
+    """Twenty chunks that take some hundredths of a second each."""
+    return twisted(1200, t=(0.0, 80.0), chunk=60, **options)
 
 
 def python(code: str, **environment: str) -> str:

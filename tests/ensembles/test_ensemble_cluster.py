@@ -68,7 +68,7 @@ def scaled(client: Any, count: int) -> None:
 def test_bits_are_those_of_this_machine_for_any_number_of_workers(workers: Any) -> None:
     states = all_bytes(twisted(500, chunk=60).compute())
     reduced = all_bytes(twisted(13_000, reduce=all_reductions()).compute())
-    for count in (1, 2, 3):
+    for count in (1, 2):
         scaled(workers, count)
         assert all_bytes(twisted(500, chunk=60, client=workers).compute()) == states
         many = twisted(13_000, reduce=all_reductions(), client=workers, chunk=4096 * count)
@@ -76,8 +76,9 @@ def test_bits_are_those_of_this_machine_for_any_number_of_workers(workers: Any) 
 
 
 @pytest.mark.long
-def test_bits_of_seven_workers(workers: Any) -> None:
-    scaled(workers, 7)
+@pytest.mark.parametrize("count", [3, 7])
+def test_bits_of_more_workers(workers: Any, count: int) -> None:
+    scaled(workers, count)
     assert all_bytes(twisted(5000, chunk=60, client=workers).compute()) == all_bytes(twisted(5000).compute())
     many = twisted(100_000, reduce=all_reductions(), client=workers)
     assert all_bytes(many.compute()) == all_bytes(twisted(100_000, reduce=all_reductions()).compute())

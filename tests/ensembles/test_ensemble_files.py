@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray
-from ensemble_cases import BODY, TESTS, TIMES, all_bytes, all_reductions, python, slow, twisted
+from ensemble_cases import BODY, TESTS, TIMES, all_bytes, all_reductions, pushed, python, slow, twisted
 from polhode import ensemble
 from polhode.ensembles.fingerprint import fingerprint
 from polhode.errors import FileFormatError
@@ -177,7 +177,7 @@ class TestCheckpoints:
         return path.read_bytes()
 
     def reduced(self, **options: Any) -> Any:
-        return twisted(5 * 4096 + 99, t=(0.0, 0.1), **{"reduce": all_reductions()} | options)
+        return pushed(5 * 4096 + 99, t=(0.0, 0.1), **{"reduce": all_reductions()} | options)
 
     def test_they_have_the_bits_of_one_run(self, tmp_path: Path) -> None:
         path = tmp_path / "kept.npz"
@@ -191,12 +191,32 @@ class TestCheckpoints:
         assert all_bytes(self.reduced(progress=runs.append).compute(checkpoint=path)) == want
         assert runs == []
 
+    def test_members_that_fail_are_kept_too(self, tmp_path: Path) -> None:
+        """Of bodies and loads that are drawn some are none: one is in the part that was kept."""
+
+        class Enough(Exception):  # noqa: N818
+            pass
+
+        def end(fraction: float) -> None:
+            if fraction > 0.4:
+                raise Enough
+
+        path = tmp_path / "kept.npz"
+        drawn: dict[str, Any] = {"t": (0.0, 0.1), "reduce": all_reductions()}
+        with pytest.raises(Enough):
+            twisted(4096 + 999, progress=end, **drawn).compute(checkpoint=path)
+        told: list[float] = []
+        found = twisted(4096 + 999, progress=told.append, **drawn).compute(checkpoint=path)
+        assert told[0] > 0.8
+        whole = twisted(4096 + 999, **drawn).compute()
+        assert all_bytes(found) == all_bytes(whole)
+
     def test_what_was_killed_goes_on(self, tmp_path: Path) -> None:
         path = tmp_path / "kept.npz"
         code = (
             "import sys, ensemble_cases as e, polhode.ensembles.checkpoints as c\n"
             "c._BETWEEN = 0.0\n"
-            "e.twisted(12 * 4096, t=(0, 1), reduce=e.all_reductions()).compute(checkpoint=sys.argv[1])"
+            "e.pushed(12 * 4096, t=(0, 5), reduce=e.all_reductions()).compute(checkpoint=sys.argv[1])"
         )
         process = subprocess.Popen([sys.executable, "-c", code, str(path)], cwd=TESTS)
         try:
@@ -207,10 +227,10 @@ class TestCheckpoints:
             process.send_signal(signal.SIGKILL)
             process.wait()
         told: list[float] = []
-        many = twisted(12 * 4096, t=(0, 1), reduce=all_reductions(), progress=told.append)
+        many = pushed(12 * 4096, t=(0, 5), reduce=all_reductions(), progress=told.append)
         found = many.compute(checkpoint=path)
         assert told[0] >= 1 / 12
-        assert all_bytes(found) == all_bytes(twisted(12 * 4096, t=(0, 1), reduce=all_reductions()).compute())
+        assert all_bytes(found) == all_bytes(pushed(12 * 4096, t=(0, 5), reduce=all_reductions()).compute())
 
     @pytest.mark.parametrize(
         ("change", "words"),

@@ -67,7 +67,7 @@ def drawn(n: int, seed: int) -> dict[str, np.ndarray]:
     lean = Rotation.from_rotvec(across - (across @ pole)[:, None] * pole)
     turned = lean * Rotation.from_rotvec(azimuth[:, None] * pole) * Rotation.from_quat(start.quaternion)
     run = bodies.simulate(
-        [0.0, 6 * DAY], start.omega, turned.as_quat(), load=loads.gravity_gradient(ORBIT), rtol=1e-10
+        [0.0, 6 * DAY], start.omega, turned.as_quat(), load=loads.gravity_gradient(ORBIT), rtol=1e-8
     )
     ends = [bodies.free_motion(run.omega[:, k], run.quaternion[:, k]) for k in (0, 1)]
     momenta = [end.angular_momentum().spin for end in ends]
@@ -138,7 +138,7 @@ def test_one_of_the_angles_alone_is_no_known_start() -> None:
 
 def test_wide_distributions_have_quantiles_and_say_so() -> None:
     body, given = wide()
-    found = passed(body, n=1000, **given)
+    found = passed(body, n=500, **given)
     forecast = found.forecast
     assert forecast is not None
     assert not forecast.linear
@@ -158,7 +158,7 @@ def test_between_the_two_it_is_linear_or_not() -> None:
     """One number ten times as uncertain, step by step: a sigma until the first order lacks two percent."""
     seen = []
     for factor in (1.0, 10.0, 100.0):
-        found = passed(n=4000, phase=Uncertain(0.3, 5e-4 * factor)).forecast
+        found = passed(n=2000, phase=Uncertain(0.3, 5e-4 * factor)).forecast
         assert found is not None
         seen.append(found.rotation_period.linear)
         if seen[-1]:
@@ -253,7 +253,7 @@ def test_what_benson_and_others_say_of_uncertain_moments() -> None:
     """arXiv:2210.13365: likely a short-axis mode afterwards, a rate that may halve, a shift of 10 degrees."""
     body: Any = RigidBody.from_principal(1.0, Uncertain(MOMENTS, (0.03, 0.01, 0.0)))
     periods = PERIODS | {"rotation_period": Uncertain(P_PSI, 0.03 * HOUR)}
-    found = flybys.flyby(body, ORBIT, 6 * DAY, n=3000, **periods)
+    found = flybys.flyby(body, ORBIT, 6 * DAY, n=1500, **periods)
     known = ~found.failed
     assert 0.8 < found.modes()["short-axis"] < 1.0
     assert found.spin_ratio[known].min() < 0.55

@@ -72,7 +72,7 @@ class TestAgainstTheStates:
 class TestBits:
     def test_chunks_change_none(self, results: Any) -> None:
         want = all_bytes(results)
-        for chunk in (8192, 3 * 4096, 2**20):
+        for chunk in (8192, 2**20):
             assert all_bytes(twisted(N, reduce=all_reductions(), chunk=chunk).compute()) == want
 
     @pytest.mark.parametrize("leaves", [1, 2, 3, 5, 8, 13, 64, 100])

@@ -8,7 +8,7 @@ import re
 from typing import Any
 
 import pytest
-from ensemble_cases import all_reductions, twisted
+from ensemble_cases import all_reductions, pushed
 from places import ROOT
 from polhode import RigidBody, flybys, orbits
 from polhode.ensembles.merge_tree import nodes_of_chunk
@@ -77,7 +77,7 @@ def test_bytes_of_a_member_are_those_that_the_ensemble_tells() -> None:
 
 def test_reductions_send_as_little_as_is_said() -> None:
     """The state of a chunk does not grow with its members, but that of quantiles."""
-    plan = twisted(8192, t=(0.0, 0.01), chunk=8192).plan
+    plan = pushed(8192, t=(0.0, 0.01), chunk=8192).plan
     for name, reduction in all_reductions().items():
         sent = len(pickle.dumps(nodes_of_chunk(plan, (reduction,), 0)))
         assert sent < 1.1e3 or name == "quantiles"

@@ -150,9 +150,10 @@ class TestBodies:
 
     @pytest.mark.parametrize("mode", ["long-axis", "short-axis"])
     @pytest.mark.parametrize("ratio", [0.3, 0.97, 1.03, 1.92, 3.1])
-    def test_of_given_moments(self, mode: str, ratio: float) -> None:
+    @pytest.mark.parametrize("count", [15, pytest.param(40, marks=pytest.mark.long)])
+    def test_of_given_moments(self, mode: str, ratio: float, count: int) -> None:
         rng = np.random.default_rng(5)
-        for _ in range(40):
+        for _ in range(count):
             y = rng.uniform(0.5, 1.0)
             x = rng.uniform(1.0 - y, y)
             found = identify.labellings((ratio, 1.0), 1e-6, moments=(x, y, 1.0))

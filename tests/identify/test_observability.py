@@ -73,7 +73,8 @@ class Told:
 
 def open_rows(jacobian: Floats, lost_only: bool = False) -> Floats:
     """Directions whose relative sigma exceeds the limit, of a Jacobian in units of sigmas and sizes."""
-    values, rows = np.linalg.svd(jacobian, full_matrices=True)[1:]
+    is_wide = len(jacobian) < jacobian.shape[1]
+    values, rows = np.linalg.svd(jacobian, full_matrices=is_wide)[1:]
     values = np.append(values, np.zeros(len(rows) - len(values)))
     if lost_only:
         return np.asarray(rows[values < LOST * values.max()])
@@ -97,16 +98,28 @@ AXES = Rotation.from_rotvec([0.4, -0.7, 0.5]).as_matrix()
 TURNED = AXES @ np.diag(MOMENTS) @ AXES.T
 
 
-def motion(inertia: Floats, start: Floats, t: Floats, rotor: Any) -> Floats:
-    """ω at times, by Euler's equations."""
-    inverse, h = np.linalg.inv(inertia), np.asarray(rotor)
+def motions(inertias: Floats, starts: Floats, t: Floats, rotor: Any) -> Floats:
+    """ω of bodies (n, 3, 3) at times, (n, times, 3), by Euler's equations; all of them in the same steps."""
+    inverses, h = np.linalg.inv(inertias), np.asarray(rotor)[:, None]
+    tensors, inverses = inertias.transpose(1, 2, 0).copy(), inverses.transpose(1, 2, 0).copy()
 
-    def turn(_: float, omega: Floats) -> Floats:
-        (a, b, c), (x, y, z) = (inertia @ omega + h).tolist(), omega.tolist()
-        return np.asarray(inverse @ (b * z - c * y, c * x - a * z, a * y - b * x))
+    def turn(_: float, flat: Floats) -> Floats:
+        omega = flat.reshape(3, -1)
+        (a, b, c), (x, y, z) = np.einsum("ijn,jn->in", tensors, omega) + h, omega
+        torque = np.stack([b * z - c * y, c * x - a * z, a * y - b * x])
+        return np.asarray(np.einsum("ijn,jn->in", inverses, torque).ravel())
 
-    found = solve_ivp(turn, (t[0], t[-1]), start, "DOP853", t, rtol=1e-12, atol=1e-14)
-    return np.asarray(found.y.T)
+    found = solve_ivp(turn, (t[0], t[-1]), starts.T.ravel(), "DOP853", t, rtol=1e-12, atol=1e-14)
+    return np.asarray(found.y.reshape(3, len(starts), len(t)).transpose(1, 2, 0))
+
+
+def motion_slopes(inertia: Floats, start: Floats, t: Floats, rotor: Any, size: float) -> Floats:
+    """Derivatives of ω, in units of its sigma, by start and tensor: by differences of motions at once."""
+    steps = np.repeat([1e-5, 1e-5 * size], [3, 6])
+    rows = np.concatenate([start, elements(inertia)]) + np.concatenate([np.diag(steps), -np.diag(steps)])
+    found = motions(np.array([tensor(row[3:]) for row in rows]), rows[:, :3], t, rotor)
+    ahead, behind = found.reshape(2, 9, -1) / SIGMA
+    return np.asarray(((ahead - behind) / (2.0 * steps[:, None])).T)
 
 
 def thrown(inertia: Any, start: Any, end: float, bias: bool = False, rotor: Any = None) -> Told:
@@ -121,11 +134,7 @@ def thrown(inertia: Any, start: Any, end: float, bias: bool = False, rotor: Any 
     body = RigidBody(mass=1.0, inertia=inertia)
     told = identify.design(body, start, t, SIGMA, bias=bias, rotor=rotor)
     inside = np.zeros(3) if rotor is None else rotor
-    jacobian = slopes(
-        lambda x: motion(tensor(x[3:]), x[:3], t, inside) / SIGMA,
-        np.concatenate([start, elements(inertia)]),
-        np.repeat([1e-5, 1e-5 * size], [3, 6]),
-    )
+    jacobian = motion_slopes(inertia, start, t, inside, size)
     # What is left where start and offset may be any.
     others = np.hstack([jacobian[:, :3], *[np.tile(np.eye(3), (len(t), 1)) / SIGMA] * bias])
     left, values, _ = np.linalg.svd(others / np.linalg.norm(others, axis=0), full_matrices=False)
@@ -141,7 +150,9 @@ def thrown(inertia: Any, start: Any, end: float, bias: bool = False, rotor: Any 
         wanted = np.vstack([wanted, elements(inertia) / size])
     whole = np.zeros((len(wanted), len(told.parameters)))
     whole[:, 3:9] = wanted
-    rows = motion(inertia, start, t, inside) + np.random.default_rng(0).normal(0.0, SIGMA, (len(t), 3))
+    rows = motions(inertia[None], start[None], t, inside)[0] + np.random.default_rng(0).normal(
+        0.0, SIGMA, (len(t), 3)
+    )
     try:
         found = identify.from_tumble(t, rows, sigma=SIGMA, bias=bias, rotor=rotor)
     except IdentificationError as error:

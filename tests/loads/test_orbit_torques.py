@@ -57,8 +57,8 @@ def test_clones_on_the_same_orbits_are_each_as_alone(eccentricity: float, end: f
     """Slower than the orbits and far faster; beside twice the precision and SciPy's integrator."""
     rng = np.random.default_rng(5)
     body = RigidBody.from_principal(2.0, (1.0, 1.7, 2.2))
-    omega = rng.normal(size=(24, 3)) * np.geomspace(0.05, 30.0, 24)[:, None]
-    attitude = Rotation.random(24, rng).as_quat()
+    omega = rng.normal(size=(14, 3)) * np.geomspace(0.05, 30.0, 14)[:, None]
+    attitude = Rotation.random(14, rng).as_quat()
     orbit = orbits.from_elements(
         2.0, eccentricity=eccentricity, periapsis=0.8, inclination=0.4, node=1.0, since_periapsis=-0.5 * end
     )
@@ -68,7 +68,7 @@ def test_clones_on_the_same_orbits_are_each_as_alone(eccentricity: float, end: f
     runs = body.simulate(times, omega, attitude, load=load, rtol=1e-13)
     exact = body.simulate(times, omega, attitude, load=load, rtol=1e-20)
     speed = np.linalg.norm(exact.omega, axis=-1).max(axis=1)
-    for k in range(0, 24, 5):
+    for k in range(0, 14, 4):
         alone = body.simulate(times, omega[k], attitude[k], load=load, rtol=1e-13)
         np.testing.assert_array_equal(alone.omega, runs.omega[k])
         np.testing.assert_array_equal(alone.quaternion, runs.quaternion[k])

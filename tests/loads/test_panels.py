@@ -361,24 +361,23 @@ class TestMotions:
             load = lit((centers, areas, normals), shares, suns, levels, times=times)
         else:
             load = flown((centers, areas, normals), (2.0, 2.2, 1.0), 0.15 * SUN)
-        c, I = BODY.center_of_mass, BODY.inertia
+        arms, I = centers - BODY.center_of_mass, BODY.inertia
+        inverse = np.linalg.inv(I)
 
         def rates(t: float, y: Floats) -> Floats:
-            q, w = y[:4] / np.linalg.norm(y[:4]), y[4:7]
-            turn = Rotation.from_quat(q)
+            q, w = y[:4] / np.sqrt(y[:4] @ y[:4]), y[4:7]
+            turn = Rotation.from_quat(q).as_matrix()
             if kind == "drag":
-                each = forces_of_air(
-                    areas, normals, np.array([2.0, 2.2, 1.0]), turn.inv().apply(0.15 * SUN), 1.0
-                )
+                each = forces_of_air(areas, normals, np.array([2.0, 2.2, 1.0]), 0.15 * SUN @ turn, 1.0)
             elif kind == "light":
-                each = forces_of_light(areas, normals, shares, turn.inv().apply(SUN), pressure)
+                each = forces_of_light(areas, normals, shares, SUN @ turn, pressure)
             else:
                 level = np.interp(t, times, levels)
-                each = forces_of_light(areas, normals, shares, turn.inv().apply(units(t)), level)
-            torque = np.cross(centers - c, each).sum(axis=0)
-            spin = np.linalg.solve(I, torque - np.cross(w, I @ w))
+                each = forces_of_light(areas, normals, shares, units(t) @ turn, level)
+            torques = np.cross(np.vstack([arms, -w]), np.vstack([each, I @ w]))
+            spin = inverse @ torques.sum(axis=0)
             x, v = q[3] * w + np.cross(q[:3], w), -q[:3] @ w
-            force = turn.apply(each.sum(axis=0)) / BODY.mass
+            force = turn @ each.sum(axis=0) / BODY.mass
             return np.concatenate([x / 2, [v / 2], spin, y[10:], force])
 
         y = np.concatenate([(0, 0, 0, 1), omega, np.zeros(6)])

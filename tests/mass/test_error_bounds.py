@@ -313,13 +313,13 @@ def test_what_a_rounded_center_adds_to_a_difference() -> None:
 
 
 SOURCES = {
-    "operations": (operation_faults, 1000, 100_000),
-    "tetrahedra": (cell_faults, 2000, 100_000),
-    "particles": (cloud_faults, 1000, 50_000),
-    "voxels": (grid_faults, 400, 20_000),
-    "mesh": (mesh_faults, 500, 20_000),
-    "surface": (surface_faults, 100, 5_000),
-    "curve": (curve_faults, 100, 5_000),
+    "operations": (operation_faults, 500, 100_000),
+    "tetrahedra": (cell_faults, 800, 100_000),
+    "particles": (cloud_faults, 500, 50_000),
+    "voxels": (grid_faults, 200, 20_000),
+    "mesh": (mesh_faults, 200, 20_000),
+    "surface": (surface_faults, 50, 5_000),
+    "curve": (curve_faults, 50, 5_000),
 }
 
 

@@ -76,9 +76,9 @@ def test_integration_finds_the_same(
     assert quaternions_apart(exact.quaternion, run.quaternion) <= 3e-12
 
 
-def test_random_gyrostats_keep_their_laws_and_agree_with_integration() -> None:
+@pytest.mark.parametrize("n", [300, pytest.param(1000, marks=pytest.mark.long)])
+def test_random_gyrostats_keep_their_laws_and_agree_with_integration(n: int) -> None:
     rng = np.random.default_rng(16)
-    n = 1000
     moments = np.sort(rng.uniform(1.0, 2.0, (n, 3)), axis=1)
     bodies = RigidBody.from_principal(1.0, moments)
     h = rng.normal(size=(n, 3)) * 10 ** rng.uniform(-3, 1, (n, 1))
@@ -338,7 +338,12 @@ def test_every_regime_has_its_cases() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["symmetric: oblate, h along its axis", "spherical: h along none", "generic: two lobes, one"]
+    "name",
+    [
+        "symmetric: oblate, h along its axis",
+        "spherical: h along none",
+        pytest.param("generic: two lobes, one", marks=pytest.mark.long),
+    ],
 )
 def test_the_generator_makes_the_table(name: str) -> None:
     made = next(proven(case) for case in cases() if case.name == name)

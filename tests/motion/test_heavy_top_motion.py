@@ -85,7 +85,7 @@ def errors(case: Case, times: list[float]) -> tuple[float, float]:
         case.attitude,
         case.gravity,
         about_center=(1.0, case.length),
-        digits=50,
+        digits=32,
     )
     if case.recurs:
         oracle.find_period()

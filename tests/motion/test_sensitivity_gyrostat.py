@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import mpmath
@@ -21,18 +22,26 @@ TIME = 12.0
 CHANGE = mpf("1e-24")
 
 
+def end(change: Any = None) -> Any:
+    """The state at the time, after a change of tensor, momentum inside and ω at the start."""
+    tensor = [[mpf(float(x)) for x in row] for row in TENSOR]
+    inside, omega = [mpf(float(x)) for x in INSIDE], [mpf(float(x)) for x in OMEGA]
+    if change is not None:
+        change(tensor, inside, omega, CHANGE)
+    q = [mpf(float(x)) for x in ATTITUDE]
+    return Motion(tensor, inside, omega, q, digits=50, longest=TIME, returns=False).straight(mpf(TIME))
+
+
+@cache
+def unchanged() -> Any:
+    with mp.workdps(70):
+        return end()
+
+
 def in_many_digits(change: Any) -> np.ndarray:
     """(δ, ω) at the time by a change of tensor, momentum inside, ω: a difference of motions in 50 digits."""
     with mp.workdps(70):
-        ends = []
-        for step in (mpf(0), CHANGE):
-            tensor = [[mpf(float(x)) for x in row] for row in TENSOR]
-            inside, omega = [mpf(float(x)) for x in INSIDE], [mpf(float(x)) for x in OMEGA]
-            change(tensor, inside, omega, step)
-            q = [mpf(float(x)) for x in ATTITUDE]
-            moved = Motion(tensor, inside, omega, q, digits=50, longest=TIME, returns=False)
-            ends.append(moved.straight(mpf(TIME)))
-        here, there = ends
+        here, there = unchanged(), end(change)
         *tilt, scalar = product(conjugate(here.quaternion), there.quaternion)
         turned = [2 * mpmath.sign(scalar) * x / CHANGE for x in tilt]
         rates = [(b - a) / CHANGE for a, b in zip(here.omega, there.omega, strict=True)]

@@ -128,7 +128,7 @@ BEYOND = (
 
 @named(
     (case for case in CASES if not any(name in case.name for name in BEYOND)),
-    long=("thin: needle, spinning", "full tensor: thin"),
+    long=("thin: needle", "thin: needle, spinning", "full tensor: thin", "long axis: T-handle"),
 )
 def test_a_thousand_rotations_to_the_last_digit(case: MotionCase) -> None:
     assert error(case, 2, 1e-27) <= ROUNDING

@@ -81,13 +81,15 @@ class LyingBody:
         # Columns: a, α, F, couples about `across` and about the normal, λ; the right side.
         rows: Matrix = [[mpf(0)] * 13 for _ in range(12)]
         unit_vectors = [[mpf(i == j) for j in range(3)] for i in range(3)]
+        of_force = [cross(arm, one) for one in unit_vectors]
+        of_turn = [cross(one, arm) for one in unit_vectors]
         for i in range(3):
             rows[i][i], rows[i][6 + i] = self.mass, mpf(-1)
             rows[i][12] = self.mass * self.gravity[i]
             for j in range(3):
                 rows[3 + i][3 + j] = inertia[i][j]
-                rows[3 + i][6 + j] = -cross(arm, unit_vectors[j])[i]
-                rows[9 + i][3 + j] = cross(unit_vectors[j], arm)[i]
+                rows[3 + i][6 + j] = -of_force[j][i]
+                rows[9 + i][3 + j] = of_turn[j][i]
             rows[3 + i][9], rows[3 + i][10] = -across[i], -UP[i]
             rows[3 + i][12] = -gyroscopic[i]
             rows[6 + i][3 + i], rows[6 + i][11] = mpf(1), -line[i]

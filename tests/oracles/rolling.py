@@ -28,7 +28,7 @@ import mpmath
 import numpy as np
 from mpmath import mp, mpf
 
-__all__ = ["RollingBody", "SlidingBody", "cases", "motion"]
+__all__ = ["RollingBody", "SlidingBody", "cases", "motion", "motions"]
 
 TABLES = Path(__file__).parent / "tables"
 DIGITS = 30
@@ -484,6 +484,11 @@ def motion(case: dict[str, Any], steps: int = 256) -> Wide:
     """Return the state of a case at its time: (q, ω in space, C), and the velocity of C if it slips."""
     kind = ExtendedSliding if "friction" in case else Extended
     return kind([case]).ends(steps)[0][0]
+
+
+def motions(cases: Sequence[dict[str, Any]], steps: int) -> Wide:
+    """Return the states of cases that roll, of one kind of surface, at their times: computed side by side."""
+    return Extended(cases).ends(steps)[0]
 
 
 def draw(number: int, rng: random.Random) -> dict[str, Any]:

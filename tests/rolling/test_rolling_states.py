@@ -98,7 +98,8 @@ def test_states_at_the_end_of_a_motion(number: int) -> None:
     speed = np.linalg.norm(np.array(exact[4:7], dtype=float))
     size = np.array([1.0] * 4 + [max(speed, 1.0)] * 3 + [1.0] * 3 + [max(speed, 1.0)] * (len(exact) - 10))
     error = np.max(np.abs(end - exact) / size)
-    assert error <= 1e-13 * (1 + condition(case, end, size)), float(error)
+    # A condition is at least zero: it is computed, by many motions, only where it decides.
+    assert error <= 1e-13 or error <= 1e-13 * (1 + condition(case, end, size)), float(error)
 
 
 @pytest.mark.parametrize("number", range(len(CASES)))

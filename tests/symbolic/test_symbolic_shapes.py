@@ -182,9 +182,8 @@ def test_polygons_are_made_of_triangles(corners: list[tuple[int, int]]) -> None:
         )
 
 
-def drawn(name: str, rng: np.random.Generator) -> dict[str, Any]:
+def drawn(name: str, shape: Any, rng: np.random.Generator) -> dict[str, Any]:
     """Sizes for the numeric function."""
-    shape = symbolic.shape(name, corners=5 if name == "polygon" else None)
     if name in ("triangle", "polygon"):
         n = len(shape.sizes["vertices"])
         angles = np.sort((np.arange(n) + rng.uniform(-0.3, 0.3, n)) * 2 * np.pi / n)
@@ -217,7 +216,7 @@ def test_the_numbers_are_those_of_the_core(name: str, rng: np.random.Generator) 
     place = sympy.symbols("p_x p_y p_z")
     about = symbolic.function(shape.inertia_about(place), [*shape.arguments, *place])
     for _ in range(50):
-        mass, given = rng.uniform(0.5, 3.0), drawn(name, rng)
+        mass, given = rng.uniform(0.5, 3.0), drawn(name, shape, rng)
         body = numeric(**given, mass=mass)
         flat = [mass, *np.concatenate([np.ravel(value) for value in given.values()])]
         size = np.abs(body.inertia).max()

@@ -112,6 +112,10 @@ def cover(count: int, motions: int, seed: int, within: float) -> None:
 
 class TestCoverage:
     def test_of_some(self) -> None:
+        cover(750, 350, 1, 0.01)
+
+    @pytest.mark.long
+    def test_of_more(self) -> None:
         cover(1500, 700, 1, 0.01)
 
     @pytest.mark.long

@@ -116,6 +116,10 @@ def tally(kinds: list[str], seeds: range, draws: int) -> Tally:
 
 class TestDraws:
     def test_every_sigma_is_right_or_flagged(self) -> None:
+        tally(list(KINDS), range(2), 10_000).hold()
+
+    @pytest.mark.long
+    def test_over_more_bodies(self) -> None:
         tally(list(KINDS), range(3), 10_000).hold()
 
     @pytest.mark.long
@@ -163,8 +167,9 @@ class TestDerivatives:
     """Covariances to 1e-12 of the row's norm: J P Jᵀ of fifty digits, of every source."""
 
     @pytest.mark.parametrize("kind", KINDS)
-    def test_of_each_source(self, kind: str) -> None:
-        worst_of([kind], range(2))
+    @pytest.mark.parametrize("seeds", [range(1), pytest.param(range(2), marks=pytest.mark.long)])
+    def test_of_each_source(self, kind: str, seeds: range) -> None:
+        worst_of([kind], seeds)
 
     @pytest.mark.long
     @pytest.mark.timeout(3000)
