@@ -422,6 +422,7 @@ def check_portrait(one: Motion, size: float) -> None:
 PLOTTED = ("free", "gyrostat")
 
 
+@pytest.mark.usefixtures("without_surfaces")
 @pytest.mark.parametrize("kind", PLOTTED)
 def test_plots_of_two_random_motions(kind: str) -> None:
     many = (motion(kind, k) for k in range(20))

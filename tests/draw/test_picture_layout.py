@@ -193,6 +193,7 @@ def test_a_row_of_portraits_is_within_its_figure(factors: Any) -> None:
         assert y1 <= figure.bbox.height + 1.0, words
 
 
+@pytest.mark.usefixtures("without_surfaces")
 @pytest.mark.parametrize("name", [*FLAT, *SOLID])
 def test_axes_that_are_shown_have_units(name: str) -> None:
     for ax in made(name).axes:
