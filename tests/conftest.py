@@ -105,6 +105,13 @@ def occt_here(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
+def without_surfaces(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ellipsoids under curves are not drawn: each takes half a second."""
+    for module in ("ellipsoid", "portrait", "top"):
+        monkeypatch.setattr(f"polhode.draw.plot.{module}.solid_ellipsoid", lambda *_: None)
+
+
+@pytest.fixture
 def rng() -> np.random.Generator:
     """A generator with a fixed seed, fresh for each test."""
     return np.random.default_rng(20261121)

@@ -212,8 +212,8 @@ def test_long_motions_are_exact() -> None:
 
 
 def test_animation_and_json(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("polhode.draw.sampling._SECONDS", 0.5)  # few pictures
-    asked = ("--moments", "1 2 3", "--omega", "0.01 2 0", "--end", 10, "--times", 31)
+    monkeypatch.setattr("polhode.draw.sampling._SECONDS", 0.1)  # few pictures
+    asked = ("--moments", "1 2 3", "--omega", "0.01 2 0", "--end", 1, "--times", 31)
     code, _, err = run("spin", *asked, "--save", tmp_path / "a.html", "--save", tmp_path / "a.gif")
     assert (code, err) == (0, "")
     assert (tmp_path / "a.gif").read_bytes().startswith(b"GIF89a")

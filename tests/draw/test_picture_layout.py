@@ -126,14 +126,19 @@ def test_every_function_is_looked_at() -> None:
     assert functions - {*FLAT, *SOLID} == {"portraits"}
 
 
-def drawn(name: str, size: tuple[float, float], dpi: float = 72.0) -> Any:
+def made(name: str, size: tuple[float, float] = (6.4, 4.8), dpi: float = 72.0) -> Any:
     figure = Figure(figsize=size, dpi=dpi, layout="constrained")
     FigureCanvasAgg(figure)
     if name in FLAT:
         FLAT[name](figure.add_subplot())
     else:
         SOLID[name](figure.add_subplot(projection="3d", computed_zorder=False))
-    figure.canvas.draw()
+    return figure
+
+
+def drawn(name: str, size: tuple[float, float]) -> Any:
+    figure = made(name, size)
+    figure.draw_without_rendering()
     return figure
 
 
@@ -178,9 +183,9 @@ def test_every_text_is_within_the_figure(name: str, size: tuple[float, float]) -
 
 @pytest.mark.parametrize("factors", [(0.5,), None])
 def test_a_row_of_portraits_is_within_its_figure(factors: Any) -> None:
-    figure = plot.portraits(GYROSTAT, 2.0, factors)[0].figure
-    canvas: Any = FigureCanvasAgg(figure)
-    canvas.draw()
+    figure: Any = plot.portraits(GYROSTAT, 2.0, factors)[0].figure
+    FigureCanvasAgg(figure)
+    figure.draw_without_rendering()
     for words, box in texts(figure):
         x0, y0, x1, y1 = box.extents
         assert min(x0, y0) >= -1.0, words
@@ -188,9 +193,10 @@ def test_a_row_of_portraits_is_within_its_figure(factors: Any) -> None:
         assert y1 <= figure.bbox.height + 1.0, words
 
 
+@pytest.mark.usefixtures("without_surfaces")
 @pytest.mark.parametrize("name", [*FLAT, *SOLID])
 def test_axes_that_are_shown_have_units(name: str) -> None:
-    for ax in drawn(name, (6.4, 4.8)).axes:
+    for ax in made(name).axes:
         if ax.axison:
             for axis in ax._axis_map.values():
                 words = axis.label.get_text()

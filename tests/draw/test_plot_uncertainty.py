@@ -185,6 +185,7 @@ class TestEllipses:
         assert list(kept) == [2]
         assert loose.tolist() == [False, False, True]
 
+    @pytest.mark.usefixtures("without_surfaces")
     def test_bad_options_are_told(self) -> None:
         body, _ = random_body(1, 1e-3)
         for coverage in (0.0, 1.0, 95.0, np.nan):

@@ -14,6 +14,8 @@ from polhode import RigidBody, plot
 mpl.use("Agg")
 from matplotlib import pyplot as plt
 
+pytestmark = pytest.mark.usefixtures("without_surfaces")
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 

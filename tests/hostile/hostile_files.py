@@ -9,15 +9,18 @@ import io
 import json
 import struct
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from functools import cache
 from typing import TypeAlias
 
 import numpy as np
 
-__all__ = ["HOSTILE", "Files"]
+__all__ = ["HOSTILE", "Case", "Files"]
 
 Files: TypeAlias = dict[str, bytes]
 """By name; the first is the one that is read."""
+Case: TypeAlias = Files | Callable[[], Files]
+"""Files, or what makes them where that takes long."""
 
 MEGA = 1_000_000
 XYZ = '<param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/>'
@@ -71,7 +74,7 @@ START = '<node><instance_node url="#n0"/></node>'
 GROUP = '<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>'
 
 
-def collada() -> dict[str, Files]:
+def collada() -> dict[str, Case]:
     many = " ".join(["0"] * 150_000)
     children = f'<node id="n0">{"<extra/>" * 30_000}{SHOWN}</node>'
     vcount = '<polylist count="4"><input semantic="VERTEX" source="#v" offset="0"/><vcount>{}</vcount><p>{}</p></polylist>'
@@ -101,10 +104,10 @@ def collada() -> dict[str, Files]:
         },
         "unclosed comments": {"a.dae": b"<COLLADA>" + b"<!--" * 240_000},
         "attributes": {"a.dae": b"<COLLADA " + b" ".join(b"a%d=''" % i for i in range(90_000)) + b"/>"},
-        "a packed text of zeros": {
+        "a packed text of zeros": lambda: {
             "a.dae.gz": packed(dae("", f"<node>{SHOWN}</node>", numbers="0 " * 22_000_000))
         },
-        "packed elements": {"a.dae.gz": packed(b"<COLLADA>" + b"<a/>" * 11_000_000 + b"</COLLADA>")},
+        "packed elements": lambda: {"a.dae.gz": packed(b"<COLLADA>" + b"<a/>" * 11_000_000 + b"</COLLADA>")},
     }
 
 
@@ -126,7 +129,7 @@ def scene(data: bytes, count: int = 3, **changes: object) -> dict[str, object]:
     }
 
 
-def gltf() -> dict[str, Files]:
+def gltf() -> dict[str, Case]:
     large = np.zeros((15_000, 3), "<f4").tobytes()
     one = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], "<f4").tobytes()
     view = {"bufferView": 0, "componentType": 5126, "count": 15_000, "type": "VEC3"}
@@ -187,7 +190,7 @@ def gltf() -> dict[str, Files]:
         "nested": {"a.gltf": b'{"asset":' + b"[" * 400_000},
         "long numbers": {"a.gltf": b'{"asset":' + b"1" * 900_000 + b"}"},
         "huge numbers": {"a.gltf": text(**scene(one)).replace(b'"count": 3', b'"count": 1e5000')},
-        "packed objects": {"a.gltf.gz": packed(b'{"asset":[' + b"{}," * 14_000_000 + b"{}]}")},
+        "packed objects": lambda: {"a.gltf.gz": packed(b'{"asset":[' + b"{}," * 14_000_000 + b"{}]}")},
     }
 
 
@@ -230,38 +233,40 @@ def three_mf(objects: str, build: str, **more: str) -> bytes:
     return zipped({"_rels/.rels": RELATIONS, "m.model": model, **more})
 
 
-def packages() -> dict[str, Files]:
+def packages() -> dict[str, Case]:
     one = f'<object id="0">{MESH}</object>'
     tens = one + "".join(
         f'<object id="{i}"><components>' + f'<component objectid="{i - 1}"/>' * 10 + "</components></object>"
         for i in range(1, 40)
     )
     many = '<object id="0"><mesh><vertices><vertex x="0" y="0" z="0"/></vertices><triangles>{}</triangles></mesh></object>'
-    triangles = many.format('<triangle v1="0" v2="0" v3="0"/>' * 300_000)
+    triangle = '<triangle v1="0" v2="0" v3="0"/>'
     stored = io.BytesIO()
     with zipfile.ZipFile(stored, "w") as archive:
         archive.writestr("_rels/.rels", RELATIONS)
         archive.writestr("m.model", b"<model>" + b" " * 400_000 + b"</model>")
     return {
         "components of components": {"a.3mf": three_mf(tens, '<item objectid="39"/>')},
-        "a mesh of many items": {"a.3mf": three_mf(triangles, '<item objectid="0"/>' * 140)},
-        "items": {"a.3mf": three_mf(one, '<item objectid="0"/>' * 2_000_000)},
+        "a mesh of many items": lambda: {
+            "a.3mf": three_mf(many.format(triangle * 300_000), '<item objectid="0"/>' * 140)
+        },
+        "items": lambda: {"a.3mf": three_mf(one, '<item objectid="0"/>' * 2_000_000)},
         "itself": {
             "a.3mf": three_mf(
                 '<object id="1"><components><component objectid="1"/><component objectid="1"/></components></object>',
                 '<item objectid="1"/>',
             )
         },
-        "packed blanks": {"a.3mf": three_mf(" " * 200_000_000, "")},
-        "packed elements": {"a.3mf": three_mf("<a/>" * 11_000_000, "")},
-        "packed vertices": {
+        "packed blanks": lambda: {"a.3mf": three_mf(" " * 200_000_000, "")},
+        "packed elements": lambda: {"a.3mf": three_mf("<a/>" * 11_000_000, "")},
+        "packed vertices": lambda: {
             "a.3mf": three_mf(
                 '<object id="0"><mesh>' + '<vertex x="0" y="0" z="0"/>' * 1_500_000 + "</mesh></object>", ""
             )
         },
-        "one long token": {"a.3mf": three_mf(f'<object id="{"a" * 40_000_000}"/>', "")},
-        "nested": {"a.3mf": three_mf("<a>" * 5_000_000, "")},
-        "settings": {
+        "one long token": lambda: {"a.3mf": three_mf(f'<object id="{"a" * 40_000_000}"/>', "")},
+        "nested": lambda: {"a.3mf": three_mf("<a>" * 5_000_000, "")},
+        "settings": lambda: {
             "a.3mf": three_mf(
                 one,
                 '<item objectid="0"/>',
@@ -293,7 +298,7 @@ def packages() -> dict[str, Files]:
 # Texts of triangles, and binary ones ------------------------
 
 
-def meshes() -> dict[str, Files]:
+def meshes() -> dict[str, Case]:
     facet = b"facet normal 0 0 0 outer loop vertex 0 0 0 vertex 0 0 0 vertex 0 0 0 endloop endfacet\n"
     ply = b"ply\nformat ascii 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\n"
     ply += b"element face %d\nproperty list uchar int vertex_indices\nend_header\n"
@@ -319,7 +324,7 @@ def meshes() -> dict[str, Files]:
             + facet.replace(b"vertex 0", b"vertex " + b"1" * 200_000)
             + b"endsolid\n"
         },
-        "STL: packed facets": {"a.stl.gz": packed(b"solid a\n" + facet * 500_000 + b"endsolid\n")},
+        "STL: packed facets": lambda: {"a.stl.gz": packed(b"solid a\n" + facet * 500_000 + b"endsolid\n")},
         "STL: packed triangles": {
             "a.stl.gz": packed(bytes(80) + struct.pack("<I", 900_000) + bytes(50 * 900_000))
         },
@@ -331,7 +336,7 @@ def meshes() -> dict[str, Files]:
         "OBJ: huge numbers": {"a.obj": b"v 1e5000 0 0\n" + fan[:1000]},
         "OBJ: far indices": {"a.obj": tetrahedron + b"f 1 2 99999999999999999999999\n"},
         "OBJ: components that overlap": {"a.obj": many},
-        "OBJ: packed lines": {"a.obj.gz": packed(tetrahedron + b"v 0 0 0\n" * 5_000_000)},
+        "OBJ: packed lines": lambda: {"a.obj.gz": packed(tetrahedron + b"v 0 0 0\n" * 5_000_000)},
         "plates: huge counts": {"a.tab": b"99999999999\n1 0 0 0\n2 0 0 0\n3 0 0 0\n"},
         "PLY: huge counts": {"a.ply": ply % (10**15, 10**15)},
         "PLY: binary, huge counts": {"a.ply": binary % (10**15, 10**15) + bytes(100)},
@@ -351,7 +356,7 @@ def meshes() -> dict[str, Files]:
         "OFF: huge counts": {"a.off": b"OFF\n999999999999999 9999999999999 0\n0 0 0\n"},
         "OFF: long numbers": {"a.off": b"OFF\n" + b"1" * 900_000 + b" 1 0\n"},
         "OFF: a large polygon": {"a.off": b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n400000 " + b"0 " * 400_000},
-        "OFF: packed words": {"a.off.gz": packed(b"OFF\n7000000 0 0\n" + b"0 0 0\n" * 7_000_000)},
+        "OFF: packed words": lambda: {"a.off.gz": packed(b"OFF\n7000000 0 0\n" + b"0 0 0\n" * 7_000_000)},
     }
 
 
@@ -404,7 +409,7 @@ def vtk() -> dict[str, Files]:
 # Molecules --------------------------------------------------
 
 
-def molecules() -> dict[str, Files]:
+def molecules() -> dict[str, Case]:
     mol = "a\n\n\n{:3d}  0  0  0  0  0  0  0  0  0999 V2000\n"
     atom = "    0.0000    0.0000    0.0000 C   0  0\n"
     return {
@@ -575,6 +580,7 @@ def npy(shape: tuple[int, ...], data: bytes = b"") -> bytes:
     return b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header + data
 
 
+@cache
 def overlapping(count: int, size: int) -> bytes:
     """An archive whose directory names one stored member again and again."""
     stream = io.BytesIO()
@@ -591,13 +597,42 @@ def overlapping(count: int, size: int) -> bytes:
     return stream.getvalue()
 
 
+@cache
+def zeros() -> bytes:
+    """An archive of one array of zeros."""
+    return zipped({"mass.npy": npy((15_000_000,), bytes(8 * 15_000_000))})
+
+
+@cache
+def many_zeros() -> bytes:
+    """An archive of sixty arrays of zeros, the bytes of which are packed once."""
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("m0.npy", npy((1_900_000,), bytes(15_200_000)))
+        (first,) = archive.infolist()
+        data = stream.getvalue()[len(first.FileHeader()) :]
+        for k in range(1, 60):
+            other = zipfile.ZipInfo(f"m{k}.npy")
+            other.compress_type, other.header_offset, other.CRC = (
+                first.compress_type,
+                stream.tell(),
+                first.CRC,
+            )
+            other.file_size, other.compress_size = first.file_size, first.compress_size
+            stream.write(other.FileHeader() + data)
+            archive.filelist.append(other)
+            archive.NameToInfo[other.filename] = other
+        archive.start_dir = stream.tell()
+        archive.writestr("padding", bytes(max(0, MEGA - 10_000 - stream.tell())), zipfile.ZIP_STORED)
+    return stream.getvalue()
+
+
 def saved(format_name: str) -> dict[str, Files]:
-    zeros = npy((15_000_000,), bytes(8 * 15_000_000))
     twice = ",".join(f'"k{k}":0' for k in range(90_000)) + ',"k89999":0'
     nested = f'{{"format": "{format_name}", "mass": ' + "[" * 300_000
     return {
-        "an array of zeros": {"a.npz": zipped({"mass.npy": zeros})},
-        "many arrays of zeros": {"a.npz": zipped({f"m{k}.npy": npy((1_900_000,), bytes(15_200_000)) for k in range(60)})},
+        "an array of zeros": {"a.npz": zeros()},
+        "many arrays of zeros": {"a.npz": many_zeros()},
         "one member named again": {"a.npz": overlapping(5_000, 400_000)},
         "a huge shape": {"a.npz": zipped({"mass.npy": npy((2**62, 2**62))})},
         "a field twice": {"a.json": f"{{{twice}}}".encode()},
@@ -649,7 +684,7 @@ def cad() -> dict[str, Files]:
     }
 
 
-HOSTILE: dict[str, Callable[[], dict[str, Files]]] = {
+HOSTILE: dict[str, Callable[[], Mapping[str, Case]]] = {
     "COLLADA": collada,
     "glTF": gltf,
     "GLB": glb,

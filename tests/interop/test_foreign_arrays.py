@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -277,6 +278,12 @@ CALLS: dict[str, tuple[Any, Callable[[Any], object]]] = {
 }
 
 
+@cache
+def registry() -> Any:
+    """The units of pint, which reads their definitions for half a second."""
+    return pytest.importorskip("pint").UnitRegistry()
+
+
 @pytest.fixture(autouse=True)
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pyplot = pytest.importorskip("matplotlib.pyplot")
@@ -292,9 +299,8 @@ def test_a_mask_and_a_unit_are_told(name: str, tmp_path: Path) -> None:
     mask[-1] = True
     with pytest.raises(ValueError, match=f"{argument}: .*is masked"):
         call(np.ma.masked_array(good, mask))
-    quantity = pytest.importorskip("pint").UnitRegistry().Quantity(good, "second")
     with pytest.raises(TypeError, match=f"{argument}: .*would lose its unit"):
-        call(quantity)
+        call(registry().Quantity(good, "second"))
     assert list(tmp_path.iterdir()) == []
     call(np.ma.masked_array(good, False))  # nothing of it is masked
     pytest.importorskip("matplotlib.pyplot").close("all")

@@ -6,6 +6,7 @@ import gzip
 import json
 import re
 import sys
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -265,7 +266,9 @@ class TestApart:
         with pytest.raises(FileFormatError, match=r"thing\.step: .* cut short"):
             load(path)
 
-    def test_in_an_assembly_of_parts(self, tmp_path: Path) -> None:
+    def test_in_an_assembly_of_parts(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        # One process for each file, which takes a second to start; who reads it again gets the same answer.
+        monkeypatch.setattr("polhode.io.cad_process.read_cad_apart", cache(cad_process.read_cad_apart))
         path = write_assembly(tmp_path / "thing.step", {"block": 7.85, "ball": 2.7})
         whole = solid_from_file(path)
         table = {"length_unit": "in", "part": [{"name": "a", "file": path.name}]}

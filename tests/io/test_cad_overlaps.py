@@ -5,7 +5,6 @@ from __future__ import annotations
 import gzip
 import re
 import sys
-from functools import cache
 from math import pi
 from pathlib import Path
 from typing import Any
@@ -98,9 +97,8 @@ def test_solids_that_share_nothing(name: str, tmp_path: Path) -> None:
     assert cad.overlaps == ()
 
 
-def test_whoever_reads_it_tells_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    # OCCT is asked once for each file, in a process that takes a second to start; who reads gets its answer.
-    monkeypatch.setattr("polhode.io.cad_process.read_cad_apart", cache(cad_process.read_cad_apart))
+@pytest.mark.usefixtures("occt_here")
+def test_whoever_reads_it_tells_it(tmp_path: Path) -> None:
     path = both(*SHARED["box and cylinder"][:2], tmp_path / "two.step")
     packed = tmp_path / "two.step.gz"
     packed.write_bytes(gzip.compress(path.read_bytes()))

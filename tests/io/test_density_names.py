@@ -236,6 +236,7 @@ def test_solids_of_cad(tmp_path: Path) -> None:
         RigidBody.from_file(path, density={"lid": 3.0})
 
 
+@pytest.mark.usefixtures("occt_here")
 def test_solids_of_iges(tmp_path: Path) -> None:
     pytest.importorskip("OCP")
     box = primitive("Box", 10.0, 20.0, 30.0)

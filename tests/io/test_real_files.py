@@ -86,6 +86,7 @@ def test_stl_of_cad_programs(shared_data: Path) -> None:
     assert any("288 corners were joined" in note for note in told["notes"])
 
 
+@pytest.mark.usefixtures("occt_here")
 def test_step_of_a_cad_program(shared_data: Path) -> None:
     """SolidWorks wrote it in inches; its STL is coarser by what the tessellation takes off the holes."""
     pytest.importorskip("OCP.BRep", reason="CAD files need polhode[cad]")

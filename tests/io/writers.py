@@ -72,7 +72,10 @@ def _command(*words: str) -> Callable[[Path], object]:
     return act
 
 
-_SPIN = ("spin", "part.obj", "--omega", "0", "1", "0.01", "--end", "1", "--times", "4", "--save", "OUT")
+_MOTION = ("--omega", "0", "1", "0.01", "--end", "1", "--times", "4", "--save", "OUT")
+_SPIN = ("spin", "part.obj", *_MOTION)
+_LINES = ("spin", "--moments", "1 2 2.5", *_MOTION)
+"""Draws lines alone: a body is of thousands of patches, which formats of lines write one by one."""
 
 WRITERS: dict[str, tuple[str, Callable[[Path], object]]] = {
     "body, JSON": ("body.json", lambda path: _stack().save(path)),
@@ -81,17 +84,17 @@ WRITERS: dict[str, tuple[str, Callable[[Path], object]]] = {
     "motion, npz": ("motion.npz", lambda path: _motion().save(path)),
     "motion, CSV": ("motion.csv", lambda path: _motion().save(path)),
     "page": ("motion.html", lambda path: _motion().animate(path)),
-    "GIF": ("motion.gif", lambda path: _motion().animate(path, frames=4, size=200)),
-    "film": ("motion.mp4", lambda path: _motion().animate(path, frames=4, size=200)),
+    "GIF": ("motion.gif", lambda path: _motion().animate(path, frames=4, size=64)),
+    "film": ("motion.mp4", lambda path: _motion().animate(path, frames=4, size=64)),
     "report": ("report.txt", _command("report", "part.obj", "--output", "OUT")),
     "report, JSON": ("report.json", _command("report", "part.obj", "--output", "OUT")),
     "check": ("verdict.json", _command("check", "arm.urdf", "--output", "OUT")),
     "fix": ("better.urdf", _command("check", "arm.urdf", "--fix", "OUT")),
     "molecule": ("constants.json", _command("molecule", "n2.xyz", "--output", "OUT")),
     "spin": ("spin.json", _command(*_SPIN[:-2], "--output", "OUT")),
-    "spin, PNG": ("spin.png", _command(*_SPIN)),
-    "spin, PDF": ("spin.pdf", _command(*_SPIN)),
-    "spin, SVG": ("spin.svg", _command(*_SPIN)),
+    "spin, PNG": ("spin.png", _command(*_LINES)),
+    "spin, PDF": ("spin.pdf", _command(*_LINES)),
+    "spin, SVG": ("spin.svg", _command(*_LINES)),
     "ledger, CSV": ("all.csv", lambda path: _ledger().to_csv(path)),
     "ledger, JSON": ("all.json", lambda path: _ledger().to_json(path)),
     "ledger, report": ("told.txt", _command("ledger", "craft.csv", "--output", "OUT")),

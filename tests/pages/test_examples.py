@@ -90,9 +90,13 @@ def test_every_script_has_its_row_and_stands_in_the_gallery() -> None:
 
 
 @pytest.mark.parametrize("name", PRINTED)
-def test_it_runs_and_draws(name: str, gallery: ModuleType) -> None:
+def test_it_runs_and_draws(
+    name: str, gallery: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     picture = pytest.importorskip("matplotlib.image")
     if not gallery.done(name, gallery.of_package()):  # else the site has just run it
+        monkeypatch.setattr(gallery, "KEPT", tmp_path)
+        monkeypatch.setattr(gallery.thumbnails, "save", lambda *_: None)  # drawn in the next test
         gallery.run(name, gallery.of_package())
     made = gallery.KEPT / name
     printed = (made / "printed.txt").read_text("utf-8")
@@ -101,13 +105,27 @@ def test_it_runs_and_draws(name: str, gallery: ModuleType) -> None:
     pixels = np.asarray(picture.imread(made / f"{name}.png"))
     assert pixels.shape[1] >= 480
     assert (pixels[..., :3].min(axis=-1) < 0.9).mean() > 0.005
+    has_page = "def animate(" in (EXAMPLES / f"{name}.py").read_text("utf-8")
+    assert (made / "live.html").exists() == has_page
+
+
+@pytest.mark.parametrize(
+    "name",  # one with a view in space and one in the plane; with the mark `long` the others
+    [
+        pytest.param(name, marks=[] if name in {"asteroid", "light_curve"} else pytest.mark.long)
+        for name in PRINTED
+    ],
+)
+def test_its_small_pictures(name: str, gallery: ModuleType) -> None:
+    picture = pytest.importorskip("matplotlib.image")
+    if not gallery.done(name, gallery.of_package()):
+        gallery.run(name, gallery.of_package())
+    made = gallery.KEPT / name
     for mode, is_dark in (("light", False), ("dark", True)):
         small = np.asarray(picture.imread(made / f"{mode}.png"))[..., :3]
         assert small.shape == (400, 640, 3)
         assert bool(small[0, 0].max() < 0.2) is is_dark
         assert (np.abs(small - small[0, 0]).max(axis=-1) > 0.3).mean() > 0.01  # something is seen
-    has_page = "def animate(" in (EXAMPLES / f"{name}.py").read_text("utf-8")
-    assert (made / "live.html").exists() == has_page
 
 
 def test_a_script_run_by_itself_writes_its_picture_and_its_page(

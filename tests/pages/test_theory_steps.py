@@ -85,7 +85,9 @@ class TestFreeMotion:
                 assert abs(mpf(1) / 2 + one * 1j * it.kappa / (2 * slope) - due) < TINY
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize(
+    "seed", [*range(15), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(15, 40))]
+)
 def test_steady_rates_of_a_heavy_top(seed: int) -> None:
     """Legendre's relation splits off the half turn, and the rate of W has the sign that the page states."""
     rng = np.random.default_rng(seed)
