@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import io
 from contextlib import redirect_stderr, redirect_stdout
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 from mesh_files import obj
-from polhode.cli import main, running
+from polhode.cli import main
 
 __all__ = ["one_line", "run", "write_obj"]
-
-# A command of this process has the same options in every run.
-running._options = cache(running._options)
 
 
 def run(*arguments: object) -> tuple[int, str, str]:

@@ -6,7 +6,7 @@ import re
 import sys
 from contextlib import suppress
 from difflib import get_close_matches
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -206,9 +206,10 @@ def _in_full(meant: str, words: list[str]) -> str:
     return " ".join([*call, *(f"{name} {value}" for name, value in missing.items() if name not in given)])
 
 
-def _options(command: str) -> set[str]:
+@cache
+def _options(command: str) -> frozenset[str]:
     names = {name for one in app[command].assemble_argument_collection() for name in one.names}
-    return {name for name in names if name.startswith("-")}
+    return frozenset(name for name in names if name.startswith("-"))
 
 
 def unknown_option(arguments: list[str]) -> str | None:

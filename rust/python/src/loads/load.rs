@@ -70,13 +70,15 @@ impl PyLoad {
         Ok(sum)
     }
 
-    pub(crate) fn clone_ref(&self, py: Python<'_>) -> PyResult<Self> {
-        self.map(|part| part.clone_ref(py))
+    pub(crate) fn clone_ref(&self, py: Python<'_>) -> Self {
+        Self {
+            parts: self.parts.iter().map(|part| part.clone_ref(py)).collect(),
+        }
     }
 
     pub(super) fn plus(&self, py: Python<'_>, other: &Self) -> PyResult<Self> {
-        let mut sum = self.clone_ref(py)?;
-        sum.parts.append(&mut other.clone_ref(py)?.parts);
+        let mut sum = self.clone_ref(py);
+        sum.parts.append(&mut other.clone_ref(py).parts);
         sum.stack_shape()?;
         Ok(sum)
     }
@@ -211,7 +213,7 @@ impl PyLoad {
             Ok(new)
         };
         self.map(|part| {
-            let mut part = part.clone_ref(py)?;
+            let mut part = part.clone_ref(py);
             let starts = |one: &mut Py<Self>| clock_needs_epoch(one.get());
             if let Some(controller) = part.controller.take_if(starts) {
                 part.recipe = recipe(py, "_with_epoch", (&part.recipe, t))?;
@@ -260,7 +262,7 @@ pub(super) fn rebuild(py: Python<'_>, recipe: &Bound<'_, PyTuple>) -> PyResult<P
         }
         _ => function.call(arguments, None)?,
     };
-    let mut load = made.cast::<PyLoad>()?.get().clone_ref(py)?;
+    let mut load = made.cast::<PyLoad>()?.get().clone_ref(py);
     let mut beat = Beat::new(py);
     for (name, arguments) in &steps[1..] {
         beat.mark()?;
@@ -330,8 +332,8 @@ impl Part {
         }
     }
 
-    pub(super) fn clone_ref(&self, py: Python<'_>) -> PyResult<Self> {
-        Ok(Self {
+    pub(super) fn clone_ref(&self, py: Python<'_>) -> Self {
+        Self {
             acts: match &self.acts {
                 LoadPart::Term(terms) => LoadPart::Term(Arc::clone(terms)),
                 LoadPart::Callback(callback) => LoadPart::Callback(callback.clone_ref(py)),
@@ -342,7 +344,7 @@ impl Part {
             recipe: self.recipe.clone_ref(py),
             name: self.name.clone(),
             controller: self.controller.as_ref().map(|one| one.clone_ref(py)),
-        })
+        }
     }
 
     /// Whether it counts from where its motion starts.
@@ -377,7 +379,7 @@ impl Part {
 
     pub(super) fn scaled(&self, py: Python<'_>, factor: f64) -> PyResult<Self> {
         self.check_changes(py, "scaled")?;
-        let mut scaled = self.clone_ref(py)?;
+        let mut scaled = self.clone_ref(py);
         match &mut scaled.acts {
             LoadPart::Term(terms) => {
                 *terms = try_rows(py, terms, |term| term.scaled(factor))?.into();
@@ -414,7 +416,7 @@ impl Part {
     ) -> PyResult<Self> {
         let picked = picked_by(py, shape, key)?;
         let rows = picked.as_slice()?;
-        let mut part = self.clone_ref(py)?;
+        let mut part = self.clone_ref(py);
         if let LoadPart::Term(terms) = &part.acts {
             let grid = Broadcast::of(["load", "load"], [shape, &terms.shape])?;
             let taken = Broadcast::of(["key"], [picked.shape()])?;
@@ -434,7 +436,7 @@ impl Part {
         given: &Bound<'_, PyAny>,
     ) -> PyResult<Self> {
         self.check_changes(py, "scheduled")?;
-        let mut part = self.clone_ref(py)?;
+        let mut part = self.clone_ref(py);
         let within = |own: &Option<Windows>| {
             Some(
                 own.as_ref()
@@ -529,7 +531,7 @@ impl PyLoad {
         if other.is_exact_instance_of::<PyInt>()
             && other.extract::<i64>().is_ok_and(|zero| zero == 0)
         {
-            return Ok(self.clone_ref(py)?.into_pyobject(py)?.into_any());
+            return Ok(self.clone_ref(py).into_pyobject(py)?.into_any());
         }
         Ok(PyNotImplemented::get(py).to_owned().into_any())
     }
@@ -576,11 +578,11 @@ impl PyLoad {
         None
     }
 
-    fn __copy__(&self, py: Python<'_>) -> PyResult<Self> {
+    fn __copy__(&self, py: Python<'_>) -> Self {
         self.clone_ref(py)
     }
 
-    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> PyResult<Self> {
+    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> Self {
         self.clone_ref(py)
     }
 

@@ -261,7 +261,7 @@ impl PyWheel {
                 rate: made.rate.clone(),
                 turns: made.turns,
             };
-            return numbers.acting(py, load.clone_ref(py)?);
+            return numbers.acting(py, load.clone_ref(py));
         }
         if massless < moments.rows.len() {
             return Err(PyValueError::new_err(format!(
