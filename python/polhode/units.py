@@ -345,10 +345,14 @@ def _is_held(number: Decimal) -> bool:
 
 
 def _example(unit: str) -> str:
+    if not unit:
+        return "1"
     return f'"{_EXAMPLES[unit]}"' if unit in _EXAMPLES else f'"1 {unit}"'
 
 
 def _sigma_examples(unit: str) -> str:
+    if not unit:
+        return '"5.0 ± 0.1" or "5.0 ± 2 %"'
     return f'"5.0 ± 0.1 {unit}" or "5.0 {unit} ± 2 %"'
 
 
@@ -366,6 +370,10 @@ def _factor(text: str, unit: str, option: str) -> Decimal:
     except pint.UndefinedUnitError:
         raise PolhodeError(f"{option}: {text!r} is not a known unit; write {_example(unit)}") from None
     except pint.DimensionalityError:
+        if not unit:
+            raise PolhodeError(
+                f"{option}: expected a number without a unit, got the unit {text!r}; write the number alone"
+            ) from None
         as_force = _WEIGHTS.sub(r"\1f", plain)
         is_force = as_force != plain and registry.parse_units(as_force).is_compatible_with(unit)
         way_out = "lb and oz are masses here; write lbf or ozf" if is_force else f"write {_example(unit)}"

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from command_line import one_line, run
-from polhode import RigidBody, flybys, loads, orbits, plot
+from polhode import RigidBody, Uncertain, flybys, loads, orbits, plot
 from polhode.errors import PolhodeError
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
@@ -311,6 +311,31 @@ class TestCommand:
         assert values["before"]["rotation_period"] == pytest.approx(264.178)
         assert {row["mode"] for row in values["modes"]} == set(found.modes())
         assert picture.stat().st_size > 10_000
+
+    def test_a_known_attitude_has_the_forecast_of_the_module(self) -> None:
+        known = ("--pole", "0.2", "0.1", "-1", "--azimuth", "40 deg")
+        code, out, err = run("flyby", *WORDS, *known, "--phase", "0.3 ± 0.0005", "--format", "json")
+        assert code == 0, err
+        metres = orbits.from_elements(
+            EARTH * 1e9, eccentricity=4.253901873, periapsis=38011486.0, since_periapsis=-3 * DAY
+        )
+        attitude: Any = {"pole": (0.2, 0.1, -1.0), "azimuth": np.radians(40)}
+        start = PERIODS | attitude | {"phase": Uncertain(0.3, 0.0005)}
+        forecast = flybys.flyby(APOPHIS, metres, 6 * DAY, n=200, **start).forecast
+        assert forecast is not None
+        assert forecast.linear
+        factors = {"P_psi": 1 / 3600, "P_phi": 1 / 3600, "spin rate, ratio": 1, "pole shift": np.degrees(1)}
+        rows = {row["name"]: row for row in json.loads(out)["forecast"]}
+        for (name, factor), one in zip(factors.items(), forecast, strict=False):
+            assert rows[name]["value"] == pytest.approx(one.value * factor, rel=1e-6)
+            assert rows[name]["sigma"] == pytest.approx(one.sigma * factor, rel=1e-6)
+        # Of a phase that is hardly known the first order is not enough; without a sigma there is no forecast.
+        _, out, _ = run("flyby", *WORDS, *known, "--phase", "0.3 ± 0.1", "--format", "json")
+        rough = json.loads(out)
+        assert rough["forecast"][0]["sigma"] is None
+        assert any("first order" in note for note in rough["notes"])
+        _, out, _ = run("flyby", *WORDS, *known, "--phase", "0.3", "--format", "json")
+        assert "forecast" not in json.loads(out)
 
     @pytest.mark.parametrize(
         ("words", "message"),

@@ -14,9 +14,9 @@ from polhode.cli.layout import Cell, Column, Field, Report, Table
 from polhode.cli.options import MODES
 from polhode.cli.whole import any_body, check_moments_alone
 from polhode.errors import PolhodeError
-from polhode.flybys import Flyby, flyby
+from polhode.flybys import Flyby, Forecast, flyby
 from polhode.io.writing import save_picture
-from polhode.units import amounts, quantity, vector
+from polhode.units import amount, amounts, quantity, vector
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -30,6 +30,12 @@ EARTH_RADIUS: Final = 6.371e6
 HOUR: Final = 3600.0
 SHARES: Final = (0.05, 0.5, 0.95)
 PICTURES: Final = (".png", ".pdf", ".svg")
+FORECAST: Final = (
+    Column("name", "number"),
+    Column("value", "value"),
+    Column("sigma", "sigma"),
+    Column("unit", "unit"),
+)
 
 
 def flyby_report(file: Path | None, options: FlybyOptions, body: BodyOptions) -> tuple[Report, Flyby]:
@@ -74,6 +80,12 @@ def flyby_report(file: Path | None, options: FlybyOptions, body: BodyOptions) ->
         {"mode": name, "share": Cell(f"{100.0 * share:.3g} %", share)}
         for name, share in found.modes().items()
     ]
+    if found.forecast is not None:
+        report.section("forecast", Table("forecast", FORECAST, _forecast(found.forecast)))
+        if not found.forecast.linear:
+            report.notes.append(
+                "forecast: where no sigma stands, the first order is not enough; see the quantiles"
+            )
     report.section("modes after", Table("modes", (Column("mode", "mode"), Column("share", "clones")), shares))
     if found.failed.any():
         report.notes.append(f"{int(found.failed.sum())} clones failed, and are left out of these numbers")
@@ -142,6 +154,16 @@ def _run_flyby(
             f'{radius / 1e3:.6g} km; state a larger distance, as in --periapsis "38011.486 km", or another '
             "--radius"
         )
+    pole_sigma = quantity(options.pole_sigma, "rad", "--pole-sigma")
+    if not pole_sigma >= 0.0:
+        raise PolhodeError(f"--pole-sigma: expected zero or more, got {options.pole_sigma!r}")
+    if not options.pole:
+        for name, is_given in (
+            ("--pole-sigma", pole_sigma > 0.0),
+            ("--azimuth", options.azimuth is not None),
+        ):
+            if is_given:
+                raise PolhodeError(f"{name}: the direction is missing; state it, as in --pole 0 0 1")
     orbit = orbits.from_elements(
         mu,
         eccentricity=options.eccentricity,
@@ -160,7 +182,9 @@ def _run_flyby(
             precession_period=precession,
             mode=options.mode,
             pole=vector(options.pole, "", "--pole") if options.pole else None,
-            pole_sigma=quantity(options.pole_sigma, "rad", "--pole-sigma"),
+            pole_sigma=pole_sigma,
+            phase=None if options.phase is None else amount(options.phase, "", "--phase"),
+            azimuth=None if options.azimuth is None else amount(options.azimuth, "rad", "--azimuth"),
             radius=radius,
             n=options.n,
             seed=options.seed,
@@ -176,6 +200,25 @@ def _before(name: str, label: str, hours: Any) -> list[Field]:
     is_same = high - low <= 1e-9 * median
     hint = "" if is_same else f"median; 5 % to 95 %: {low:.6g} to {high:.6g}"
     return [Field(f"before.{name}", label, median, "h", hint)]
+
+
+def _forecast(found: Forecast) -> list[dict[str, Any]]:
+    """Return each figure with its sigma, where the first order is enough for one."""
+    figures = (
+        ("P_psi", found.rotation_period, 1.0 / HOUR, "h"),
+        ("P_phi", found.precession_period, 1.0 / HOUR, "h"),
+        ("spin rate, ratio", found.spin_ratio, 1.0, ""),
+        ("pole shift", found.pole_shift, np.degrees(1.0), "deg"),
+    )
+    return [
+        {
+            "name": name,
+            "value": float(one.value) * factor,
+            "sigma": float(one.sigma) * factor if one.linear else None,
+            "unit": unit,
+        }
+        for name, one, factor, unit in figures
+    ]
 
 
 def _row(name: str, values: Any, unit: str) -> dict[str, Any]:

@@ -481,6 +481,13 @@ class FlybyOptions:
         directions.
     pole_sigma
         Standard deviation of this direction along each of two axes across it, such as "5 deg".
+    phase
+        Phase of the tumbling at the start, a fraction of the first period, such as 0.3 or "0.30 ± 0.02".
+        Default: all phases.
+    azimuth
+        Angle about --pole by which the body is turned at the start, such as "40 deg" or "40 ± 5 deg".
+        Default: all angles. With --pole, --phase and --azimuth, and a sigma of any number, the report has
+        standard deviations of what is after.
     eccentricity
         Eccentricity of the orbit, 1 or more: 4.25 for Apophis in 2029.
     periapsis
@@ -520,6 +527,8 @@ class FlybyOptions:
     mode: Annotated[Literal["long-axis", "short-axis"] | None, ROTATION] = None
     pole: Annotated[Words, WORDS, ROTATION] = ()
     pole_sigma: Annotated[str, ROTATION] = "0"
+    phase: Annotated[str | None, ROTATION] = None
+    azimuth: Annotated[str | None, ROTATION] = None
     eccentricity: Annotated[float, ORBIT] = 1.0
     periapsis: Annotated[str, ORBIT] = "40000 km"
     radius: Annotated[str | None, ORBIT] = None
