@@ -473,6 +473,21 @@ class TestAlgebra:
         ]
         assert slopes["pressure"][-1, 3:6] == pytest.approx((ends[0] - ends[1]) / (2 * h), rel=1e-6)
 
+    def test_derivatives_where_nothing_is_absorbed(self) -> None:
+        """The shares sum up to one, so that none can be more: differences go to the other side."""
+
+        def end(specular: float, diffuse: float) -> Floats:
+            load = lit(PLATE, (specular, diffuse), SUN, 0.1)
+            return PLAIN.simulate([0, 2], (0.1, 0, 0.2), load=load, rtol=1e-13).omega[-1]
+
+        load = lit(PLATE, (0.75, 0.25), SUN, 0.1)
+        run = PLAIN.simulate([0, 2], (0.1, 0, 0.2), load=load, rtol=1e-13)
+        found = run.sensitivity("differences").load[0]["coefficients"][-1, 3:6]
+        h = 1e-3
+        for k, step in enumerate(np.eye(2) * h):
+            here, near, far = (end(0.75 - n * step[0], 0.25 - n * step[1]) for n in range(3))
+            assert found[:, k] == pytest.approx((3 * here - 4 * near + far) / (2 * h), rel=1e-5)
+
     def test_methods(self) -> None:
         load = lit(PLATE, (0.3, 0.2))
         run = PLAIN.simulate([0, 1], (0.1, 0, 0), load=load)

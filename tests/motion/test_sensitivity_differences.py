@@ -207,3 +207,37 @@ def test_what_does_not_settle_is_refused() -> None:
         run.sensitivity("differences")
     with pytest.raises(ValueError, match="'series' or 'differences'"):
         run.sensitivity("exact")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("at_limit", "within", "number", "slope"),
+    [
+        # A thruster: duties below zero are zero.
+        (
+            loads.thrusters([(1, 0, 0)], [(0, 1, 0)], [0.1], command=[0.0], period=0.5),
+            loads.thrusters([(1, 0, 0)], [(0, 1, 0)], [0.1], command=[-0.5], period=0.5),
+            "command",
+            0.0,
+        ),
+        # A motor: (I − J) ω̇ = −τ.
+        (
+            loads.wheel(ALONG, J, torque=0.1, max_torque=0.1),
+            loads.wheel(ALONG, J, torque=0.05, max_torque=0.1),
+            "torque",
+            -1.9 / LESS,
+        ),
+    ],
+    ids=["thruster", "motor"],
+)
+def test_a_number_at_a_limit_of_the_law_has_no_derivative(
+    at_limit: Any, within: Any, number: str, slope: float
+) -> None:
+    """There the slopes on the two sides differ, and central differences of every order have their mean."""
+    times = [0.0, 1.9]
+    (found,) = PLAIN.simulate(times, (0, 0, 0.02), load=at_limit).sensitivity("differences").load
+    assert np.isnan(found[number][-1]).all()
+    assert all(
+        np.isfinite(values).all() for name, values in found.items() if name not in (number, "max_torque")
+    )
+    (found,) = PLAIN.simulate(times, (0, 0, 0.02), load=within).sensitivity("differences").load
+    assert found[number][-1, 5] == pytest.approx(slope, abs=1e-8)

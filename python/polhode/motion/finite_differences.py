@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from dataclasses import fields, is_dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, cast
 
 import numpy as np
@@ -68,8 +68,8 @@ def numbers(recipe: Recipe) -> Iterator[tuple[str, Floats, RecipeMaker]]:
     function = getattr(_core, made_by, None)
     if function is None or made_by in ("callback", "torque_callback", "with_states"):
         return
-    keywords = dict(arguments[-1]) if arguments and isinstance(arguments[-1], dict) else {}
-    plain = arguments[:-1] if keywords else arguments
+    has_keywords = bool(arguments) and isinstance(arguments[-1], dict)
+    plain, keywords = (arguments[:-1], arguments[-1]) if has_keywords else (arguments, {})
     named = dict(zip(inspect.signature(function).parameters, plain, strict=False)) | keywords
     for name, value in named.items():
         if isinstance(value, _core.Load):
@@ -168,8 +168,16 @@ FORWARD: Final = _Scheme(
     np.array([-25.0, 48.0, -36.0, 16.0, -3.0, 0.0, 0.0]) / 12.0,
 )
 """One-sided differences for a number that is zero and must not be negative, such as friction."""
+BACKWARD: Final = _Scheme(-FORWARD.steps, -FORWARD.six, -FORWARD.four)
+"""Those for a number at its upper limit."""
+SIXTH: Final = np.array([15.0, -6.0, 1.0, 15.0, -6.0, 1.0])
+"""Factors of the sixth difference at the steps of `CENTRAL`; -20 is that of the motion itself."""
 SETTLED: Final = 1e-5
 """Largest difference of the two orders, relative to the largest derivative by the same number."""
+SMOOTH: Final = 1e-4
+"""Largest sixth difference over a step, likewise. It is more where the slopes on the two sides differ: six
+times what they differ by. There central differences of every order have the mean of the two slopes.
+"""
 NOISE: Final = 1e-9
 """Error of a motion, relative to its scale."""
 RTOL: Final = 1e-13
@@ -391,7 +399,10 @@ class _Row:
     def combine_differences(
         self, scheme: _Scheme, moved: Callable[[Floats], Floats], step: float, name: str
     ) -> Floats:
-        """Combine the motions of a scheme; both orders agree where the motion is smooth in the number."""
+        """Combine the motions of a scheme; both orders agree where the motion is smooth in the number.
+
+        Where the slopes on the two sides of the number differ there is no derivative.
+        """
         ends = moved(scheme.steps * step)
         found = np.asarray(np.tensordot(scheme.six, ends, 1) / step)
         off = np.abs(found - np.tensordot(scheme.four, ends, 1) / step)
@@ -403,15 +414,26 @@ class _Row:
                 f"t = {float(self.run.t[late[0]])!r}: a change of the law is too close to that time, or the "
                 "motion too sensitive; ask for other or earlier times"
             )
+        if scheme is CENTRAL:
+            sixth = np.abs(np.tensordot(SIXTH, ends, 1) - 20.0 * self.unmoved) / step
+            found[~(sixth <= SMOOTH * size + NOISE * noise / step).all(axis=-1)] = np.nan
         return found
+
+    @cached_property
+    def unmoved(self) -> Floats:
+        """The motion itself, as its neighbours are computed."""
+        ends: Floats = self.ends(self.starts(self.free), self.load)[0]
+        return ends
 
 
 def _scheme(other: Callable[[float], _core.Load], step: float) -> _Scheme:
-    """Return the differences for a number that may be at its lower limit."""
-    try:
-        other(float(min(CENTRAL.steps)) * step)
-    except PolhodeError:
-        return FORWARD
+    """Return the differences for a number that may be at a limit."""
+    farthest = float(max(CENTRAL.steps)) * step
+    for direction, scheme in ((-1.0, FORWARD), (1.0, BACKWARD)):
+        try:
+            other(direction * farthest)
+        except PolhodeError:
+            return scheme
     return CENTRAL
 
 

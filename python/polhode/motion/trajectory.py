@@ -733,7 +733,9 @@ class Trajectory(metaclass=ClassWithHints):
         in its bearing or a motor saturates: each of the neighbouring motions finds its own time of the
         change. All numbers of an orbit are varied: also J₂, radius and pole of an oblate attractor, and each
         position of a table. Each number takes six runs, and more if it is zero: they find a step that fits
-        the motion. A number that is zero and must not be negative, such as a friction, is only increased.
+        the motion. A number that is zero and must not be negative, such as a friction, is only increased, and
+        one at an upper limit is only decreased. A derivative is NaN where the slopes on the two sides of a
+        number differ: by a duty of zero, or by a torque that is just the limit of a motor.
 
         The following numbers cannot be varied, and have no derivatives by differences:
 
