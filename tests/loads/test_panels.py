@@ -478,7 +478,8 @@ class TestAlgebra:
 
         def end(specular: float, diffuse: float) -> Floats:
             load = lit(PLATE, (specular, diffuse), SUN, 0.1)
-            return PLAIN.simulate([0, 2], (0.1, 0, 0.2), load=load, rtol=1e-13).omega[-1]
+            omega: Floats = PLAIN.simulate([0, 2], (0.1, 0, 0.2), load=load, rtol=1e-13).omega[-1]
+            return omega
 
         load = lit(PLATE, (0.75, 0.25), SUN, 0.1)
         run = PLAIN.simulate([0, 2], (0.1, 0, 0.2), load=load, rtol=1e-13)
