@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from oracles.wheels import ATTITUDE, BODY, OMEGA
 from polhode import MotionSensitivity, RigidBody, loads
 from polhode.errors import PolhodeError
+from polhode.motion.finite_differences import CENTRAL, _Row
 
 T = np.array([0.0, 1.0, 3.0])
 I3, J = 3.0, 0.5
@@ -241,3 +243,20 @@ def test_a_number_at_a_limit_of_the_law_has_no_derivative(
     )
     (found,) = PLAIN.simulate(times, (0, 0, 0.02), load=within).sensitivity("differences").load
     assert found[number][-1, 5] == pytest.approx(slope, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("corner", "is_smooth"), [(1.5e-5, True), (2e-5, False), (-1.5e-5, True), (-2e-5, False)]
+)
+def test_from_which_corner_on_there_is_no_derivative(corner: float, is_smooth: bool) -> None:
+    """The sixth difference of a corner is six times that of the slopes; it may be 1e-4 of the derivative."""
+    row: Any = SimpleNamespace(run=SimpleNamespace(t=np.array([1.0])), unmoved=np.zeros((1, 6)))
+
+    def moved(steps: Any) -> Any:
+        return ((steps + 0.5 * corner * np.abs(steps))[:, None, None]) * np.ones((1, 6))
+
+    found = _Row.combine_differences(row, CENTRAL, moved, 1.0, "number")
+    if is_smooth:
+        assert found == pytest.approx(np.ones((1, 6)), rel=1e-12)
+    else:
+        assert np.isnan(found).all()

@@ -84,7 +84,8 @@ def flyby_report(file: Path | None, options: FlybyOptions, body: BodyOptions) ->
         report.section("forecast", Table("forecast", FORECAST, _forecast(found.forecast)))
         if not found.forecast.linear:
             report.notes.append(
-                "forecast: where no sigma stands, the first order is not enough; see the quantiles"
+                "forecast: where no sigma stands, the first order is not enough; the table of quantiles says "
+                "how wide the distribution is"
             )
     report.section("modes after", Table("modes", (Column("mode", "mode"), Column("share", "clones")), shares))
     if found.failed.any():

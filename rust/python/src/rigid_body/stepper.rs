@@ -43,7 +43,7 @@ struct Acting {
 }
 
 /// Where a step begins: the state, with the states of the load as the equations have them, and these as they are reported.
-struct Begun {
+struct StepStart {
     phase: Phase,
     reported: Vec<f64>,
 }
@@ -71,13 +71,13 @@ impl Acting {
     }
 
     /// A step from time `t` and the state `now`, with these states of the load.
-    fn begin(&self, t: f64, now: &Phase, states: &[f64]) -> Begun {
+    fn begin(&self, t: f64, now: &Phase, states: &[f64]) -> StepStart {
         let load = self.load.get();
         let phase = Phase {
             internal_state: load.initial_states(&self.terms, t, &now.omega, states),
             ..*now
         };
-        Begun {
+        StepStart {
             reported: report_states(&self.terms, &phase),
             phase,
         }
@@ -221,28 +221,28 @@ impl PyStepper {
         });
         let now = &self.samples[self.samples.len() - 1];
         if same {
-            let begun = self.acting.begin(times[0], now, &now.internal_state);
-            let run = self.run(py, times, &self.chain, &self.acting, begun, &self.events)?;
+            let at_start = self.acting.begin(times[0], now, &now.internal_state);
+            let run = self.run(py, times, &self.chain, &self.acting, at_start, &self.events)?;
             self.add(run);
             return self.state(py);
         }
         let next = Acting::new(py, load, self.times[0])?;
         let states = next.states_of(&self.acting, &now.internal_state)?;
-        let begun = next.begin(times[0], now, &states);
+        let at_start = next.begin(times[0], now, &states);
         check_start(
             &next.terms,
             times[0],
-            &begun.phase,
-            &begun.reported,
+            &at_start.phase,
+            &at_start.reported,
             &states,
         )?;
         let mut chain = self.chain.clone();
         let terms = next.load.get().is_analytic().then_some(&next.terms[..]);
         (chain.take(self.method, terms, next.carried())).map_err(|error| to_py(py, &error))?;
-        self.check_momentum(py, &chain, &next, &begun)?;
+        self.check_momentum(py, &chain, &next, &at_start)?;
         let mut events = self.events.clone_ref(py);
         events.aim(py, next.load.get(), &next.terms)?;
-        let run = self.run(py, times, &chain, &next, begun, &events)?;
+        let run = self.run(py, times, &chain, &next, at_start, &events)?;
         if next.slots != self.acting.slots {
             self.slots.push((self.samples.len(), next.slots.clone()));
         }
@@ -378,13 +378,13 @@ impl PyStepper {
         times: [f64; 2],
         chain: &Chain,
         acting: &Acting,
-        begun: Begun,
+        at_start: StepStart,
         events: &Functions,
     ) -> PyResult<Run<Fault>> {
         let Acting { load, terms, .. } = acting;
         let load = load.get();
         load.check_run(py, times[0], times[1])?;
-        let initial = begun.phase;
+        let initial = at_start.phase;
         let subject = chain.body_at_point(times[0]);
         let interrupt = Interrupt::new(None);
         let watch = &mut |done| interrupt.poll(Some(done));
@@ -454,11 +454,11 @@ impl PyStepper {
         py: Python<'_>,
         chain: &Chain,
         next: &Acting,
-        begun: &Begun,
+        at_start: &StepStart,
     ) -> PyResult<()> {
-        let (t, omega) = (self.t(), &begun.phase.omega);
+        let (t, omega) = (self.t(), &at_start.phase.omega);
         let of = self.carried[self.carried.len() - 1].0;
-        let (into, _) = carried_along(&next.terms, t, omega, &begun.reported);
+        let (into, _) = carried_along(&next.terms, t, omega, &at_start.reported);
         let point = chain.body_at_point(t).point;
         let spin = chain.body().inertia_about(&point) * omega;
         if (into - of).norm() <= EQUAL_MOMENTA * (into.norm() + of.norm() + spin.norm()) {
