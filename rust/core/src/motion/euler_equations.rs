@@ -128,21 +128,35 @@ impl EulerEquations {
         w: &Vector3<f64>,
         n: &Vector3<f64>,
     ) -> Result<Vector3<f64>, Error> {
+        match self.massive_acceleration(w, n) {
+            Some([x, y, z]) => Ok(Vector3::new(x, y, z)),
+            None => self.massless_acceleration(w, n),
+        }
+    }
+
+    /// As [`Self::principal_acceleration`] where all moments are positive, else nothing. Three numbers by themselves: they stay in
+    /// registers, where a result with an error would be written and read again.
+    #[inline(always)]
+    pub(crate) fn massive_acceleration(
+        &self,
+        w: &Vector3<f64>,
+        n: &Vector3<f64>,
+    ) -> Option<[f64; 3]> {
         let [i1, i2, i3] = self.moments;
         if i1 == 0.0 {
-            return self.massless_acceleration(w, n);
+            return None;
         }
         let [d1, d2, d3] = self.differences;
-        Ok(Vector3::new(
+        Some([
             (n.x + d1 * w.y * w.z) / i1,
             (n.y + d2 * w.z * w.x) / i2,
             (n.z + d3 * w.x * w.y) / i3,
-        ))
+        ])
     }
 
     /// As [`Self::principal_acceleration`] where one or all moments are zero.
     #[cold]
-    fn massless_acceleration(
+    pub(crate) fn massless_acceleration(
         &self,
         w: &Vector3<f64>,
         n: &Vector3<f64>,

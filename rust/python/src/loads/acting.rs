@@ -204,6 +204,8 @@ pub(crate) struct ActingLoad<'a, 'py> {
     /// of Python, compiled ones, thrusters.
     first_of_functions: usize,
     first_of_controllers: usize,
+    /// Whether it is one compiled function and nothing else.
+    is_compiled_function: bool,
     /// Where the run begins, as far as it has been told.
     start: f64,
     /// A time within the span last entered.
@@ -228,6 +230,7 @@ impl<'a, 'py> ActingLoad<'a, 'py> {
         Self {
             first_of_functions,
             first_of_controllers: first_of_functions + functions.states(),
+            is_compiled_function: load.is_compiled_function(),
             controllers: controllers.into_iter().map(LoadFunctions::new).collect(),
             follows,
             torques: Vec::new(),
@@ -386,6 +389,11 @@ impl Load for ActingLoad<'_, '_> {
     /// Without room for the rates none are asked for.
     #[inline]
     fn act(&mut self, t: f64, phase: &Phase, rates: &mut [f64]) -> Result<Wrench, Fault> {
+        if self.is_compiled_function
+            && let [compiled] = self.functions.compiled[..]
+        {
+            return Ok(compiled.call(t, phase, &phase.internal_state, rates));
+        }
         if !self.controllers.is_empty() {
             let mut torques = take(&mut self.torques);
             self.commands(t, phase, self.first_of_controllers, rates, &mut torques)?;

@@ -2,6 +2,7 @@
 #![allow(unsafe_code)]
 
 use std::ffi::c_void;
+use std::mem::MaybeUninit;
 
 use nalgebra::Vector3;
 use polhode::motion::loads::{Windows, Wrench};
@@ -82,15 +83,32 @@ impl Compiled {
     /// What the function says at a time and a state; the rates of its own states, which are `own`, into `rates`.
     #[inline]
     pub(super) fn call(&self, t: f64, phase: &Phase, own: &[f64], rates: &mut [f64]) -> Wrench {
-        let (mut state, mut out) = ([0.0; 13 + MOST_STATES], [0.0; 6 + MOST_STATES]);
-        state[..13].copy_from_slice(&phase.numbers());
-        state[13..13 + own.len()].copy_from_slice(own);
+        // Only numbers that are read are written first: zeros in all the room would take as long as a short function.
+        let mut state = [MaybeUninit::<f64>::uninit(); 13 + MOST_STATES];
+        let mut out = [MaybeUninit::<f64>::uninit(); 6 + MOST_STATES];
+        let (body, own_states) = state.split_at_mut(13);
+        body.copy_from_slice(&phase.numbers().map(MaybeUninit::new));
+        for (place, number) in own_states.iter_mut().zip(own) {
+            place.write(*number);
+        }
+        let (wrench, own_rates) = out.split_at_mut(6);
+        wrench.fill(MaybeUninit::new(0.0));
+        for place in &mut own_rates[..rates.len()] {
+            place.write(0.0);
+        }
         // SAFETY: whoever passed the address to `loads.compiled` states that a function of this signature lives there, which
         // reads 13 numbers of `state` and its own states and writes 6 to `out` and their rates, and nothing else that is ours; `owner`
         // keeps it alive.
-        unsafe { (self.function)(t, state.as_ptr(), out.as_mut_ptr(), self.user_data) };
-        rates.copy_from_slice(&out[6..6 + rates.len()]);
-        let [fx, fy, fz, nx, ny, nz] = std::array::from_fn(|i| out[i] * self.factor);
+        unsafe {
+            let (state, out) = (state.as_ptr().cast(), out.as_mut_ptr().cast());
+            (self.function)(t, state, out, self.user_data);
+        }
+        // SAFETY: these numbers were written above, and perhaps again by the function.
+        let number = |place: usize| unsafe { out[place].assume_init() };
+        for (place, rate) in rates.iter_mut().enumerate() {
+            *rate = number(6 + place);
+        }
+        let [fx, fy, fz, nx, ny, nz] = std::array::from_fn(|place| number(place) * self.factor);
         Wrench {
             force: Vector3::new(fx, fy, fz),
             torque: Vector3::new(nx, ny, nz),

@@ -182,6 +182,14 @@ impl PyLoad {
             .all(|part| matches!(part.acts, LoadPart::Term(_)) && part.controller.is_none())
     }
 
+    /// Whether it is one compiled function and nothing else.
+    pub(super) fn is_compiled_function(&self) -> bool {
+        let [part] = &self.parts[..] else {
+            return false;
+        };
+        matches!(part.acts, LoadPart::Compiled(_)) && part.controller.is_none()
+    }
+
     /// Whether it calls Python.
     pub(crate) fn calls_python(&self) -> bool {
         self.callbacks().next().is_some()

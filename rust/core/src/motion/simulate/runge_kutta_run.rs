@@ -278,8 +278,10 @@ impl PhaseView {
             let (start, position, velocity) = self.origin;
             (phase.position, phase.velocity) = (position + velocity * (t - start), velocity);
         }
-        let states = phase.internal_state.len();
-        (phase.internal_state).copy_from_slice(&y.as_slice()[N.min(MOVING)..][..states]);
+        if N > MOVING {
+            let states = phase.internal_state.len();
+            (phase.internal_state).copy_from_slice(&y.as_slice()[MOVING..][..states]);
+        }
         if let Some(resting) = &self.resting {
             resting.keep(phase);
         }
@@ -311,9 +313,12 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
         let rates = &mut slope.as_mut_slice()[N.min(MOVING)..];
         rates.fill(0.0);
         let rates = &mut rates[..phase.internal_state.len()];
-        // Vector by vector, as they were written: a copy of the whole would wait for them.
+        // Number by number, as they were written: a copy of the whole, or of two at once, would wait for them.
         let (force, mut torque) = match self.load.act(t, phase, rates) {
-            Ok(Wrench { force, torque }) => (force, torque),
+            Ok(Wrench { force, torque }) => (
+                Vector3::new(force.x, force.y, force.z),
+                Vector3::new(torque.x, torque.y, torque.z),
+            ),
             Err(error) => return Err(error),
         };
         if let Some(resting) = &view.resting {
@@ -324,7 +329,10 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
         }
         // Read here and not before the load acts: numbers that were just written are slow to read in other pairs.
         let (q, w) = (quaternion(y), vector(y, 4));
-        let turning = self.euler.principal_acceleration(&w, &torque)?;
+        let turning = match self.euler.massive_acceleration(&w, &torque) {
+            Some(turning) => turning,
+            None => self.euler.massless_acceleration(&w, &torque)?.into(),
+        };
         let q_rate = rate(&q, &w);
         (slope[0], slope[1], slope[2], slope[3]) = (q_rate.i, q_rate.j, q_rate.k, q_rate.w);
         for i in 0..3 {
