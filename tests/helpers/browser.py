@@ -60,6 +60,7 @@ class Browser:
         flags += [f"--user-data-dir={folder / 'profile'}", "--no-first-run", "--disable-extensions"]
         flags += ["--disable-dev-shm-usage", "--host-resolver-rules=MAP * ~NOTFOUND"]  # no network
         flags += ["--allow-file-access-from-files"]  # of a page, what is in its frames
+        flags += ["--disable-features=BackForwardCache"]  # pages that are left are not kept
         self._process = subprocess.Popen(
             ["bash", "-c", command, BROWSER, *flags, "about:blank"],
             pass_fds=(to_browser, from_browser),

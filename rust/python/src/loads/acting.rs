@@ -288,6 +288,22 @@ impl<'a, 'py> ActingLoad<'a, 'py> {
         }
     }
 
+    /// The sum of all that act, after the controllers have asked the motors.
+    #[inline(never)]
+    fn act_together(&mut self, t: f64, phase: &Phase, rates: &mut [f64]) -> Result<Wrench, Fault> {
+        if !self.controllers.is_empty() {
+            let mut torques = take(&mut self.torques);
+            self.commands(t, phase, self.first_of_controllers, rates, &mut torques)?;
+            self.command(&torques);
+            self.torques = torques;
+        }
+        let mut sum = self.analytic.act(t, phase, rates)?;
+        let first = self.first_of_functions;
+        self.functions
+            .add(&self.call(t, phase), first, rates, &mut sum)?;
+        Ok(sum)
+    }
+
     /// Tells the motors what the controllers ask for.
     fn command(&mut self, torques: &[Vector3<f64>]) {
         for (term, follows) in self.follows.iter().enumerate() {
@@ -387,24 +403,15 @@ impl Load for ActingLoad<'_, '_> {
     }
 
     /// Without room for the rates none are asked for.
-    #[inline]
+    // One function by itself is called from where the equations are: as a part of what follows its answer would wait in memory.
+    #[inline(always)]
     fn act(&mut self, t: f64, phase: &Phase, rates: &mut [f64]) -> Result<Wrench, Fault> {
         if self.is_compiled_function
             && let [compiled] = self.functions.compiled[..]
         {
             return Ok(compiled.call(t, phase, &phase.internal_state, rates));
         }
-        if !self.controllers.is_empty() {
-            let mut torques = take(&mut self.torques);
-            self.commands(t, phase, self.first_of_controllers, rates, &mut torques)?;
-            self.command(&torques);
-            self.torques = torques;
-        }
-        let mut sum = self.analytic.act(t, phase, rates)?;
-        let first = self.first_of_functions;
-        self.functions
-            .add(&self.call(t, phase), first, rates, &mut sum)?;
-        Ok(sum)
+        self.act_together(t, phase, rates)
     }
 
     fn carried(&self) -> Vec<&dyn CarriedMomentum> {

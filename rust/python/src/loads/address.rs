@@ -81,7 +81,7 @@ impl Compiled {
     }
 
     /// What the function says at a time and a state; the rates of its own states, which are `own`, into `rates`.
-    #[inline]
+    #[inline(always)]
     pub(super) fn call(&self, t: f64, phase: &Phase, own: &[f64], rates: &mut [f64]) -> Wrench {
         // Only numbers that are read are written first: zeros in all the room would take as long as a short function.
         let mut state = [MaybeUninit::<f64>::uninit(); 13 + MOST_STATES];
