@@ -14,7 +14,7 @@ import pytest
 #: What Ctrl-C may take, in seconds.
 BAR = 0.2
 
-# In processor time, which other tests beside do not change: with three busy processes on two cores the longest was half of the bar.
+# Processor time is measured: beside three busy processes on two cores the longest was half of the bar.
 pytestmark = pytest.mark.skipif(
     not hasattr(signal, "setitimer"), reason="this system has no timers of processor time"
 )

@@ -216,7 +216,7 @@ def test_nothing_overflows_and_formulas_are_drawn(browser: Browser) -> None:
             if found["wide"] or found["beyond"] > 0 or found["empty"] or found["cut"] or is_tall:
                 bad.append((name, size, found))
         if not name.startswith(alike):
-            # The next page is opened at the size that this one has: to lay out a page that is left takes time.
+            # The next page is opened at the size of this one: to lay out a page that is left takes time.
             sizes.reverse()
     assert bad == []
 
