@@ -15,7 +15,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::address::Compiled;
+use super::address::{Compiled, NO_NUMBERS, StateNumbers};
 use super::callbacks::{Callback, Named, Slot, WithStates};
 use super::firing::Firing;
 use super::load::PyLoad;
@@ -174,7 +174,9 @@ impl<'a> LoadFunctions<'a> {
             } else {
                 &mut []
             };
-            *sum += compiled.call(t, phase, &phase.internal_state[own], into);
+            *sum += compiled.call(t, phase, &phase.internal_state[own], into, &mut {
+                NO_NUMBERS
+            });
         }
         if let Some(py) = call.py {
             for callback in &self.callbacks {
@@ -206,6 +208,8 @@ pub(crate) struct ActingLoad<'a, 'py> {
     first_of_controllers: usize,
     /// Whether it is one compiled function and nothing else.
     is_compiled_function: bool,
+    /// What this function is called with.
+    state: StateNumbers,
     /// Where the run begins, as far as it has been told.
     start: f64,
     /// A time within the span last entered.
@@ -231,6 +235,7 @@ impl<'a, 'py> ActingLoad<'a, 'py> {
             first_of_functions,
             first_of_controllers: first_of_functions + functions.states(),
             is_compiled_function: load.is_compiled_function(),
+            state: NO_NUMBERS,
             controllers: controllers.into_iter().map(LoadFunctions::new).collect(),
             follows,
             torques: Vec::new(),
@@ -409,7 +414,8 @@ impl Load for ActingLoad<'_, '_> {
         if self.is_compiled_function
             && let [compiled] = self.functions.compiled[..]
         {
-            return Ok(compiled.call(t, phase, &phase.internal_state, rates));
+            let state = &mut self.state;
+            return Ok(compiled.call(t, phase, &phase.internal_state, rates, state));
         }
         self.act_together(t, phase, rates)
     }

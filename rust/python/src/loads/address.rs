@@ -16,6 +16,12 @@ use super::callbacks::MOST_STATES;
 /// `void f(double t, const double state[13 + k], double out[6 + k], void *user_data)`, with k states of its own.
 type Function = unsafe extern "C" fn(f64, *const f64, *mut f64, *mut c_void);
 
+/// What a function is called with: body, states of its own, and room for all that a load may have.
+pub(super) type StateNumbers = [f64; 13 + MOST_STATES];
+
+/// Those numbers before a function is called.
+pub(super) const NO_NUMBERS: StateNumbers = [0.0; 13 + MOST_STATES];
+
 /// A compiled function as a term of a load.
 pub(super) struct Compiled {
     function: Function,
@@ -80,17 +86,24 @@ impl Compiled {
         }
     }
 
-    /// What the function says at a time and a state; the rates of its own states, which are `own`, into `rates`.
+    /// What the function says at a time and a state; the rates of its own states, which are `own`, into `rates`. The state is written
+    /// into `state`, which is zero beyond the states of its own.
     #[inline(always)]
-    pub(super) fn call(&self, t: f64, phase: &Phase, own: &[f64], rates: &mut [f64]) -> Wrench {
-        // Only numbers that are read are written first: zeros in all the room would take as long as a short function.
-        let mut state = [MaybeUninit::<f64>::uninit(); 13 + MOST_STATES];
-        let mut out = [MaybeUninit::<f64>::uninit(); 6 + MOST_STATES];
+    pub(super) fn call(
+        &self,
+        t: f64,
+        phase: &Phase,
+        own: &[f64],
+        rates: &mut [f64],
+        state: &mut StateNumbers,
+    ) -> Wrench {
         let (body, own_states) = state.split_at_mut(13);
-        body.copy_from_slice(&phase.numbers().map(MaybeUninit::new));
+        body.copy_from_slice(&phase.numbers());
         for (place, number) in own_states.iter_mut().zip(own) {
-            place.write(*number);
+            *place = *number;
         }
+        // Only numbers that are read are written first: zeros in all the room would take as long as a short function.
+        let mut out = [MaybeUninit::<f64>::uninit(); 6 + MOST_STATES];
         let (wrench, own_rates) = out.split_at_mut(6);
         wrench.fill(MaybeUninit::new(0.0));
         for place in &mut own_rates[..rates.len()] {
@@ -100,8 +113,7 @@ impl Compiled {
         // reads 13 numbers of `state` and its own states and writes 6 to `out` and their rates, and nothing else that is ours; `owner`
         // keeps it alive.
         unsafe {
-            let (state, out) = (state.as_ptr().cast(), out.as_mut_ptr().cast());
-            (self.function)(t, state, out, self.user_data);
+            (self.function)(t, state.as_ptr(), out.as_mut_ptr().cast(), self.user_data);
         }
         // SAFETY: these numbers were written above, and perhaps again by the function.
         let number = |place: usize| unsafe { out[place].assume_init() };
