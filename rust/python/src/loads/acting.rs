@@ -206,10 +206,8 @@ pub(crate) struct ActingLoad<'a, 'py> {
     /// of Python, compiled ones, thrusters.
     first_of_functions: usize,
     first_of_controllers: usize,
-    /// Whether it is one compiled function and nothing else.
-    is_compiled_function: bool,
-    /// What this function is called with.
-    state: StateNumbers,
+    /// If it is one compiled function and nothing else, what this function is called with.
+    state: Option<Box<StateNumbers>>,
     /// Where the run begins, as far as it has been told.
     start: f64,
     /// A time within the span last entered.
@@ -234,8 +232,7 @@ impl<'a, 'py> ActingLoad<'a, 'py> {
         Self {
             first_of_functions,
             first_of_controllers: first_of_functions + functions.states(),
-            is_compiled_function: load.is_compiled_function(),
-            state: NO_NUMBERS,
+            state: (load.is_compiled_function()).then(|| Box::new(NO_NUMBERS)),
             controllers: controllers.into_iter().map(LoadFunctions::new).collect(),
             follows,
             torques: Vec::new(),
@@ -411,10 +408,9 @@ impl Load for ActingLoad<'_, '_> {
     // One function by itself is called from where the equations are: as a part of what follows its answer would wait in memory.
     #[inline(always)]
     fn act(&mut self, t: f64, phase: &Phase, rates: &mut [f64]) -> Result<Wrench, Fault> {
-        if self.is_compiled_function
+        if let Some(state) = &mut self.state
             && let [compiled] = self.functions.compiled[..]
         {
-            let state = &mut self.state;
             return Ok(compiled.call(t, phase, &phase.internal_state, rates, state));
         }
         self.act_together(t, phase, rates)

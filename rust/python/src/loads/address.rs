@@ -88,7 +88,8 @@ impl Compiled {
 
     /// What the function says at a time and a state; the rates of its own states, which are `own`, into `rates`. The state is written
     /// into `state`, which is zero beyond the states of its own.
-    #[inline(always)]
+    // By itself: who calls Python instead, perhaps run within run, has no room for these numbers on its stack.
+    #[inline(never)]
     pub(super) fn call(
         &self,
         t: f64,
