@@ -222,10 +222,6 @@ ROWS: dict[str, dict[str, tuple[str, str]]] = {
             "mass, centre and tensor of ten million particles",
             "NumPy: only `masses.sum()` and `positions.sum()` of the same arrays",
         ),
-        "inertia of 1e7 particles, beside the memory: BLAS ddot": (
-            "mass, centre and tensor of ten million particles",
-            "what the memory allows: `ddot` of BLAS reads each of the same arrays once",
-        ),
         "inertia of 1e7 particles, beside numpy: matrix products": (
             "mass, centre and tensor of ten million particles",
             "NumPy: the same by matrix products",
