@@ -146,6 +146,33 @@ pub fn dispatch<K: Kernel>(kernel: K) -> K::Output {
     }
 }
 
+/// Runs the kernel as [`dispatch`] does, or returns it where the level is the baseline of x86-64, which is not compiled then: for
+/// kernels on many rows side by side, where two to a register gain little over one row after the other.
+///
+/// # Errors
+/// The kernel, at that level.
+#[inline]
+pub(crate) fn dispatch_fused<K: Kernel>(kernel: K) -> Result<K::Output, K> {
+    match level() {
+        #[cfg(all(target_arch = "x86_64", not(any(baseline_alone, without_avx512, test))))]
+        #[expect(
+            unsafe_code,
+            reason = "`level` is only ever a level whose instructions were detected"
+        )]
+        Level::Avx512 => Ok(unsafe { avx512(kernel) }),
+        #[cfg(all(target_arch = "x86_64", not(any(baseline_alone, test))))]
+        #[expect(
+            unsafe_code,
+            reason = "`level` is only ever a level whose instructions were detected"
+        )]
+        Level::Avx2 => Ok(unsafe { avx2(kernel) }),
+        #[cfg(all(target_arch = "x86_64", not(any(baseline_alone, test))))]
+        _ => Err(kernel),
+        #[cfg(not(all(target_arch = "x86_64", not(any(baseline_alone, test)))))]
+        _ => Ok(dispatch(kernel)),
+    }
+}
+
 // Out of line: the kernel would be compiled again wherever a caller of `dispatch` is.
 #[inline(never)]
 fn baseline<K: Kernel>(kernel: K) -> K::Output {

@@ -124,14 +124,14 @@ impl Ensemble<'_> {
     fn integrate(
         &self,
         row: Member<'_>,
-        mut load: ActingLoad<'_, '_>,
+        load: ActingLoad<'_, '_>,
         events: &mut dyn Events<Error = Fault>,
     ) -> Run<Fault> {
-        let Some(varying) = self.varying else {
-            return row.integrate(&mut load, events);
+        let mut load = match self.varying {
+            Some(body) => VaryingLoad::new(body, load, &row.body()),
+            None => VaryingLoad::constant(load),
         };
-        let start = row.body();
-        row.integrate(&mut VaryingLoad::new(varying, load, &start), events)
+        row.integrate(&mut load, events)
     }
 }
 

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use numpy::PyArray1;
 use polhode::motion::attitude::components;
-use polhode::motion::loads::{CarriedMomentum, Term};
+use polhode::motion::loads::{CarriedMomentum, Term, VaryingLoad};
 use polhode::motion::simulate::{Chain, Crossing, Effort, End, Method, NoEvents, Run, Tolerance};
 use polhode::motion::state::Phase;
 use pyo3::exceptions::PyValueError;
@@ -389,7 +389,7 @@ impl PyStepper {
         let interrupt = Interrupt::new(None);
         let watch = &mut |done| interrupt.poll(Some(done));
         let run = if load.calls_python() || !events.is_empty() {
-            let mut load = ActingLoad::new(load, terms, subject, Some(py));
+            let load = ActingLoad::new(load, terms, subject, Some(py));
             let states = States {
                 slots: &acting.slots,
                 terms,
@@ -397,14 +397,15 @@ impl PyStepper {
             chain.run(
                 &times,
                 initial,
-                &mut load,
+                &mut VaryingLoad::constant(load),
                 &mut events.with_callbacks(py, states),
                 watch,
             )
         } else {
             py.detach(|| {
-                let mut load = ActingLoad::new(load, terms, subject, None);
-                chain.run(&times, initial, &mut load, &mut NoEvents::new(), watch)
+                let load = ActingLoad::new(load, terms, subject, None);
+                let load = &mut VaryingLoad::constant(load);
+                chain.run(&times, initial, load, &mut NoEvents::new(), watch)
             })
         };
         let mut run = run.map_err(|error| to_py(py, &error))?;

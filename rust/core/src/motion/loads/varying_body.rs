@@ -338,8 +338,15 @@ impl Instant {
 /// A load on a varying body, as the load under which the body of the start moves in the same way.
 #[derive(Clone, Debug)]
 pub struct VaryingLoad<'a, L> {
-    body: &'a VaryingBody,
     load: L,
+    /// Nothing where the body does not vary.
+    change: Option<Change<'a>>,
+}
+
+/// How the body of a [`VaryingLoad`] varies.
+#[derive(Clone, Debug)]
+struct Change<'a> {
+    body: &'a VaryingBody,
     start: BodyAtPoint,
     /// Σ J a aᵀ of the wheels that turn freely.
     wheels: Matrix3<f64>,
@@ -361,20 +368,60 @@ impl<'a, L: Load> VaryingLoad<'a, L> {
         let wheels: Matrix3<f64> = turning.map(|(a, j)| a * a.transpose() * j).sum();
         let tensor = start.inertia + parallel(start.mass, &(start.center * start.mass)) - wheels;
         Self {
-            body,
             load,
-            start: *start,
-            wheels,
-            tensor,
-            has_bearing,
+            change: Some(Change {
+                body,
+                start: *start,
+                wheels,
+                tensor,
+                has_bearing,
+            }),
         }
     }
 
-    /// The body at time `t`, which the load is told.
-    fn tell(&mut self, t: f64) -> Instant {
+    /// `load` itself, on a body that does not vary: runs of bodies of both kinds are compiled once.
+    pub fn constant(load: L) -> Self {
+        Self { load, change: None }
+    }
+
+    /// Set the body of the load to that at time `t`, if it varies.
+    fn set_body_at(&mut self, t: f64) {
+        if let Some(change) = &self.change {
+            change.set_body_at(t, &mut self.load);
+        }
+    }
+}
+
+impl Change<'_> {
+    /// Compute the body at time `t`, and set it in the load.
+    fn set_body_at(&self, t: f64, load: &mut impl Load) -> Instant {
         let now = self.body.instant(t, self.start.pivoted);
-        self.load.set_body(&now.body_at_point(&self.start));
+        load.set_body(&now.body_at_point(&self.start));
         now
+    }
+
+    /// Compute what a load exerts on the body of the start, for the motion of the body at time `t`. Not inlined: the loop over steps
+    /// of a body that does not vary has no room for it.
+    #[inline(never)]
+    fn act<L: Load>(
+        &self,
+        load: &mut L,
+        t: f64,
+        phase: &Phase,
+        rates: &mut [f64],
+    ) -> Result<Wrench, L::Error> {
+        let now = self.set_body_at(t, load);
+        let Wrench { force, torque } = load.act(t, phase, rates)?;
+        let omega = &phase.omega;
+        let tensor = now.tensor - self.wheels;
+        let torque =
+            torque + now.torque_of_change(self.body, omega) - omega.cross(&(tensor * omega));
+        let none = || Error::Motion(MotionFault::NoBodyBetween { t });
+        let acceleration = tensor.cholesky().ok_or_else(none)?.solve(&torque);
+        Ok(Wrench {
+            force: force * (self.start.mass / now.mass),
+            torque: self.tensor * acceleration + omega.cross(&(self.tensor * omega)),
+        })
     }
 }
 
@@ -382,7 +429,10 @@ impl<L: Load> Load for VaryingLoad<'_, L> {
     type Error = L::Error;
 
     fn analytic(&self) -> Option<&[Term]> {
-        None
+        match self.change {
+            Some(_) => None,
+            None => self.load.analytic(),
+        }
     }
 
     fn exerts_force(&self) -> bool {
@@ -390,30 +440,40 @@ impl<L: Load> Load for VaryingLoad<'_, L> {
     }
 
     fn depends_on_rates(&self) -> bool {
-        true
+        self.change.is_some() || self.load.depends_on_rates()
     }
 
     fn breaks(&self, from: f64, to: f64) -> Vec<f64> {
         let mut breaks = self.load.breaks(from, to);
-        let knots = self.body.times();
-        // The first two pieces are one cubic, and the last two.
-        breaks.extend(knots.iter().skip(2).take(knots.len().saturating_sub(4)));
+        if let Some(change) = &self.change {
+            let knots = change.body.times();
+            // The first two pieces are one cubic, and the last two.
+            breaks.extend(knots.iter().skip(2).take(knots.len().saturating_sub(4)));
+        }
         breaks
     }
 
     fn enter(&mut self, from: f64, to: f64) -> Result<(), L::Error> {
-        if self.has_bearing {
-            return Err(Error::Motion(MotionFault::VaryingWithBearing).into());
+        if let Some(change) = &self.change {
+            if change.has_bearing {
+                return Err(Error::Motion(MotionFault::VaryingWithBearing).into());
+            }
+            change.body.check_at(from)?;
+            change.body.check_at(to)?;
+            change.set_body_at(from, &mut self.load);
         }
-        self.body.check_at(from)?;
-        self.body.check_at(to)?;
-        self.tell(from);
         self.load.enter(from, to)
     }
 
     fn settle(&mut self, t: f64, phase: &Phase) {
-        self.tell(t);
+        self.set_body_at(t);
         self.load.settle(t, phase);
+    }
+
+    fn set_body(&mut self, body: &BodyAtPoint) {
+        if self.change.is_none() {
+            self.load.set_body(body);
+        }
     }
 
     fn law_switches(&self) -> Vec<LawSwitch> {
@@ -452,23 +512,16 @@ impl<L: Load> Load for VaryingLoad<'_, L> {
         self.load.sizes()
     }
 
+    #[inline]
     fn act(&mut self, t: f64, phase: &Phase, rates: &mut [f64]) -> Result<Wrench, L::Error> {
-        let now = self.tell(t);
-        let Wrench { force, torque } = self.load.act(t, phase, rates)?;
-        let omega = &phase.omega;
-        let tensor = now.tensor - self.wheels;
-        let torque =
-            torque + now.torque_of_change(self.body, omega) - omega.cross(&(tensor * omega));
-        let none = || Error::Motion(MotionFault::NoBodyBetween { t });
-        let acceleration = tensor.cholesky().ok_or_else(none)?.solve(&torque);
-        Ok(Wrench {
-            force: force * (self.start.mass / now.mass),
-            torque: self.tensor * acceleration + omega.cross(&(self.tensor * omega)),
-        })
+        match &self.change {
+            Some(change) => change.act(&mut self.load, t, phase, rates),
+            None => self.load.act(t, phase, rates),
+        }
     }
 
     fn jump(&mut self, t: f64, phase: &mut Phase) -> Result<(), L::Error> {
-        self.tell(t);
+        self.set_body_at(t);
         self.load.jump(t, phase)
     }
 }

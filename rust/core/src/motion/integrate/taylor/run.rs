@@ -18,7 +18,7 @@ use crate::error::{Error, MotionFault};
 use crate::motion::loads::variables::{Block, Fixed, VariationJet};
 use crate::motion::loads::{SeriesStructure, Term};
 use crate::motion::problem::{End, Run, Task, check_times};
-use crate::numerics::dispatch::{Kernel, dispatch};
+use crate::numerics::dispatch::{Kernel, dispatch, dispatch_fused};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lane::Lane;
 use crate::numerics::threads::{fill_blocks, lock, thread_count};
@@ -442,13 +442,21 @@ struct SideBySide<'a, 'b> {
 
 impl SideBySide<'_, '_> {
     /// Run them, in a separate function for each number of directions: all in one take four megabytes of the stack without
-    /// optimization.
+    /// optimization. Without fused multiply-add they run one by one, with the same bits.
     fn run(self) -> ControlFlow<()> {
-        match self.settings.parts.directions {
-            0 => dispatch(Directed::<0>(self)),
-            1 => dispatch(Directed::<1>(self)),
-            _ => dispatch(Directed::<3>(self)),
-        }
+        let motions = match self.settings.parts.directions {
+            0 => dispatch_fused(Directed::<0>(self)).map_err(|it| it.0),
+            1 => dispatch_fused(Directed::<1>(self)).map_err(|it| it.0),
+            _ => dispatch_fused(Directed::<3>(self)).map_err(|it| it.0),
+        };
+        motions.unwrap_or_else(|motions| {
+            dispatch(OneByOne {
+                settings: motions.settings,
+                jobs: motions.jobs,
+                watch: motions.watch,
+                observer: None,
+            })
+        })
     }
 }
 
