@@ -146,11 +146,18 @@ pub fn dispatch<K: Kernel>(kernel: K) -> K::Output {
     }
 }
 
-/// Runs the kernel as [`dispatch`] does, or returns it where the level is the baseline of x86-64, which is not compiled then: for
-/// kernels on many rows side by side, where two to a register gain little over one row after the other.
+/// Runs the kernel as [`dispatch`] does. At the baseline of x86-64 it returns the kernel, which is not compiled for it: with two
+/// doubles to a register, many rows side by side take about as long as one after the other.
 ///
 /// # Errors
 /// The kernel, at that level.
+#[cfg_attr(
+    not(all(target_arch = "x86_64", not(any(baseline_alone, test)))),
+    expect(
+        clippy::unnecessary_wraps,
+        reason = "the baseline is compiled where it may be the best level"
+    )
+)]
 #[inline]
 pub(crate) fn dispatch_fused<K: Kernel>(kernel: K) -> Result<K::Output, K> {
     match level() {
