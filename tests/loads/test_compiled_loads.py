@@ -25,6 +25,7 @@ void spring(double t, const double *state, double *out, void *user_data) {
 void nothing_real(double t, const double *state, double *out, void *user_data) {
     out[3] = t > 1.0 ? 0.0 / (t - t) : 0.0;
 }
+void nothing(double t, const double *state, double *out, void *user_data) {}
 """
 COMPILER = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
 pytestmark = pytest.mark.skipif(COMPILER is None, reason="no C compiler")
@@ -41,7 +42,7 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     source.write_text(SOURCE)
     subprocess.run([str(COMPILER), "-O2", "-shared", "-fPIC", "-o", str(shared), str(source)], check=True)
     library = ctypes.CDLL(str(shared))
-    for function in (library.drag, library.spring, library.nothing_real):
+    for function in (library.drag, library.spring, library.nothing_real, library.nothing):
         function.restype = None
         function.argtypes = [
             ctypes.c_double,
@@ -89,6 +90,23 @@ def test_forces_and_stacks_on_all_cores(library: ctypes.CDLL, rng: np.random.Gen
     assert np.abs(got.position[..., 0] - np.cos(TIMES)).max() < 1e-10
     alone = BODY.simulate(TIMES, starts[7], load=load, position=(1, 0, 0), rtol=1e-12)
     assert np.array_equal(got.omega[7], alone.omega)
+
+
+@pytest.mark.parametrize("method", ["dop853", "radau"])
+@pytest.mark.parametrize("function", ["drag", "spring"])
+def test_a_function_alone_and_in_a_sum_have_the_same_bits(
+    library: ctypes.CDLL, function: str, method: Any
+) -> None:
+    """A function alone is called directly; in a sum it adds to what the others exert."""
+    alone = loads.compiled(LowLevelCallable(getattr(library, function)))
+    in_sum = alone + loads.compiled(LowLevelCallable(library.nothing))
+    here, there = (
+        BODY.simulate(TIMES, RATES, load=load, position=(1, 0, 0), method=method, rtol=1e-11)
+        for load in (alone, in_sum)
+    )
+    assert here.evaluations == there.evaluations
+    for name in ("omega", "quaternion", "position", "velocity"):
+        assert np.array_equal(getattr(here, name), getattr(there, name)), name
 
 
 def test_what_is_no_number_ends_the_run(library: ctypes.CDLL) -> None:

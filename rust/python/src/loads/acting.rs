@@ -15,7 +15,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::address::{Compiled, NO_NUMBERS, StateNumbers};
+use super::address::{Compiled, Exchange};
 use super::callbacks::{Callback, Named, Slot, WithStates};
 use super::firing::Firing;
 use super::load::PyLoad;
@@ -174,9 +174,7 @@ impl<'a> LoadFunctions<'a> {
             } else {
                 &mut []
             };
-            *sum += compiled.call(t, phase, &phase.internal_state[own], into, &mut {
-                NO_NUMBERS
-            });
+            *sum += compiled.call_once(t, phase, &phase.internal_state[own], into);
         }
         if let Some(py) = call.py {
             for callback in &self.callbacks {
@@ -207,7 +205,7 @@ pub(crate) struct ActingLoad<'a, 'py> {
     first_of_functions: usize,
     first_of_controllers: usize,
     /// If it is one compiled function and nothing else, what this function is called with.
-    state: Option<Box<StateNumbers>>,
+    exchange: Option<Box<Exchange>>,
     /// Where the run begins, as far as it has been told.
     start: f64,
     /// A time within the span last entered.
@@ -232,7 +230,7 @@ impl<'a, 'py> ActingLoad<'a, 'py> {
         Self {
             first_of_functions,
             first_of_controllers: first_of_functions + functions.states(),
-            state: (load.is_compiled_function()).then(|| Box::new(NO_NUMBERS)),
+            exchange: (load.is_compiled_function()).then(|| Box::new(Exchange::new())),
             controllers: controllers.into_iter().map(LoadFunctions::new).collect(),
             follows,
             torques: Vec::new(),
@@ -405,15 +403,20 @@ impl Load for ActingLoad<'_, '_> {
     }
 
     /// Without room for the rates none are asked for.
-    // One function by itself is called from where the equations are: as a part of what follows its answer would wait in memory.
+    // One function by itself is called from where the equations are, and its answer stays in registers. So what all others exert is
+    // returned number by number: otherwise both answers would be in memory.
     #[inline(always)]
     fn act(&mut self, t: f64, phase: &Phase, rates: &mut [f64]) -> Result<Wrench, Fault> {
-        if let Some(state) = &mut self.state
+        if let Some(exchange) = &mut self.exchange
             && let [compiled] = self.functions.compiled[..]
         {
-            return Ok(compiled.call(t, phase, &phase.internal_state, rates, state));
+            return Ok(compiled.call(t, phase, &phase.internal_state, rates, exchange));
         }
-        self.act_together(t, phase, rates)
+        let Wrench { force, torque } = self.act_together(t, phase, rates)?;
+        Ok(Wrench {
+            force: Vector3::new(force.x, force.y, force.z),
+            torque: Vector3::new(torque.x, torque.y, torque.z),
+        })
     }
 
     fn carried(&self) -> Vec<&dyn CarriedMomentum> {

@@ -2,7 +2,6 @@
 #![allow(unsafe_code)]
 
 use std::ffi::c_void;
-use std::mem::MaybeUninit;
 
 use nalgebra::Vector3;
 use polhode::motion::loads::{Windows, Wrench};
@@ -16,11 +15,23 @@ use super::callbacks::MOST_STATES;
 /// `void f(double t, const double state[13 + k], double out[6 + k], void *user_data)`, with k states of its own.
 type Function = unsafe extern "C" fn(f64, *const f64, *mut f64, *mut c_void);
 
-/// What a function is called with: body, states of its own, and room for all that a load may have.
-pub(super) type StateNumbers = [f64; 13 + MOST_STATES];
+/// What a function reads and writes, with room for all states that a load may have.
+pub(super) struct Exchange {
+    /// Body and states of its own; zero beyond them.
+    state: [f64; 13 + MOST_STATES],
+    /// Force, torque and the rates of its states.
+    out: [f64; 6 + MOST_STATES],
+}
 
-/// Those numbers before a function is called.
-pub(super) const NO_NUMBERS: StateNumbers = [0.0; 13 + MOST_STATES];
+impl Exchange {
+    /// Before a function is called.
+    pub(super) const fn new() -> Self {
+        Self {
+            state: [0.0; 13 + MOST_STATES],
+            out: [0.0; 6 + MOST_STATES],
+        }
+    }
+}
 
 /// A compiled function as a term of a load.
 pub(super) struct Compiled {
@@ -86,47 +97,72 @@ impl Compiled {
         }
     }
 
-    /// What the function says at a time and a state; the rates of its own states, which are `own`, into `rates`. The state is written
-    /// into `state`, which is zero beyond the states of its own.
-    // By itself: who calls Python instead, perhaps run within run, has no room for these numbers on its stack.
-    #[inline(never)]
+    /// What the function says at a time and a state; the rates of its own states, which are `own`, into `rates`.
+    // Numbers are read one by one: they were written just before, one by one, and a processor that reads two of them at once waits
+    // until both are in the cache.
+    #[inline(always)]
     pub(super) fn call(
         &self,
         t: f64,
         phase: &Phase,
         own: &[f64],
         rates: &mut [f64],
-        state: &mut StateNumbers,
+        exchange: &mut Exchange,
     ) -> Wrench {
-        let (body, own_states) = state.split_at_mut(13);
-        body.copy_from_slice(&phase.numbers());
+        let Exchange { state, out } = exchange;
+        let (q, w, r, v) = (
+            &phase.attitude,
+            &phase.omega,
+            &phase.position,
+            &phase.velocity,
+        );
+        let body = [
+            &q.i, &q.j, &q.k, &q.w, &w.x, &w.y, &w.z, &r.x, &r.y, &r.z, &v.x, &v.y, &v.z,
+        ];
+        let (of_body, own_states) = state.split_at_mut(13);
+        for (place, number) in of_body.iter_mut().zip(body) {
+            *place = read(number);
+        }
         for (place, number) in own_states.iter_mut().zip(own) {
             *place = *number;
         }
-        // Only numbers that are read are written first: zeros in all the room would take as long as a short function.
-        let mut out = [MaybeUninit::<f64>::uninit(); 6 + MOST_STATES];
-        let (wrench, own_rates) = out.split_at_mut(6);
-        wrench.fill(MaybeUninit::new(0.0));
-        for place in &mut own_rates[..rates.len()] {
-            place.write(0.0);
-        }
+        out[..6].fill(0.0);
+        out[6..][..rates.len()].fill(0.0);
         // SAFETY: whoever passed the address to `loads.compiled` states that a function of this signature lives there, which
         // reads 13 numbers of `state` and its own states and writes 6 to `out` and their rates, and nothing else that is ours; `owner`
         // keeps it alive.
         unsafe {
-            (self.function)(t, state.as_ptr(), out.as_mut_ptr().cast(), self.user_data);
+            (self.function)(t, state.as_ptr(), out.as_mut_ptr(), self.user_data);
         }
-        // SAFETY: these numbers were written above, and perhaps again by the function.
-        let number = |place: usize| unsafe { out[place].assume_init() };
-        for (place, rate) in rates.iter_mut().enumerate() {
-            *rate = number(6 + place);
+        for (rate, number) in rates.iter_mut().zip(&out[6..]) {
+            *rate = *number;
         }
-        let [fx, fy, fz, nx, ny, nz] = std::array::from_fn(|place| number(place) * self.factor);
+        let [fx, fy, fz, nx, ny, nz] = std::array::from_fn(|place| read(&out[place]) * self.factor);
         Wrench {
             force: Vector3::new(fx, fy, fz),
             torque: Vector3::new(nx, ny, nz),
         }
     }
+
+    /// [`Self::call`] with an exchange of its own. Not inlined: who calls Python instead, perhaps run within run, has no room for it on
+    /// its stack.
+    #[inline(never)]
+    pub(super) fn call_once(
+        &self,
+        t: f64,
+        phase: &Phase,
+        own: &[f64],
+        rates: &mut [f64],
+    ) -> Wrench {
+        self.call(t, phase, own, rates, &mut Exchange::new())
+    }
+}
+
+/// Read a number by itself.
+#[inline(always)]
+fn read(number: &f64) -> f64 {
+    // SAFETY: what a reference points to can be read.
+    unsafe { std::ptr::read_volatile(number) }
 }
 
 /// The address of a function and its user data.

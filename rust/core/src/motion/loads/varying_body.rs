@@ -514,10 +514,15 @@ impl<L: Load> Load for VaryingLoad<'_, L> {
 
     #[inline]
     fn act(&mut self, t: f64, phase: &Phase, rates: &mut [f64]) -> Result<Wrench, L::Error> {
-        match &self.change {
-            Some(change) => change.act(&mut self.load, t, phase, rates),
-            None => self.load.act(t, phase, rates),
-        }
+        let Some(change) = &self.change else {
+            return self.load.act(t, phase, rates);
+        };
+        // Number by number: what a load on a body that does not vary exerts stays in registers then.
+        let Wrench { force, torque } = change.act(&mut self.load, t, phase, rates)?;
+        Ok(Wrench {
+            force: Vector3::new(force.x, force.y, force.z),
+            torque: Vector3::new(torque.x, torque.y, torque.z),
+        })
     }
 
     fn jump(&mut self, t: f64, phase: &mut Phase) -> Result<(), L::Error> {
