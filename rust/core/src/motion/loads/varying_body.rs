@@ -380,6 +380,24 @@ impl<'a, L: Load> VaryingLoad<'a, L> {
     }
 
     /// `load` itself, on a body that does not vary: runs of bodies of both kinds are compiled once.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    /// use polhode::mass::{Amount, solids};
+    /// use polhode::motion::loads::{Analytic, VaryingLoad};
+    /// use polhode::motion::simulate::{Method, NoEvents, Phase, State, Task, Tolerance, simulate};
+    /// use polhode::nalgebra::{UnitQuaternion, Vector3};
+    ///
+    /// let ball = solids::sphere(1.0, Amount::Mass(5.0))?;
+    /// let phase = Phase::in_place(&State { attitude: UnitQuaternion::identity(), omega: Vector3::z() });
+    /// let task = Task::free(&ball, phase, &[0.0, 2.0], Method::Dop853, Tolerance::new(1e-12, 0.0)?);
+    /// let mut load = VaryingLoad::constant(Analytic::new(&[], task.body_at_point));
+    /// let run = simulate(&task, &mut load, &mut NoEvents::new(), &mut |_| ControlFlow::Continue(())).into_result()?;
+    /// assert!((run.phase.omega.z - 1.0).abs() < 1e-12);
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
     pub fn constant(load: L) -> Self {
         Self { load, change: None }
     }

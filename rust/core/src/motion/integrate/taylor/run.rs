@@ -442,7 +442,7 @@ struct SideBySide<'a, 'b> {
 
 impl SideBySide<'_, '_> {
     /// Run them, in a separate function for each number of directions: all in one take four megabytes of the stack without
-    /// optimization. Without fused multiply-add they run one by one, with the same bits.
+    /// optimization. At the baseline of x86-64 they run one by one, with the same bits.
     fn run(self) -> ControlFlow<()> {
         let motions = match self.settings.parts.directions {
             0 => dispatch_fused(Directed::<0>(self)).map_err(|it| it.0),
