@@ -682,7 +682,13 @@ def _directions(triangle: Floats, inertia: Floats, scaled: bool) -> tuple[Direct
     large = float(np.abs(triangle[:, :3]).max()) * float(np.sqrt(size))
     lost = values <= 1e-11 * large
     weak = ~lost & (values * _UNCERTAIN < 1.0)
-    named = [(math.inf, one) for one in echelon(rows[lost] @ space.T)]
+    open_rows = rows[lost] @ space.T
+    if not scaled:
+        # A multiple of the tensor changes nothing: without its largest element, directions that differ have names that differ.
+        own = np.array([inertia[i, j] for i, j in ELEMENTS])
+        largest = int(np.argmax(np.abs(own)))
+        open_rows = open_rows - np.outer(open_rows[:, largest] / own[largest], own)
+    named = [(math.inf, one) for one in echelon(open_rows)]
     named += [(1.0 / float(value), space @ row) for value, row in zip(values[weak], rows[weak], strict=True)]
     for relative, row in named:
         vector, words = _describe(row, inertia, scaled)

@@ -120,7 +120,7 @@ fn residuals_orthonormality_order_and_handedness() {
             assert!(w.is_sorted(), "{level}: {a:?}");
             let norm = w[0].abs().max(w[2].abs());
             // Scaled exactly, so that nothing under- or overflows.
-            let (scale, _) = Double::<false>::new(norm).power_of_two_scale();
+            let (scale, _) = Double::<{ Level::Baseline as u8 }>::new(norm).power_of_two_scale();
             let scaled = |x: f64| x * scale.get();
             for (k, &eigenvalue) in w.iter().enumerate() {
                 let residual = [0, 1, 2].map(|i| {

@@ -17,7 +17,7 @@ use super::error_bound::UNIT;
 use crate::error::Error;
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::double_double::two_sum;
-use crate::numerics::lane::{Double, Lane};
+use crate::numerics::lane::{BASELINE, Double, Lane};
 use crate::numerics::split_vector::along_axes;
 use crate::numerics::structure_of_arrays::{ROWS, StructureOfArrays};
 use crate::numerics::threads::{Watch, fill_blocks};
@@ -300,7 +300,7 @@ impl LocalFrame {
 
     /// One point in it.
     pub(in crate::mass) fn place(&self, point: &[f64; 3]) -> Vector3<f64> {
-        let r = point.map(Double::<false>::new);
+        let r = point.map(Double::<BASELINE>::new);
         let placed = match &self.axes {
             None => ShiftedFrame::of(self).place(r),
             Some(axes) => RotatedFrame::of(self, axes).place(r),
@@ -612,7 +612,7 @@ mod tests {
             axes: Some(axes),
         };
         let tiny = 2.0_f64.powi(-50);
-        let r = [1.1 + tiny, 1.1, 7.0].map(Double::<false>::new);
+        let r = [1.1 + tiny, 1.1, 7.0].map(Double::<BASELINE>::new);
         let placed = RotatedFrame::of(&frame, &axes).place(r);
         let step = (1.1 + tiny) - 1.1;
         assert_eq!(placed[1].get(), step * 0.5_f64.sqrt());

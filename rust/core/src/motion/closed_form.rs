@@ -178,6 +178,8 @@ impl<M: ChooseFormula> Kernel for At<'_, M> {
     // As the caller returns it: a copy would wait until it is written.
     type Output = State;
 
+    const IS_WIDE: bool = false;
+
     #[inline(always)]
     fn run<L: Lane>(self) -> State {
         let [x, y, z, w, p, q, r] = self.motion.choose(AtTime(L::new(self.time))).map(L::get);

@@ -12,12 +12,17 @@
 use std::fmt;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use super::lane::{Double, Lane};
+#[allow(unused_imports)] // which of them are used depends on the architecture
+use super::lane::{AVX2, AVX512, BASELINE, Double, Lane, NEON};
+use super::number::Number;
 
 /// Work that is compiled for every level, and runs at the one [`dispatch`] picks.
 pub trait Kernel {
     /// What the work returns.
     type Output;
+    /// Whether more than four lanes make it faster. Otherwise it is not compiled for AVX-512: with that a single motion takes up to a
+    /// third more time, since registers of eight doubles are filled by parts.
+    const IS_WIDE: bool = true;
     /// Does the work. Mark the implementation, and every helper it calls, `#[inline(always)]`: what is
     /// not inlined is compiled for the baseline.
     fn run<L: Lane>(self) -> Self::Output;
@@ -133,17 +138,65 @@ pub fn dispatch<K: Kernel>(kernel: K) -> K::Output {
             unsafe_code,
             reason = "`level` is only ever a level whose instructions were detected"
         )]
-        Level::Avx512 => unsafe { avx512(kernel) },
+        Level::Avx512 if K::IS_WIDE => unsafe { avx512(kernel) },
         #[cfg(all(target_arch = "x86_64", not(any(baseline_alone, test))))]
         #[expect(
             unsafe_code,
-            reason = "`level` is only ever a level whose instructions were detected"
+            reason = "`level` is only ever a level whose instructions were detected; AVX-512 comes with AVX2"
         )]
-        Level::Avx2 => unsafe { avx2(kernel) },
+        Level::Avx2 | Level::Avx512 => unsafe { avx2(kernel) },
         #[cfg(all(target_arch = "aarch64", not(any(baseline_alone, test))))]
-        Level::Neon => kernel.run::<Double<true>>(),
+        Level::Neon => kernel.run::<Double<NEON>>(),
         _ => baseline(kernel),
     }
+}
+
+/// Runs a kernel that another one calls, at the level of that kernel's numbers `N`: it is compiled for no other. Numbers that are
+/// computed outside of kernels have no level: then it runs as [`dispatch`] does.
+///
+/// # Panics
+/// If this machine does not have the level.
+#[inline]
+pub(crate) fn dispatch_within<N: Number, K: Kernel>(kernel: K) -> K::Output {
+    match N::LEVEL {
+        #[cfg(all(target_arch = "x86_64", not(any(baseline_alone, without_avx512, test))))]
+        AVX512 => {
+            assert_available(AVX512);
+            #[expect(unsafe_code, reason = "the machine has the instructions")]
+            unsafe {
+                avx512(kernel)
+            }
+        }
+        #[cfg(all(target_arch = "x86_64", not(any(baseline_alone, test))))]
+        AVX2 => {
+            assert_available(AVX2);
+            #[expect(unsafe_code, reason = "the machine has the instructions")]
+            unsafe {
+                avx2(kernel)
+            }
+        }
+        BASELINE => baseline(kernel),
+        _ => dispatch(kernel),
+    }
+}
+
+/// Checks that this machine has a level.
+///
+/// # Panics
+/// If it has not.
+#[cfg(all(target_arch = "x86_64", not(any(baseline_alone, test))))]
+fn assert_available(level: u8) {
+    // Unlike `LEVEL` it does not change while a kernel runs.
+    static BEST: AtomicU8 = AtomicU8::new(0);
+    let mut best = BEST.load(Ordering::Relaxed);
+    if best == 0 {
+        best = Level::best() as u8;
+        BEST.store(best, Ordering::Relaxed);
+    }
+    assert!(
+        level <= best,
+        "numbers of the level {level} on a machine of the level {best}"
+    );
 }
 
 /// Runs the kernel as [`dispatch`] does. At the baseline of x86-64 it returns the kernel, which is not compiled for it: with two
@@ -180,20 +233,24 @@ pub(crate) fn dispatch_fused<K: Kernel>(kernel: K) -> Result<K::Output, K> {
     }
 }
 
-// Out of line: the kernel would be compiled again wherever a caller of `dispatch` is.
+// Out of line: the kernel would be compiled again wherever a caller of `dispatch` is, and within another kernel its sums would not be
+// kept in registers.
+
 #[inline(never)]
 fn baseline<K: Kernel>(kernel: K) -> K::Output {
-    kernel.run::<Double<false>>()
+    kernel.run::<Double<BASELINE>>()
 }
 
 #[cfg(all(target_arch = "x86_64", not(any(baseline_alone, test))))]
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt")]
+#[inline(never)]
 fn avx2<K: Kernel>(kernel: K) -> K::Output {
-    kernel.run::<Double<true>>()
+    kernel.run::<Double<AVX2>>()
 }
 
 #[cfg(all(target_arch = "x86_64", not(any(baseline_alone, without_avx512, test))))]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw,avx2,fma,bmi1,bmi2,lzcnt")]
+#[inline(never)]
 fn avx512<K: Kernel>(kernel: K) -> K::Output {
-    kernel.run::<Double<true>>()
+    kernel.run::<Double<AVX512>>()
 }

@@ -759,6 +759,8 @@ impl Kernel for One {
     // As the caller returns it: a copy would wait until it is written.
     type Output = Eigen3;
 
+    const IS_WIDE: bool = false;
+
     #[inline(always)]
     fn run<L: Lane>(self) -> Eigen3 {
         let a = Symmetric::from_lower_triangle(lower_triangle(&self.0).map(L::new));
@@ -1018,6 +1020,8 @@ struct SignRule<'a>(&'a Matrix3<f64>);
 
 impl Kernel for SignRule<'_> {
     type Output = Matrix3<f64>;
+
+    const IS_WIDE: bool = false;
 
     #[inline(always)]
     fn run<L: Lane>(self) -> Matrix3<f64> {

@@ -4,7 +4,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use num_traits::{One, Zero};
 
-use super::lane::Double;
+use super::lane::{BASELINE, Double};
 use super::number::{Number, Real};
 
 /// A value and its derivatives with respect to N variables, to first order.
@@ -213,12 +213,12 @@ impl<const N: usize> Number for Jet<N> {
     }
 
     fn over(n: usize) -> Self {
-        Self::constant(<Double<false> as Number>::over(n).get())
+        Self::constant(<Double<BASELINE> as Number>::over(n).get())
     }
 
     #[inline(always)]
     fn quotient(mut self, n: usize) -> Self {
-        let over = <Double<false> as Number>::over(n).get();
+        let over = <Double<BASELINE> as Number>::over(n).get();
         for slope in &mut self.slopes {
             *slope *= over;
         }

@@ -12,6 +12,7 @@
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use super::dispatch::Level;
 use super::double_double::two_product;
 
 /// A double with a known way of multiplying and adding: one lane of a vectorised loop.
@@ -25,6 +26,8 @@ pub trait Lane:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
+    /// The [`Level`] that it is computed at, as a number.
+    const LEVEL: u8;
     /// The number `x`.
     fn new(x: f64) -> Self;
     /// The number as a plain double.
@@ -63,17 +66,25 @@ pub trait Lane:
     fn power_of_two_scale(self) -> (Self, Self);
 }
 
-/// A double; `FMA` says that `mul_add` is one instruction on the target.
+/// A double that is computed at a [`Level`]: at all levels but the baseline `mul_add` is one instruction.
 ///
-/// Only [`dispatch`](super::dispatch::dispatch) should choose the fused type, since it has looked at the machine:
+/// Only [`dispatch`](super::dispatch::dispatch) should choose another level than the baseline, since it has looked at the machine:
 /// elsewhere the answers are the same, but slow.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 #[repr(transparent)]
-pub struct Double<const FMA: bool>(f64);
+pub struct Double<const LEVEL: u8>(f64);
+
+// The levels as numbers, for types. Which of them are used depends on the architecture.
+pub(crate) const BASELINE: u8 = Level::Baseline as u8;
+#[allow(dead_code)]
+pub(crate) const NEON: u8 = Level::Neon as u8;
+#[allow(dead_code)]
+pub(crate) const AVX2: u8 = Level::Avx2 as u8;
+pub(crate) const AVX512: u8 = Level::Avx512 as u8;
 
 macro_rules! forward {
     ($operator:ident, $method:ident, $symbol:tt) => {
-        impl<const FMA: bool> $operator for Double<FMA> {
+        impl<const LEVEL: u8> $operator for Double<LEVEL> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
@@ -87,7 +98,7 @@ forward!(Sub, sub, -);
 forward!(Mul, mul, *);
 forward!(Div, div, /);
 
-impl<const FMA: bool> Neg for Double<FMA> {
+impl<const LEVEL: u8> Neg for Double<LEVEL> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
@@ -104,7 +115,9 @@ const ONE_BITS: u64 = 0x3ff0_0000_0000_0000;
 /// The exponent fields of s and 1/s add up to this.
 const RECIPROCAL_FIELDS: u64 = 2046;
 
-impl<const FMA: bool> Lane for Double<FMA> {
+impl<const LEVEL: u8> Lane for Double<LEVEL> {
+    const LEVEL: u8 = LEVEL;
+
     #[inline(always)]
     fn new(x: f64) -> Self {
         Self(x)
@@ -117,7 +130,7 @@ impl<const FMA: bool> Lane for Double<FMA> {
 
     #[inline(always)]
     fn mul_add(self, b: Self, c: Self) -> Self {
-        if FMA {
+        if LEVEL > BASELINE {
             Self(self.0.mul_add(b.0, c.0))
         } else {
             Self(self.0 * b.0 + c.0)
@@ -126,7 +139,7 @@ impl<const FMA: bool> Lane for Double<FMA> {
 
     #[inline(always)]
     fn two_product(self, b: Self) -> (Self, Self) {
-        if FMA {
+        if LEVEL > BASELINE {
             let p = self.0 * b.0;
             (Self(p), Self(self.0.mul_add(b.0, -p)))
         } else {
@@ -186,27 +199,27 @@ impl<const FMA: bool> Lane for Double<FMA> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Double, Lane};
+    use super::{AVX2, BASELINE, Double, Lane};
 
     #[test]
     fn scales_are_powers_of_two_and_bring_magnitudes_to_one() {
         for x in [1.0, -1.5, 1.999, 3e-308, -8e307, 6.6e-34, 5.97e24] {
-            let (s, inverse) = Double::<false>(x).power_of_two_scale();
+            let (s, inverse) = Double::<BASELINE>(x).power_of_two_scale();
             assert_eq!(s.0 * inverse.0, 1.0);
             assert!((1.0..2.0).contains(&(x * s.0).abs()), "{x}");
         }
         for x in [0.0, 5e-324, 1e308, f64::INFINITY, f64::NAN] {
-            let (s, inverse) = Double::<false>(x).power_of_two_scale();
+            let (s, inverse) = Double::<BASELINE>(x).power_of_two_scale();
             assert!(s.0.is_normal() && s.0 * inverse.0 == 1.0);
         }
     }
 
     #[test]
     fn integers_and_their_powers_of_two() {
-        let round = |x: f64| Double::<true>(x).round().get();
+        let round = |x: f64| Double::<AVX2>(x).round().get();
         assert_eq!((round(2.5), round(-3.5), round(1e300)), (2.0, -4.0, 1e300));
         for n in [-1022, -53, -1, 0, 1, 52, 1023] {
-            let power = Double::<true>(f64::from(n)).power_of_two().get();
+            let power = Double::<AVX2>(f64::from(n)).power_of_two().get();
             assert_eq!(power, 2.0_f64.powi(n));
         }
     }
@@ -215,16 +228,16 @@ mod tests {
     fn rests_of_products_are_exact_in_either_type() {
         let (a, b) = (1.0 + f64::EPSILON, 1.0 - f64::EPSILON);
         let exact = (1.0, -f64::EPSILON * f64::EPSILON);
-        let (p, e) = Double::<true>(a).two_product(Double(b));
+        let (p, e) = Double::<AVX2>(a).two_product(Double(b));
         assert_eq!((p.get(), e.get()), exact);
-        let (p, e) = Double::<false>(a).two_product(Double(b));
+        let (p, e) = Double::<BASELINE>(a).two_product(Double(b));
         assert_eq!((p.get(), e.get()), exact);
     }
 
     #[test]
     fn products_and_sums_round_as_the_type_says() {
         let (a, b) = (1.0 + f64::EPSILON, 1.0 - f64::EPSILON);
-        let (once, twice) = (Double::<true>(a), Double::<false>(a));
+        let (once, twice) = (Double::<AVX2>(a), Double::<BASELINE>(a));
         assert_eq!(
             once.mul_add(Double(b), Double(-1.0)).get(),
             -f64::EPSILON * f64::EPSILON

@@ -79,6 +79,8 @@ pub(crate) trait Number:
     type Real: Real;
     /// Whether it carries derivatives.
     const VARIES: bool = false;
+    /// The level of its lanes, as a number; 0 for numbers that are computed outside of kernels.
+    const LEVEL: u8 = 0;
     /// The number `x`.
     fn new(x: f64) -> Self;
     /// The nearest double.
@@ -120,6 +122,8 @@ const RECIPROCALS: [f64; 64] = {
 
 impl<L: Lane> Number for L {
     type Real = f64;
+
+    const LEVEL: u8 = <L as Lane>::LEVEL;
 
     #[inline(always)]
     fn new(x: f64) -> Self {

@@ -174,9 +174,9 @@ fn horner<L: Lane, const N: usize>(x: L, coefficients: &[f64; N]) -> L {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numerics::lane::Double;
+    use crate::numerics::lane::{AVX2, Double};
 
-    type One = Double<true>;
+    type One = Double<AVX2>;
 
     #[test]
     fn whole_turns_leave_no_trace() {

@@ -77,6 +77,8 @@ impl<L: Lane> Mul for Twofold<L> {
 impl<L: Lane> Number for Twofold<L> {
     type Real = DoubleDouble;
 
+    const LEVEL: u8 = <L as Lane>::LEVEL;
+
     #[inline(always)]
     fn new(x: f64) -> Self {
         Self {
@@ -128,7 +130,7 @@ impl<L: Lane> Number for Twofold<L> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numerics::lane::Double;
+    use crate::numerics::lane::{AVX2, BASELINE, Double};
 
     fn arithmetic<L: Lane>() {
         let number = |x: DoubleDouble| Twofold::<L>::of(x);
@@ -151,7 +153,7 @@ mod tests {
 
     #[test]
     fn arithmetic_is_that_of_double_doubles() {
-        arithmetic::<Double<true>>();
-        arithmetic::<Double<false>>();
+        arithmetic::<Double<AVX2>>();
+        arithmetic::<Double<BASELINE>>();
     }
 }

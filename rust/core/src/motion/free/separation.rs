@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 use crate::mass::refined::{RefinedPrincipal, Vector};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::MultiPrecision;
-use crate::numerics::lane::{Double, Lane};
+use crate::numerics::lane::{BASELINE, Double, Lane};
 use crate::numerics::quad_double::QuadDouble;
 
 /// D, to twice the precision of itself.
@@ -127,7 +127,7 @@ pub(super) struct Unit {
 
 impl Unit {
     pub(super) fn of(a: DoubleDouble, b: DoubleDouble) -> Self {
-        let larger = Double::<false>::new(a.high.abs().max(b.high.abs()));
+        let larger = Double::<BASELINE>::new(a.high.abs().max(b.high.abs()));
         let (inverse, size) = larger.power_of_two_scale();
         Self {
             size: size.get(),

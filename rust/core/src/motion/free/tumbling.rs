@@ -20,7 +20,7 @@ use super::separation::{Separation, Unit};
 use crate::mass::refined::Vector;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::{complete_first, complete_third, incomplete_first};
-use crate::numerics::lane::{Double, Lane};
+use crate::numerics::lane::{BASELINE, Double, Lane};
 use crate::numerics::theta::{HalfPeriods, circular, hyperbolic};
 
 /// Sines serve while K′ ≥ this times K: there both kinds of series converge alike.
@@ -210,8 +210,8 @@ impl TumblingMotion {
             real: quarter,
             imaginary: 2.0 * imaginary,
         };
-        let size = |(re, im): (Double<false>, Double<false>)| re.get().hypot(im.get());
-        let one = Double::<false>::new(1.0);
+        let size = |(re, im): (Double<BASELINE>, Double<BASELINE>)| re.get().hypot(im.get());
+        let one = Double::<BASELINE>::new(1.0);
         let [_, b, c] = self.directions;
         let at_end = b / (1.0 + self.complementary.high * c);
         let pi = std::f64::consts::PI;
@@ -265,7 +265,7 @@ pub(super) fn hypotenuse(numbers: &Vector) -> DoubleDouble {
     if largest == 0.0 {
         return DoubleDouble::default();
     }
-    let (scale, back) = Double::<false>::new(largest).power_of_two_scale();
+    let (scale, back) = Double::<BASELINE>::new(largest).power_of_two_scale();
     let [a, b, c] = numbers.map(|number| number.scaled(scale.get()));
     (a * a + b * b + c * c).sqrt().scaled(back.get())
 }

@@ -333,7 +333,7 @@ mod tests {
     use super::*;
     use crate::motion::gyrostat::spinor::Regime;
     use crate::motion::gyrostat::theta_series::{Circular, Hyperbolic, ThetaSeries, WithProducts};
-    use crate::numerics::lane::{Double, Lane};
+    use crate::numerics::lane::{BASELINE, Double, Lane};
 
     /// A spinor that has nothing but a nome and a start.
     fn spinor(nome: f64, size: f64, angle: f64) -> Spinor {
@@ -423,7 +423,7 @@ mod tests {
                 products: ratios.sines(),
             };
             for theta in [0.0, 0.4, 1.9, -2.5] {
-                let x = [theta / TAU, 0.0, 1.0].map(Double::<false>::new);
+                let x = [theta / TAU, 0.0, 1.0].map(Double::<BASELINE>::new);
                 let products = series.values(x[0], x[1], x[2]).products.map(Lane::get);
                 let (sine, cosine) = f64::sin_cos(theta);
                 let [even, odd] = thetas(&spinor, Complex::new(cosine, sine));
@@ -451,7 +451,7 @@ mod tests {
             };
             for x in [0.0, 0.1, 0.3, 0.5, -0.25, -0.5] {
                 for turned in [1.0, -1.0] {
-                    let numbers = [x, 0.0, turned].map(Double::<false>::new);
+                    let numbers = [x, 0.0, turned].map(Double::<BASELINE>::new);
                     let values = series.values(numbers[0], numbers[1], numbers[2]);
                     let products = values.products.map(Lane::get);
                     // Over e^{|θ|}.

@@ -15,7 +15,7 @@ use super::top_data::times;
 use super::turning_points::TurningPoints;
 use crate::motion::closed_form::{ChooseFormula, StateFormula, UseFormula};
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::lane::{Double, Lane};
+use crate::numerics::lane::{BASELINE, Double, Lane};
 use crate::numerics::power_of_two::times_power_of_two;
 use crate::numerics::theta::quotients::{Circular, Hyperbolic, Values};
 use crate::numerics::theta::{circular, hyperbolic};
@@ -402,7 +402,7 @@ impl TopConstants {
 }
 
 /// One lane for what is done once.
-type Single = Double<false>;
+type Single = Double<BASELINE>;
 
 /// What gives the functions their sizes: of α at the highest point, of β and W at the lowest.
 fn factors(sizes: &[f64; 3], upper: &Values<Single>, lower: &Values<Single>) -> [f64; 3] {

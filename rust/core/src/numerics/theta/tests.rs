@@ -4,10 +4,10 @@ use std::f64::consts::PI;
 
 use super::{HalfPeriods, circular, hyperbolic};
 use crate::numerics::elliptic::complete_first;
-use crate::numerics::lane::{Double, Lane};
+use crate::numerics::lane::{AVX2, Double, Lane};
 use crate::numerics::turns::{sin_cos_turns, whole_off};
 
-type One = Double<true>;
+type One = Double<AVX2>;
 
 /// (k′, u/K, sn, cn, dn) by mpmath 1.3 with 60 digits: `ellipfun`.
 const JACOBI: [(f64, f64, f64, f64, f64); 10] = [

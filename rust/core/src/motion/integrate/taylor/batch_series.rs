@@ -3,8 +3,8 @@
 use super::batch::{Batch, CacheAligned};
 use super::directions::{add_squares, axis, from_squares, halve, roots};
 use super::series::{AnyNumber, COUNT, Coefficient, Coefficients};
-use crate::numerics::dispatch::{Kernel, Level, dispatch, level};
-use crate::numerics::lane::Lane;
+use crate::numerics::dispatch::{Kernel, dispatch_within};
+use crate::numerics::lane::{AVX512, Lane};
 
 /// The series of `R` motions, one in each lane.
 #[derive(Clone, Debug)]
@@ -175,9 +175,9 @@ impl<L: Lane, const B: usize> Coefficients<Batch<L, ROWS>, B> for BatchSeries<L,
     #[inline(always)]
     fn sums(&mut self, k: usize) -> Self::Sums {
         match self.constant {
-            0 => dispatch(Sum::<_, B, 0>(self, k)).0,
-            2 => dispatch(Sum::<_, B, 2>(self, k)).0,
-            _ => dispatch(Sum::<_, B, NONE>(self, k)).0,
+            0 => dispatch_within::<L, _>(Sum::<_, B, 0>(self, k)).0,
+            2 => dispatch_within::<L, _>(Sum::<_, B, 2>(self, k)).0,
+            _ => dispatch_within::<L, _>(Sum::<_, B, NONE>(self, k)).0,
         }
     }
 
@@ -234,13 +234,16 @@ impl<L: Lane, const B: usize, const R: usize> BatchSeries<L, B, R> {
         k: usize,
         sums: &mut BatchSums<Batch<L, R>>,
     ) {
-        const EVERY: u8 = THIRD | COMPLEX | SQUARES;
+        const PRODUCTS: u8 = THIRD | COMPLEX;
         let mut products = Products::<Batch<L, H>>::new();
         let mut squares = Squares::<Batch<L, H>, B>::new();
         let orders = &self.orders[..=k];
         let into = (&mut products, &mut squares);
         if H == ROWS {
-            add_groups::<L, B, R, CONSTANT, FIRST, H, EVERY>(orders, into);
+            add_groups::<L, B, R, CONSTANT, FIRST, H, PRODUCTS>(orders, (into.0, into.1));
+            if B > 0 {
+                add_groups::<L, B, R, CONSTANT, FIRST, H, SQUARES>(orders, into);
+            }
         } else {
             add_groups::<L, B, R, CONSTANT, FIRST, H, THIRD>(orders, (into.0, into.1));
             add_groups::<L, B, R, CONSTANT, FIRST, H, COMPLEX>(orders, (into.0, into.1));
@@ -309,7 +312,7 @@ impl<N: Lane, const B: usize, const CONSTANT: usize> Kernel for Sum<'_, N, B, CO
     fn run<L: Lane>(self) -> Self::Output {
         let Self(series, k) = self;
         let mut sums = BatchSums::new();
-        if level() == Level::Avx512 {
+        if <N as Lane>::LEVEL == AVX512 {
             series.add_products::<CONSTANT, 0, ROWS>(k, &mut sums);
         } else {
             series.add_products::<CONSTANT, 0, HALF>(k, &mut sums);

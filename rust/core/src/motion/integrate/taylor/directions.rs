@@ -104,9 +104,9 @@ pub(super) fn direction_in_body<L: Number, const R: usize>(
 #[cfg(test)]
 mod tests {
     use super::{Batch, add_squares, axis, from_squares, halve, roots};
-    use crate::numerics::lane::{Double, Lane};
+    use crate::numerics::lane::{BASELINE, Double, Lane};
 
-    type One = Batch<Double<false>, 1>;
+    type One = Batch<Double<BASELINE>, 1>;
 
     /// The coefficient of order k of row n of q's matrix, from products.
     fn plain(n: usize, q: &[[i32; 4]], k: usize) -> [i32; 3] {

@@ -590,19 +590,54 @@ where
         if let Some(internal_states) = &mut self.internal_states {
             internal_states.start();
         }
-        // For several motions order 0 is computed before the loop, so that its special terms are not in the loop.
-        let first = usize::from(R > 1);
-        for k in 0..first {
-            self.extend(k);
-        }
-        for k in first..order {
-            // Hidden from the compiler: it would keep an address for each array and increment all of them in every iteration, and there
-            // are more addresses than registers.
-            self.extend(black_box(k));
+        let parts = self.settings.parts;
+        let are_linear = self.nonlinear.is_empty() && self.internal_states.is_none();
+        if R > 1 && are_linear && !parts.on_attitude {
+            if parts.on_omega {
+                self.extend_linear::<true>(order);
+            } else {
+                self.extend_linear::<false>(order);
+            }
+        } else {
+            // For several motions order 0 is computed before the loop, so that its special terms are not in the loop.
+            let first = usize::from(R > 1);
+            for k in 0..first {
+                self.extend(k);
+            }
+            for k in first..order {
+                // Hidden from the compiler: it would keep an address for each array and increment all of them in every iteration, and
+                // there are more addresses than registers.
+                self.extend(black_box(k));
+            }
         }
         if let Some(translation) = &mut self.translation {
             translation.expand(order, &self.series, &self.linear_terms);
         }
+    }
+
+    /// Compute all coefficients under torques that are linear in ω (if `ON_OMEGA`) and in directions of space, or constant. No step of
+    /// the loop has a branch: several motions would be computed one by one beyond it, since the compiler takes their numbers apart
+    /// where two ways meet.
+    #[inline(always)]
+    fn extend_linear<const ON_OMEGA: bool>(&mut self, order: usize) {
+        let parts = SeriesStructure {
+            on_omega: ON_OMEGA,
+            ..SeriesStructure::default()
+        };
+        self.extend_by_linear_terms(parts, 0, true);
+        for k in 1..order {
+            // Hidden, as in the loop for all torques.
+            self.extend_by_linear_terms(parts, black_box(k), false);
+        }
+    }
+
+    /// Compute the coefficients of order `k` + 1 under torques with these `parts` alone.
+    #[inline(always)]
+    fn extend_by_linear_terms(&mut self, parts: SeriesStructure, k: usize, is_first: bool) {
+        let sums = self.series.sums(k);
+        let (spins, at) = (S::spins(&sums), self.series.get(k));
+        let acceleration = (self.linear_terms).acceleration(parts, is_first, spins, &at);
+        self.series.extend(k, &sums, &acceleration);
     }
 
     /// Compute the coefficients of order `k` + 1.
@@ -612,7 +647,8 @@ where
             .look_ahead(k, &self.series, &self.linear_terms);
         let sums = self.series.sums(k);
         let (spins, at) = (S::spins(&sums), self.series.get(k));
-        let acceleration = (self.linear_terms).acceleration(self.settings.parts, k, spins, &at);
+        let acceleration =
+            (self.linear_terms).acceleration(self.settings.parts, k == 0, spins, &at);
         let series = &self.series;
         let acceleration = self.nonlinear.plus_coefficients(k, series, acceleration);
         let acceleration = match &mut self.internal_states {

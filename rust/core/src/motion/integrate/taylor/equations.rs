@@ -998,18 +998,19 @@ impl<L: Number, const R: usize, const B: usize> LinearTerms<Batch<L, R>, B> {
         }
     }
 
-    /// Compute the coefficient of order `k` of ω̇ from the products of the series of ω and the coefficients of that order.
+    /// Compute a coefficient of ω̇, `is_first` where it is that of order zero, from the products of the series of ω and the coefficients
+    /// of the same order.
     #[inline(always)]
     pub(super) fn acceleration(
         &self,
         parts: SeriesStructure,
-        k: usize,
+        is_first: bool,
         products: [Batch<L, R>; 3],
         at: &Coefficient<Batch<L, R>, B>,
     ) -> [Batch<L, R>; 3] {
         // Written out: a loop would keep the sums in memory.
         let [mut x, mut y, mut z] = [Batch::new(0.0); 3];
-        if k == 0 {
+        if is_first {
             let [a, b, c] = self.constant;
             [x, y, z] = [x + a, y + b, z + c];
         }

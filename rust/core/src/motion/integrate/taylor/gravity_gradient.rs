@@ -10,7 +10,7 @@ use super::equations::quaternion_of_matrix;
 use super::orbit_series::OrbitSeries;
 use super::series::{MAX_COUNT, Series};
 use crate::motion::loads::OrbitState;
-use crate::numerics::dispatch::{Kernel, dispatch};
+use crate::numerics::dispatch::{Kernel, dispatch_within};
 use crate::numerics::lane::Lane;
 use crate::numerics::number::{Number, Real};
 use crate::numerics::quaternion::{normalized, product};
@@ -143,7 +143,7 @@ impl<L: Number, const R: usize> GravityGradientSeries<Batch<L, R>> {
     #[inline(always)]
     pub(super) fn expand(&mut self, order: usize) {
         // A separate function, as in `look_ahead`.
-        dispatch(Expand {
+        dispatch_within::<L, _>(Expand {
             orbit: &mut self.orbit,
             order,
         });
@@ -182,7 +182,7 @@ impl<L: Number, const R: usize> GravityGradientSeries<Batch<L, R>> {
     /// Transform an attitude relative to that frame to N.
     #[inline(always)]
     pub(super) fn to_space(&self, attitude: [Batch<L, R>; 4]) -> [Batch<L, R>; 4] {
-        dispatch(ToSpace(self.frame, attitude)).0
+        dispatch_within::<L, _>(ToSpace(self.frame, attitude)).0
     }
 
     /// Compute the coefficient of order `k` of the angular acceleration from that of the attitude, relative to the frame of the orbit
@@ -201,7 +201,7 @@ impl<L: Number, const R: usize> GravityGradientSeries<Batch<L, R>> {
         }
         // A separate function: within a larger one the sums are not kept in registers, and the caller for numbers with derivatives
         // is not compiled for the widest lanes.
-        dispatch(Next {
+        dispatch_within::<L, _>(Next {
             gradient: self,
             k,
             series: in_orbit_frame.then_some(series),
@@ -313,18 +313,18 @@ impl<N: Number, S: Series<Batch<N, R>, B>, const R: usize, const B: usize> Kerne
         let pointing = it.pointing[..k].get(1..).unwrap_or(&[]);
         let turned = it.turned[..k].get(1..).unwrap_or(&[]);
         let CacheAligned([first, second, third, along, aside, above]) =
-            dispatch(PairedSums { pointing, turned });
+            dispatch_within::<N, _>(PairedSums { pointing, turned });
         let half_turn = &it.orbit.half_turn()[1..=k];
         let (CacheAligned([e, f, g, h]), attitude) = match series {
             Some(series) => (
-                dispatch(HalfTurnProduct(
+                dispatch_within::<N, _>(HalfTurnProduct(
                     half_turn,
                     SeriesAttitudes::<_, _, B>::new(series),
                 )),
                 series.get(k).q,
             ),
             None => (
-                dispatch(HalfTurnProduct(half_turn, &it.attitude)),
+                dispatch_within::<N, _>(HalfTurnProduct(half_turn, &it.attitude)),
                 it.attitude[k],
             ),
         };
@@ -361,7 +361,7 @@ impl<N: Number, S: Series<Batch<N, R>, B>, const R: usize, const B: usize> Kerne
         let ([a, b, c], [p, q, r]) = (it.on_products, products);
         it.coefficient = [a * p, b * q, c * r];
         if it.has_off_diagonal {
-            let CacheAligned(off_diagonal) = dispatch(OffDiagonalTorque {
+            let CacheAligned(off_diagonal) = dispatch_within::<N, _>(OffDiagonalTorque {
                 pointing: &it.pointing[..=k],
                 products,
                 linear_terms,

@@ -7,7 +7,7 @@ use super::step::{compensate, exp2, log2_step};
 use super::variational::ConvergenceRadius;
 use crate::motion::loads::InternalState;
 use crate::motion::loads::variables::WIDTH;
-use crate::numerics::dispatch::{Kernel, dispatch};
+use crate::numerics::dispatch::{Kernel, dispatch_within};
 use crate::numerics::lane::Lane;
 use crate::numerics::number::Number;
 
@@ -147,7 +147,7 @@ impl<L: Number<Real: Precision>, const R: usize> InternalStates<Batch<L, R>> {
             self.coefficient(k, series)
         } else {
             let states = self;
-            dispatch(Next { states, k, series }).0
+            dispatch_within::<L, _>(Next { states, k, series }).0
         };
         plus(sum, by_states)
     }

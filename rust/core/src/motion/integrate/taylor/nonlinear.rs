@@ -11,7 +11,7 @@ use super::gravity_gradient::GravityGradientSeries;
 use super::orbit_cache::{OrbitSeriesCache, round_step_end};
 use super::series::{MAX_COUNT, Series};
 use crate::motion::loads::{Forcing, FormulaStep, OrbitState, SeriesStructure, TorqueFormula};
-use crate::numerics::dispatch::{Kernel, dispatch};
+use crate::numerics::dispatch::{Kernel, dispatch_within};
 use crate::numerics::lane::Lane;
 use crate::numerics::number::{Number, Real};
 
@@ -95,6 +95,12 @@ impl<L: Number<Real: Precision>, const R: usize> NonlinearTerms<Batch<L, R>> {
     #[inline(always)]
     pub(super) fn has_only_orbits(&self) -> bool {
         self.forced.is_none()
+    }
+
+    /// Return whether there are none of these terms.
+    #[inline(always)]
+    pub(super) fn is_empty(&self) -> bool {
+        self.is_empty && self.formulas.formulas.is_empty()
     }
 
     #[inline(always)]
@@ -479,7 +485,7 @@ impl<L: Number<Real: Precision>, const R: usize> Formulas<Batch<L, R>> {
             let [x, y, z] = if R == 1 {
                 formula.coefficient(k, series, rest_speed)
             } else {
-                dispatch(Next {
+                dispatch_within::<L, _>(Next {
                     formula,
                     k,
                     series,
@@ -745,9 +751,9 @@ mod tests {
     use crate::motion::integrate::taylor::series::{Coefficient, Coefficients};
     use crate::motion::integrate::taylor::single::SingleMotionSeries;
     use crate::motion::loads::{OMEGA, Steps};
-    use crate::numerics::lane::Double;
+    use crate::numerics::lane::{BASELINE, Double};
 
-    type Pair = Batch<Double<false>, 2>;
+    type Pair = Batch<Double<BASELINE>, 2>;
     const ORDER: usize = 6;
 
     /// Return keys of one bucket: one more than it has entries.
@@ -883,7 +889,7 @@ mod tests {
         }
     }
 
-    type One = Double<false>;
+    type One = Double<BASELINE>;
 
     /// The coefficients of `M u² ω` with `u = ω·ω`, of `ω = (1 + t, 0, 2)`, for which `u² = 25 + 20 t + 14 t² + 4 t³ + t⁴`.
     #[test]

@@ -186,9 +186,9 @@ pub(super) fn round_step_end(now: (f64, f64), h: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numerics::lane::Double;
+    use crate::numerics::lane::{BASELINE, Double};
 
-    type Pair = Batch<Double<false>, 2>;
+    type Pair = Batch<Double<BASELINE>, 2>;
 
     fn key(time: f64) -> CacheKey {
         CacheKey {

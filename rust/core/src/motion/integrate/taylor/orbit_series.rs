@@ -135,7 +135,7 @@ mod tests {
 
     use super::*;
     use crate::motion::loads::kepler::Orbit;
-    use crate::numerics::lane::Double;
+    use crate::numerics::lane::{BASELINE, Double};
 
     /// Beside the orbit by Kepler's equation, in steps as long as the motions make them.
     #[test]
@@ -147,7 +147,7 @@ mod tests {
             for begin in [0.0, 0.2, -0.7, 3.0] {
                 let (r, v) = orbit.at(begin);
                 let (distance, h) = (r.norm(), 0.1 * (1.0 + begin * begin).sqrt() / speed);
-                let mut orbit_series = OrbitSeries::<Batch<Double<false>, 1>>::new();
+                let mut orbit_series = OrbitSeries::<Batch<Double<BASELINE>, 1>>::new();
                 let around = r.cross(&v).norm() / distance / distance;
                 orbit_series.set(
                     0,

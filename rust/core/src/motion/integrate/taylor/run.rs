@@ -53,21 +53,23 @@ fn solve(
     if task.tolerance.is_beyond_doubles() {
         let jobs = &mut prepare_job(task, terms, run).into_iter();
         let observer = observer.map(|observer| observer as Observer);
-        let _flow = dispatch(InDoubleDouble {
+        let motions = Motions {
             settings,
             jobs,
             watch,
             observer,
-        });
+        };
+        let _flow = motions.run_in_double_double();
     } else {
         let jobs = &mut prepare_job(task, terms, run).into_iter();
         let observer = observer.map(|observer| observer as Observer);
-        let _flow = dispatch(OneByOne {
+        let motions = Motions {
             settings,
             jobs,
             watch,
             observer,
-        });
+        };
+        let _flow = motions.run_one_by_one();
     }
 }
 
@@ -210,30 +212,26 @@ impl Tasks<'_, '_> {
         let watch = &mut |_| (self.ask)();
         let flow = if in_double_double {
             let jobs = &mut prepare_jobs(first, &mut runs, &begin);
-            dispatch(InDoubleDouble {
+            let motions = Motions {
                 settings,
                 jobs,
                 watch,
                 observer: None,
-            })
+            };
+            motions.run_in_double_double()
         } else {
             let jobs = &mut prepare_jobs(first, &mut runs, &begin);
+            let motions = Motions {
+                settings,
+                jobs,
+                watch,
+                observer: None,
+            };
             if count < FEW {
-                dispatch(OneByOne {
-                    settings,
-                    jobs,
-                    watch,
-                    observer: None,
-                })
+                motions.run_one_by_one()
             } else {
                 let mut cache = lock(self.caches).pop().unwrap_or_default();
-                let side_by_side = SideBySide {
-                    settings,
-                    jobs,
-                    watch,
-                    cache: &mut cache,
-                };
-                let flow = side_by_side.run();
+                let flow = motions.run_side_by_side(&mut cache);
                 lock(self.caches).push(cache);
                 flow
             }
@@ -370,110 +368,105 @@ fn prepare_jobs<'a, X: Precision<Variables = Fixed>>(
     })
 }
 
-/// Runs motions one after the other in double-double.
-struct InDoubleDouble<'a, 'b> {
+/// Motions to run, and what watches them.
+struct Motions<'a, 'b, X: Precision> {
     settings: Settings,
-    jobs: &'b mut dyn Iterator<Item = Job<'a, DoubleDouble>>,
+    jobs: &'b mut dyn Iterator<Item = Job<'a, X>>,
     watch: &'b mut dyn FnMut(f64) -> ControlFlow<()>,
     observer: Option<Observer<'b>>,
 }
 
-impl Kernel for InDoubleDouble<'_, '_> {
-    type Output = ControlFlow<()>;
+// A separate kernel for each number of directions: all in one take more of the stack, and the compiler longer.
 
-    #[inline(always)]
-    fn run<L: Lane>(self) -> ControlFlow<()> {
-        let Self {
-            settings,
-            jobs,
-            watch,
-            observer,
-        } = self;
-        let cache = &mut OrbitSeriesCache::default();
-        match settings.parts.directions {
-            0 => drive::<Twofold<L>, DoubleDoubleSeries<L, 0, 4>, 0, 1>(
-                settings, jobs, watch, observer, cache,
-            ),
-            1 => drive::<Twofold<L>, DoubleDoubleSeries<L, 1, 8>, 1, 1>(
-                settings, jobs, watch, observer, cache,
-            ),
-            _ => drive::<Twofold<L>, DoubleDoubleSeries<L, 3, 16>, 3, 1>(
-                settings, jobs, watch, observer, cache,
-            ),
+impl Motions<'_, '_, DoubleDouble> {
+    fn run_in_double_double(self) -> ControlFlow<()> {
+        match self.settings.parts.directions {
+            0 => dispatch(InDoubleDouble::<0, 4>(self)),
+            1 => dispatch(InDoubleDouble::<1, 8>(self)),
+            _ => dispatch(InDoubleDouble::<3, 16>(self)),
         }
     }
 }
 
-/// Runs motions one after the other in doubles, the components of each in the lanes.
-struct OneByOne<'a, 'b> {
-    settings: Settings,
-    jobs: &'b mut dyn Iterator<Item = Job<'a, f64>>,
-    watch: &'b mut dyn FnMut(f64) -> ControlFlow<()>,
-    observer: Option<Observer<'b>>,
-}
-
-impl Kernel for OneByOne<'_, '_> {
-    type Output = ControlFlow<()>;
-
-    #[inline(always)]
-    fn run<L: Lane>(self) -> ControlFlow<()> {
-        let Self {
-            settings,
-            jobs,
-            watch,
-            observer,
-        } = self;
-        let cache = &mut OrbitSeriesCache::default();
-        match settings.parts.directions {
-            0 => drive::<L, SingleMotionSeries<L, 0>, 0, 1>(settings, jobs, watch, observer, cache),
-            1 => drive::<L, SingleMotionSeries<L, 1>, 1, 1>(settings, jobs, watch, observer, cache),
-            _ => drive::<L, SingleMotionSeries<L, 3>, 3, 1>(settings, jobs, watch, observer, cache),
+impl<'b> Motions<'_, 'b, f64> {
+    fn run_one_by_one(self) -> ControlFlow<()> {
+        match self.settings.parts.directions {
+            0 => dispatch(OneByOne::<0>(self)),
+            1 => dispatch(OneByOne::<1>(self)),
+            _ => dispatch(OneByOne::<3>(self)),
         }
     }
-}
 
-/// Runs motions side by side, one in each lane.
-struct SideBySide<'a, 'b> {
-    settings: Settings,
-    jobs: &'b mut dyn Iterator<Item = Job<'a, f64>>,
-    watch: &'b mut dyn FnMut(f64) -> ControlFlow<()>,
-    cache: &'b mut OrbitSeriesCache,
-}
-
-impl SideBySide<'_, '_> {
-    /// Run them, in a separate function for each number of directions: all in one take four megabytes of the stack without
-    /// optimization. At the baseline of x86-64 they run one by one, with the same bits.
-    fn run(self) -> ControlFlow<()> {
+    /// Run them side by side; at the baseline of x86-64 one by one, with the same bits.
+    fn run_side_by_side(self, cache: &'b mut OrbitSeriesCache) -> ControlFlow<()> {
         let motions = match self.settings.parts.directions {
-            0 => dispatch_fused(Directed::<0>(self)).map_err(|it| it.0),
-            1 => dispatch_fused(Directed::<1>(self)).map_err(|it| it.0),
-            _ => dispatch_fused(Directed::<3>(self)).map_err(|it| it.0),
+            0 => dispatch_fused(SideBySide::<0>(self, cache)).map_err(|it| it.0),
+            1 => dispatch_fused(SideBySide::<1>(self, cache)).map_err(|it| it.0),
+            _ => dispatch_fused(SideBySide::<3>(self, cache)).map_err(|it| it.0),
         };
-        motions.unwrap_or_else(|motions| {
-            dispatch(OneByOne {
-                settings: motions.settings,
-                jobs: motions.jobs,
-                watch: motions.watch,
-                observer: None,
-            })
-        })
+        motions.unwrap_or_else(Self::run_one_by_one)
     }
 }
 
-/// Runs motions side by side with this number of directions.
-struct Directed<'a, 'b, const B: usize>(SideBySide<'a, 'b>);
+/// Runs motions one after the other in double-double, with `B` directions in `W` lanes.
+struct InDoubleDouble<'a, 'b, const B: usize, const W: usize>(Motions<'a, 'b, DoubleDouble>);
 
-impl<const B: usize> Kernel for Directed<'_, '_, B> {
+impl<const B: usize, const W: usize> Kernel for InDoubleDouble<'_, '_, B, W> {
+    type Output = ControlFlow<()>;
+
+    const IS_WIDE: bool = false;
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> ControlFlow<()> {
+        let Motions {
+            settings,
+            jobs,
+            watch,
+            observer,
+        } = self.0;
+        let cache = &mut OrbitSeriesCache::default();
+        drive::<Twofold<L>, DoubleDoubleSeries<L, B, W>, B, 1>(
+            settings, jobs, watch, observer, cache,
+        )
+    }
+}
+
+/// Runs motions one after the other in doubles with `B` directions, the components of each in the lanes.
+struct OneByOne<'a, 'b, const B: usize>(Motions<'a, 'b, f64>);
+
+impl<const B: usize> Kernel for OneByOne<'_, '_, B> {
+    type Output = ControlFlow<()>;
+
+    const IS_WIDE: bool = false;
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> ControlFlow<()> {
+        let Motions {
+            settings,
+            jobs,
+            watch,
+            observer,
+        } = self.0;
+        let cache = &mut OrbitSeriesCache::default();
+        drive::<L, SingleMotionSeries<L, B>, B, 1>(settings, jobs, watch, observer, cache)
+    }
+}
+
+/// Runs motions side by side with `B` directions, one in each lane.
+struct SideBySide<'a, 'b, const B: usize>(Motions<'a, 'b, f64>, &'b mut OrbitSeriesCache);
+
+impl<const B: usize> Kernel for SideBySide<'_, '_, B> {
     type Output = ControlFlow<()>;
 
     #[inline(always)]
     fn run<L: Lane>(self) -> ControlFlow<()> {
-        let SideBySide {
+        let Self(motions, cache) = self;
+        let Motions {
             settings,
             jobs,
             watch,
-            cache,
-        } = self.0;
+            ..
+        } = motions;
         drive::<L, BatchSeries<L, B, ROWS>, B, ROWS>(settings, jobs, watch, None, cache)
     }
 }

@@ -4,11 +4,11 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::{Circular, Hyperbolic};
 use crate::numerics::elliptic::complete_first;
-use crate::numerics::lane::{Double, Lane};
+use crate::numerics::lane::{AVX2, Double, Lane};
 use crate::numerics::theta::{HalfPeriods, circular, hyperbolic};
 use crate::numerics::turns::{sin_cos_turns, whole_off};
 
-type One = Double<true>;
+type One = Double<AVX2>;
 /// k′, u/K, a/K′, and the values at u of the two quotients over those at K of the first and at 0 of the second.
 type Case = (f64, f64, f64, [f64; 2], [f64; 2]);
 
