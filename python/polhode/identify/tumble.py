@@ -684,7 +684,8 @@ def _directions(triangle: Floats, inertia: Floats, scaled: bool) -> tuple[Direct
     weak = ~lost & (values * _UNCERTAIN < 1.0)
     open_rows = rows[lost] @ space.T
     if not scaled:
-        # A multiple of the tensor changes nothing: without its largest element, directions that differ have names that differ.
+        # A multiple of the tensor changes nothing. Without its largest element directions that differ have
+        # names that differ.
         own = np.array([inertia[i, j] for i, j in ELEMENTS])
         largest = int(np.argmax(np.abs(own)))
         open_rows = open_rows - np.outer(open_rows[:, largest] / own[largest], own)

@@ -16,12 +16,12 @@ use std::sync::atomic::{AtomicU8, Ordering};
 use super::lane::{AVX2, AVX512, BASELINE, Double, Lane, NEON};
 use super::number::Number;
 
-/// Work that is compiled for every level, and runs at the one [`dispatch`] picks.
+/// Work that is compiled for every level, or for those up to AVX2, and runs at the one [`dispatch`] picks.
 pub trait Kernel {
     /// What the work returns.
     type Output;
-    /// Whether more than four lanes make it faster. Otherwise it is not compiled for AVX-512: with that a single motion takes up to a
-    /// third more time, since registers of eight doubles are filled by parts.
+    /// Whether more than four lanes make it faster. Otherwise it is not compiled for AVX-512: with that a single motion takes up to 1.4
+    /// times as long, since registers of eight doubles are filled by parts.
     const IS_WIDE: bool = true;
     /// Does the work. Mark the implementation, and every helper it calls, `#[inline(always)]`: what is
     /// not inlined is compiled for the baseline.
