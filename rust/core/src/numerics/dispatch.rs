@@ -12,7 +12,6 @@
 use std::fmt;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-#[allow(unused_imports)] // which of them are used depends on the architecture
 use super::lane::{AVX2, AVX512, BASELINE, Double, Lane, NEON};
 use super::number::Number;
 
@@ -33,13 +32,13 @@ pub trait Kernel {
 #[repr(u8)]
 pub enum Level {
     /// What every processor of the architecture has, products and sums rounded apart.
-    Baseline = 1,
+    Baseline = BASELINE,
     /// 64-bit ARM: two doubles to a register, fused multiply-add.
-    Neon = 2,
+    Neon = NEON,
     /// x86-64 with four doubles to a register and fused multiply-add.
-    Avx2 = 3,
+    Avx2 = AVX2,
     /// x86-64 with eight doubles to a register.
-    Avx512 = 4,
+    Avx512 = AVX512,
 }
 
 impl Level {
@@ -107,10 +106,10 @@ static LEVEL: AtomicU8 = AtomicU8::new(0);
 #[inline]
 pub fn level() -> Level {
     match LEVEL.load(Ordering::Relaxed) {
-        4 => Level::Avx512,
-        3 => Level::Avx2,
-        2 => Level::Neon,
-        1 => Level::Baseline,
+        AVX512 => Level::Avx512,
+        AVX2 => Level::Avx2,
+        NEON => Level::Neon,
+        BASELINE => Level::Baseline,
         _ => {
             let best = Level::best();
             LEVEL.store(best as u8, Ordering::Relaxed);
@@ -180,19 +179,28 @@ pub(crate) fn dispatch_within<N: Number, K: Kernel>(kernel: K) -> K::Output {
     }
 }
 
+/// The widest level of this machine; 0 until a call has looked. Unlike [`LEVEL`] it does not change while a kernel runs.
+#[cfg(all(target_arch = "x86_64", not(any(baseline_alone, test))))]
+static BEST: AtomicU8 = AtomicU8::new(0);
+
 /// Checks that this machine has a level.
 ///
 /// # Panics
 /// If it has not.
 #[cfg(all(target_arch = "x86_64", not(any(baseline_alone, test))))]
+#[inline(always)]
 fn assert_available(level: u8) {
-    // Unlike `LEVEL` it does not change while a kernel runs.
-    static BEST: AtomicU8 = AtomicU8::new(0);
-    let mut best = BEST.load(Ordering::Relaxed);
-    if best == 0 {
-        best = Level::best() as u8;
-        BEST.store(best, Ordering::Relaxed);
+    if level > BEST.load(Ordering::Relaxed) {
+        look_for(level);
     }
+}
+
+#[cfg(all(target_arch = "x86_64", not(any(baseline_alone, test))))]
+#[cold]
+#[inline(never)]
+fn look_for(level: u8) {
+    let best = Level::best() as u8;
+    BEST.store(best, Ordering::Relaxed);
     assert!(
         level <= best,
         "numbers of the level {level} on a machine of the level {best}"

@@ -12,7 +12,6 @@
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::dispatch::Level;
 use super::double_double::two_product;
 
 /// A double with a known way of multiplying and adding: one lane of a vectorised loop.
@@ -26,7 +25,7 @@ pub trait Lane:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// The [`Level`] that it is computed at, as a number.
+    /// The [`Level`](super::dispatch::Level) that it is computed at, as a number.
     const LEVEL: u8;
     /// The number `x`.
     fn new(x: f64) -> Self;
@@ -66,7 +65,7 @@ pub trait Lane:
     fn power_of_two_scale(self) -> (Self, Self);
 }
 
-/// A double that is computed at a [`Level`]: at all levels but the baseline `mul_add` is one instruction.
+/// A double that is computed at a [`Level`](super::dispatch::Level): at all levels but the baseline `mul_add` is one instruction.
 ///
 /// Only [`dispatch`](super::dispatch::dispatch) should choose another level than the baseline, since it has looked at the machine:
 /// elsewhere the answers are the same, but slow.
@@ -74,13 +73,11 @@ pub trait Lane:
 #[repr(transparent)]
 pub struct Double<const LEVEL: u8>(f64);
 
-// The levels as numbers, for types. Which of them are used depends on the architecture.
-pub(crate) const BASELINE: u8 = Level::Baseline as u8;
-#[allow(dead_code)]
-pub(crate) const NEON: u8 = Level::Neon as u8;
-#[allow(dead_code)]
-pub(crate) const AVX2: u8 = Level::Avx2 as u8;
-pub(crate) const AVX512: u8 = Level::Avx512 as u8;
+// The levels as numbers, for types.
+pub(crate) const BASELINE: u8 = 1;
+pub(crate) const NEON: u8 = 2;
+pub(crate) const AVX2: u8 = 3;
+pub(crate) const AVX512: u8 = 4;
 
 macro_rules! forward {
     ($operator:ident, $method:ident, $symbol:tt) => {
