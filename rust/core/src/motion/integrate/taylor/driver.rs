@@ -615,9 +615,8 @@ where
         }
     }
 
-    /// Compute all coefficients under torques that are linear in ω (if `ON_OMEGA`) and in directions of space, or constant. No step of
-    /// the loop has a branch: several motions would be computed one by one beyond it, since the compiler takes their numbers apart
-    /// where two ways meet.
+    /// Compute all coefficients under torques that are linear in ω (if `ON_OMEGA`) and in directions of space, or constant. The loop has
+    /// no branch: where two ways meet, the compiler takes the numbers of several motions apart and computes one after the other.
     #[inline(always)]
     fn extend_linear<const ON_OMEGA: bool>(&mut self, order: usize) {
         let parts = SeriesStructure {

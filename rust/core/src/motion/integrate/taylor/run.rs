@@ -376,7 +376,7 @@ struct Motions<'a, 'b, X: Precision> {
     observer: Option<Observer<'b>>,
 }
 
-// A separate kernel for each number of directions: all in one take more of the stack, and the compiler longer.
+// A separate kernel for each number of directions: all in one take megabytes of the stack without optimization.
 
 impl Motions<'_, '_, DoubleDouble> {
     fn run_in_double_double(self) -> ControlFlow<()> {
