@@ -615,8 +615,9 @@ where
         }
     }
 
-    /// Compute all coefficients under torques that are linear in ω (if `ON_OMEGA`) and in directions of space, or constant. The loop has
-    /// no branch: where two ways meet, the compiler takes the numbers of several motions apart and computes one after the other.
+    /// Compute all coefficients under torques that are linear in ω (if `ON_OMEGA`) and in directions of space, or constant. The loop does
+    /// not choose between torques: where two ways meet, the compiler takes the numbers of several motions apart and computes one after
+    /// the other.
     #[inline(always)]
     fn extend_linear<const ON_OMEGA: bool>(&mut self, order: usize) {
         let parts = SeriesStructure {
