@@ -784,6 +784,7 @@ impl Kernel for One {
 /// The decompositions of a stack: the first `N` results of each row, the same bits for any `N`.
 struct Stack<'a, const N: usize> {
     matrices: &'a [[f64; 9]],
+    check: &'a Check<'a>,
     values: &'a mut [[f64; 3]],
     /// Empty unless `WITH_VECTORS`.
     vectors: &'a mut [[f64; 9]],
@@ -798,10 +799,10 @@ struct Work<const N: usize> {
 }
 
 impl<const N: usize> Kernel for Stack<'_, N> {
-    type Output = ();
+    type Output = Result<(), usize>;
 
     #[inline(always)]
-    fn run<L: Lane>(mut self) {
+    fn run<L: Lane>(mut self) -> Self::Output {
         let mut work = Work {
             matrices: StructureOfArrays::ZERO,
             deviators: StructureOfArrays::ZERO,
@@ -813,6 +814,9 @@ impl<const N: usize> Kernel for Stack<'_, N> {
         let mut start = 0;
         while start < self.matrices.len() {
             let end = self.matrices.len().min(start + ROWS);
+            if let Err(row) = (self.check)(&self.matrices[start..end]) {
+                return Err(start + row);
+            }
             self.closed_form_rows::<L>(start..end, &mut work);
             for row in start..end {
                 queue[queued] = row;
@@ -826,6 +830,7 @@ impl<const N: usize> Kernel for Stack<'_, N> {
             start = end;
         }
         self.jacobi_rows::<L>(&queue[..queued], &mut work);
+        Ok(())
     }
 }
 
@@ -969,11 +974,31 @@ pub fn eigen3(a: &Matrix3<f64>) -> Eigen3 {
     dispatch(One([a00, a10, a20, a10, a11, a21, a20, a21, a22]))
 }
 
-/// The decompositions of many matrices, on the calling thread; matrices and eigenvectors are row-major.
+/// Gets some matrices before they are decomposed, and returns the first that it refuses. They are few enough to be still in the
+/// first-level cache then: a pass of its own over a long stack would read the memory twice.
+pub(crate) type Check<'a> = dyn Fn(&[[f64; 9]]) -> Result<(), usize> + 'a;
+
+/// Compute the decompositions of many matrices, on the calling thread; matrices and eigenvectors are row-major.
 ///
 /// # Panics
 /// If the lengths differ.
 pub fn eigen3_many(matrices: &[[f64; 9]], values: &mut [[f64; 3]], vectors: &mut [[f64; 9]]) {
+    let _ok = eigen3_many_checked(matrices, &|_| Ok(()), values, vectors);
+}
+
+/// Compute [`eigen3_many`] of matrices that pass `check`.
+///
+/// # Errors
+/// The first row that `check` refuses. Values and vectors are then unspecified.
+///
+/// # Panics
+/// If the lengths differ.
+pub(crate) fn eigen3_many_checked(
+    matrices: &[[f64; 9]],
+    check: &Check<'_>,
+    values: &mut [[f64; 3]],
+    vectors: &mut [[f64; 9]],
+) -> Result<(), usize> {
     assert_eq!(
         matrices.len(),
         values.len(),
@@ -986,16 +1011,32 @@ pub fn eigen3_many(matrices: &[[f64; 9]], values: &mut [[f64; 3]], vectors: &mut
     );
     dispatch(Stack::<WITH_VECTORS> {
         matrices,
+        check,
         values,
         vectors,
-    });
+    })
 }
 
-/// The eigenvalues of many row-major matrices, on the calling thread: the bits of [`eigen3_many`] in less time.
+/// Compute the eigenvalues of many row-major matrices, on the calling thread: the bits of [`eigen3_many`] in less time.
 ///
 /// # Panics
 /// If the lengths differ.
 pub fn eigenvalues3_many(matrices: &[[f64; 9]], values: &mut [[f64; 3]]) {
+    let _ok = eigenvalues3_many_checked(matrices, &|_| Ok(()), values);
+}
+
+/// Compute [`eigenvalues3_many`] of matrices that pass `check`.
+///
+/// # Errors
+/// The first row that `check` refuses. The values are then unspecified.
+///
+/// # Panics
+/// If the lengths differ.
+pub(crate) fn eigenvalues3_many_checked(
+    matrices: &[[f64; 9]],
+    check: &Check<'_>,
+    values: &mut [[f64; 3]],
+) -> Result<(), usize> {
     assert_eq!(
         matrices.len(),
         values.len(),
@@ -1003,9 +1044,10 @@ pub fn eigenvalues3_many(matrices: &[[f64; 9]], values: &mut [[f64; 3]]) {
     );
     dispatch(Stack::<VALUES_ONLY> {
         matrices,
+        check,
         values,
         vectors: &mut [],
-    });
+    })
 }
 
 // The sign rule, for rotations that come from elsewhere.

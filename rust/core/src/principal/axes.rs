@@ -8,7 +8,9 @@ use std::ops::ControlFlow;
 
 use nalgebra::Matrix3;
 
-use crate::numerics::eigen3::{self, Eigen3, eigen3, eigen3_many, eigenvalues3_many};
+use crate::numerics::eigen3::{
+    self, Eigen3, eigen3, eigen3_many_checked, eigenvalues3_many_checked,
+};
 use crate::numerics::threads::{Halt, fill_blocks};
 
 /// Rows of a stack that one thread takes at a time, and that stay in its cache meanwhile.
@@ -103,6 +105,7 @@ pub fn principal_axes_many(
         axes.len(),
         "as many triples of axes as tensors"
     );
+    let check = &|some: &[[f64; 9]]| all_symmetric(some, asymmetry);
     let mut blocks: Vec<_> = moments
         .chunks_mut(BLOCK)
         .zip(axes.chunks_mut(BLOCK))
@@ -111,8 +114,7 @@ pub fn principal_axes_many(
         let start = block * BLOCK;
         for (moments, axes) in results {
             let tensors = &tensors[start..start + moments.len()];
-            all_symmetric(tensors, asymmetry).map_err(|row| start + row)?;
-            eigen3_many(tensors, moments, axes);
+            eigen3_many_checked(tensors, check, moments, axes).map_err(|row| start + row)?;
         }
         Ok(())
     })
@@ -148,11 +150,10 @@ pub fn principal_moments_many(
         moments.len(),
         "as many triples of moments as tensors"
     );
+    let check = &|some: &[[f64; 9]]| all_symmetric(some, asymmetry);
     fill_blocks(moments, BLOCK, watch, |start, moments| {
         let tensors = &tensors[start..start + moments.len()];
-        all_symmetric(tensors, asymmetry).map_err(|row| start + row)?;
-        eigenvalues3_many(tensors, moments);
-        Ok(())
+        eigenvalues3_many_checked(tensors, check, moments).map_err(|row| start + row)
     })
 }
 

@@ -1,5 +1,7 @@
 //! What the runs of `simulate` gave, as arrays, tables and exceptions.
 
+use std::iter::repeat_n;
+
 use nalgebra::Vector3;
 use numpy::{PyArray1, PyArrayMethods, PyFixedUnicode};
 use polhode::motion::attitude::components;
@@ -398,14 +400,11 @@ fn states<'py>(
     for slot in slots {
         let shape = [shape, &[slot.count]].concat();
         let mut numbers = Numbers::of::<f64>(py, "result", &shape)?;
-        for states in rows.iter().copied().map(Option::unwrap_or_default) {
-            numbers.put(states, |phase, out| {
-                out.extend_from_slice(slot.of(&phase.internal_state));
-            })?;
-            numbers.put(states.len()..times, |_, out| {
-                out.extend(std::iter::repeat_n(f64::NAN, slot.count));
-            })?;
-        }
+        let each = rows.iter().copied().flat_map(|row| at_times(row, times));
+        numbers.put(each, |phase, out| match phase {
+            Some(phase) => out.extend_from_slice(slot.of(&phase.internal_state)),
+            None => out.extend(repeat_n(f64::NAN, slot.count)),
+        })?;
         named.set_item(&*slot.name, numbers.finish::<f64>(&shape)?)?;
     }
     Ok(named)
@@ -421,11 +420,16 @@ fn array<'a, 'py, T: Item>(
     let times = shape.last().copied().unwrap_or(0);
     let unknown = Phase::nan();
     let mut numbers = Numbers::of::<T>(py, "result", shape)?;
-    for states in rows.map(Option::unwrap_or_default) {
-        numbers.put(states, |phase, out| of(phase).write(out))?;
-        numbers.put(states.len()..times, |_, out| of(&unknown).write(out))?;
-    }
+    let each = rows.flat_map(|row| at_times(row, times));
+    numbers.put(each, |phase, out| of(phase.unwrap_or(&unknown)).write(out))?;
     Ok(numbers.finish::<T>(shape)?.into_any())
+}
+
+/// The states of a row at so many times; none where it did not come to.
+fn at_times(row: Option<&[Phase]>, times: usize) -> impl Iterator<Item = Option<&Phase>> {
+    let states = row.unwrap_or_default();
+    let missing = repeat_n(None, times.saturating_sub(states.len()));
+    states.iter().map(Some).chain(missing)
 }
 
 /// `polhode.motion.trajectory.Trajectory._of_run`.

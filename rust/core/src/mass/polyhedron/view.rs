@@ -19,7 +19,8 @@ macro_rules! index {
         impl Index for $integer {
             #[inline(always)]
             fn position(self) -> usize {
-                usize::try_from(self).unwrap_or(usize::MAX)
+                // A negative number wraps to one that is larger than the length of any list.
+                usize::try_from(self as u64).unwrap_or(usize::MAX)
             }
 
             fn to_i64(self) -> i64 {
@@ -44,12 +45,13 @@ impl<I: Index> Corners<3> for View<'_, I> {
 
     #[inline(always)]
     fn corners(&self, index: usize) -> Triangle {
-        let [a, b, c] = self.faces[index];
-        let corner = |k: I| {
-            let vertex = self.vertices.get(k.position());
-            vertex.copied().unwrap_or([f64::NAN; 3])
-        };
-        [corner(a), corner(b), corner(c)]
+        let corners = self.faces[index].map(Index::position);
+        let [a, b, c] = corners.map(|position| self.vertices.get(position));
+        // All at once: a choice for each corner would be made number by number.
+        match (a, b, c) {
+            (Some(a), Some(b), Some(c)) => [*a, *b, *c],
+            _ => [a, b, c].map(|vertex| vertex.copied().unwrap_or([f64::NAN; 3])),
+        }
     }
 }
 
@@ -96,7 +98,12 @@ impl<I: Index> View<'_, I> {
 #[inline(always)]
 pub(in crate::mass) fn widen(low: &mut [f64; 3], high: &mut [f64; 3], point: &[f64; 3]) {
     for k in 0..3 {
-        low[k] = low[k].min(point[k]);
-        high[k] = high[k].max(point[k]);
+        // A single instruction each, where `min` would also look for NaN in `low`.
+        low[k] = if point[k] < low[k] { point[k] } else { low[k] };
+        high[k] = if point[k] > high[k] {
+            point[k]
+        } else {
+            high[k]
+        };
     }
 }

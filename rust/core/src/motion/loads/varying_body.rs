@@ -530,7 +530,7 @@ impl<L: Load> Load for VaryingLoad<'_, L> {
         self.load.sizes()
     }
 
-    #[inline]
+    #[inline(always)]
     fn act(&mut self, t: f64, phase: &Phase, rates: &mut [f64]) -> Result<Wrench, L::Error> {
         let Some(change) = &self.change else {
             return self.load.act(t, phase, rates);

@@ -263,7 +263,7 @@ impl<L: Load, const N: usize> Equations<'_, L, N> {
 
 impl PhaseView {
     /// The state `y` at time `t` into `phase`, which has room for the internal states of the load.
-    #[inline]
+    #[inline(always)]
     fn show<const N: usize>(&self, t: f64, y: &SVector<f64, N>, phase: &mut Phase) {
         let (mut q, mut omega) = (quaternion(y), vector(y, 4));
         if !self.axes.are_of_body {
@@ -338,7 +338,7 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
         for i in 0..3 {
             slope[4 + i] = turning[i];
         }
-        let rates = slope.iter().skip(MOVING);
+        let rates = &slope.as_slice()[N.min(MOVING)..];
         for (kept, rate) in self.rates.iter_mut().zip(rates) {
             *kept = *rate;
         }

@@ -96,10 +96,11 @@ impl<L: Lane, const R: usize> Products<Batch<L, R>> {
         }
     }
 
-    /// Add the products of `a` with ω of `b`. Products with component `CONSTANT` of ω are zero and are left out. Sums of two
-    /// coefficients are computed here each time: additions run beside multiplications, and a stored sum would have to be loaded.
+    /// Add the products of `a` with ω of `b`. Component `IN_A` of ω in `a` is zero, and component `IN_B` in `b`, unless these are [`NONE`]:
+    /// products with it are left out. So is the product that drives this component, which is constant. Sums of two coefficients are
+    /// computed here each time: additions run beside multiplications, and a stored sum would have to be loaded.
     #[inline(always)]
-    fn add<const CONSTANT: usize, const GROUPS: u8>(
+    fn add<const IN_A: usize, const IN_B: usize, const GROUPS: u8>(
         &mut self,
         a: &Order<Batch<L, R>>,
         b: &Order<Batch<L, R>>,
@@ -107,14 +108,23 @@ impl<L: Lane, const R: usize> Products<Batch<L, R>> {
         // Written out, since a loop would keep the sums in memory.
         let ([_, a1, a2], [x, y, z, w]) = (a.w, a.q);
         let [b0, b1, b2] = b.w;
-        if CONSTANT == NONE && GROUPS & THIRD != 0 {
-            self.spins[0] = a1.mul_add(b2, self.spins[0]);
-            self.spins[1] = a2.mul_add(b0, self.spins[1]);
-            self.spins[2] = a1.mul_add(b0, self.spins[2]);
+        if GROUPS & SPINS != 0 {
+            let is_zero = |in_a: usize, in_b: usize| IN_A == in_a || IN_B == in_b;
+            let is_constant = |component: usize| is_zero(component, component);
+            if !is_constant(0) && !is_zero(1, 2) {
+                self.spins[0] = a1.mul_add(b2, self.spins[0]);
+            }
+            if !is_zero(2, 0) {
+                self.spins[1] = a2.mul_add(b0, self.spins[1]);
+            }
+            if !is_constant(2) && !is_zero(1, 0) {
+                self.spins[2] = a1.mul_add(b0, self.spins[2]);
+            }
         }
         if GROUPS & COMPLEX != 0 {
-            let (sum, difference) = (b0 + b1, b1 - b0);
-            if CONSTANT != 0 {
+            let (mut sum, mut difference) = (b1, b1);
+            if IN_B != 0 {
+                (sum, difference) = (b0 + b1, b1 - b0);
                 self.alpha[0] = (w + z).mul_add(b0, self.alpha[0]);
                 self.beta[0] = (x + y).mul_add(b0, self.beta[0]);
             }
@@ -123,7 +133,7 @@ impl<L: Lane, const R: usize> Products<Batch<L, R>> {
             self.beta[1] = x.mul_add(sum, self.beta[1]);
             self.beta[2] = y.mul_add(difference, self.beta[2]);
         }
-        if CONSTANT != 2 && GROUPS & THIRD != 0 {
+        if IN_B != 2 && GROUPS & THIRD != 0 {
             self.third[0] = x.mul_add(b2, self.third[0]);
             self.third[1] = y.mul_add(b2, self.third[1]);
             self.third[2] = z.mul_add(b2, self.third[2]);
@@ -220,10 +230,12 @@ pub(super) const ROWS: usize = 8;
 /// registers, so that sums would go to the stack and back: there half of the motions, and one group of sums after the other.
 const HALF: usize = ROWS / 2;
 
-/// Groups of sums: of the spins and the products with ω₃; of α and β; of the squares.
-const THIRD: u8 = 1;
-const COMPLEX: u8 = 2;
-const SQUARES: u8 = 4;
+/// Groups of sums: of the spins; of the products with ω₃; of α and β; of the squares.
+const SPINS: u8 = 1;
+const THIRD: u8 = 2;
+const COMPLEX: u8 = 4;
+const SQUARES: u8 = 8;
+const ALL: u8 = SPINS | THIRD | COMPLEX | SQUARES;
 
 impl<L: Lane, const B: usize, const R: usize> BatchSeries<L, B, R> {
     /// Compute the sums of order `k` of `H` rows from row `FIRST` on into `sums`. Component `CONSTANT` of ω is constant: its coefficients
@@ -234,18 +246,18 @@ impl<L: Lane, const B: usize, const R: usize> BatchSeries<L, B, R> {
         k: usize,
         sums: &mut BatchSums<Batch<L, R>>,
     ) {
-        const PRODUCTS: u8 = THIRD | COMPLEX;
         let mut products = Products::<Batch<L, H>>::new();
         let mut squares = Squares::<Batch<L, H>, B>::new();
         let orders = &self.orders[..=k];
         let into = (&mut products, &mut squares);
-        if H == ROWS {
-            add_groups::<L, B, R, CONSTANT, FIRST, H, PRODUCTS>(orders, (into.0, into.1));
-            if B > 0 {
-                add_groups::<L, B, R, CONSTANT, FIRST, H, SQUARES>(orders, into);
-            }
+        if H == ROWS && (CONSTANT != NONE || B == 0) {
+            add_groups::<L, B, R, CONSTANT, FIRST, H, ALL>(orders, into);
+        } else if H == ROWS {
+            // The registers have no room for all.
+            add_groups::<L, B, R, CONSTANT, FIRST, H, COMPLEX>(orders, (into.0, into.1));
+            add_groups::<L, B, R, CONSTANT, FIRST, H, { ALL - COMPLEX }>(orders, into);
         } else {
-            add_groups::<L, B, R, CONSTANT, FIRST, H, THIRD>(orders, (into.0, into.1));
+            add_groups::<L, B, R, CONSTANT, FIRST, H, { SPINS | THIRD }>(orders, (into.0, into.1));
             add_groups::<L, B, R, CONSTANT, FIRST, H, COMPLEX>(orders, (into.0, into.1));
             add_groups::<L, B, R, CONSTANT, FIRST, H, SQUARES>(orders, into);
         }
@@ -279,25 +291,25 @@ fn add_groups<
     let rows = |order: &Order<Batch<L, R>>| order.rows::<FIRST, H>();
     if k == 0 {
         let first = rows(&orders[0]);
-        return products.add::<NONE, GROUPS>(&first, &first);
+        return products.add::<NONE, NONE, GROUPS>(&first, &first);
     }
     if k.is_multiple_of(2) {
         let middle = rows(&orders[k / 2]);
-        products.add::<CONSTANT, GROUPS>(&middle, &middle);
+        products.add::<CONSTANT, CONSTANT, GROUPS>(&middle, &middle);
         squares.add_middle::<GROUPS>(&middle);
     }
     let inner = usize::from(CONSTANT != NONE);
     let early = orders[inner..k.div_ceil(2)].iter().rev();
     for (early, late) in early.zip(&orders[k / 2 + 1..=k - inner]) {
         let (early, late) = (rows(early), rows(late));
-        products.add::<CONSTANT, GROUPS>(&early, &late);
-        products.add::<CONSTANT, GROUPS>(&late, &early);
+        products.add::<CONSTANT, CONSTANT, GROUPS>(&early, &late);
+        products.add::<CONSTANT, CONSTANT, GROUPS>(&late, &early);
         squares.add::<GROUPS>(&early, &late);
     }
     if CONSTANT != NONE {
         let (first, last) = (rows(&orders[0]), rows(&orders[k]));
-        products.add::<NONE, GROUPS>(&first, &last);
-        products.add::<NONE, GROUPS>(&last, &first);
+        products.add::<NONE, CONSTANT, GROUPS>(&first, &last);
+        products.add::<CONSTANT, NONE, GROUPS>(&last, &first);
         squares.add::<GROUPS>(&first, &last);
     }
 }

@@ -390,13 +390,11 @@ where
             }
         }
         self.nonlinear.formulas.set(row, equations.formulas());
-        for (batches, direction) in self
-            .directions
-            .iter_mut()
-            .zip(PiecewiseEquations::<L::Real>::directions::<B>())
-        {
+        // Numbers with derivatives have room for three directions: the last are used, the others are zero.
+        let directions = PiecewiseEquations::<L::Real>::directions::<B>();
+        for b in B.saturating_sub(self.settings.parts.directions)..B {
             for i in 0..3 {
-                batches[i].put(row, direction[i]);
+                self.directions[b][i].put(row, directions[b][i]);
             }
         }
         let next = motion.job.run.samples.len();

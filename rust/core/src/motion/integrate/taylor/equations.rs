@@ -4,7 +4,7 @@
 use nalgebra::{Matrix3, Matrix3x4, Quaternion, UnitQuaternion, Vector3, Vector4};
 
 use super::batch::Batch;
-use super::series::Coefficient;
+use super::series::{Coefficient, is_unused};
 use crate::error::{Error, MotionFault};
 use crate::mass::refined::RefinedPrincipal;
 use crate::mass::validity::ROUNDING;
@@ -73,14 +73,14 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
     /// # Errors
     /// When a term cannot act, or acts along an axis without a moment of inertia.
     pub(super) fn new(
-        task: &Task<'a>,
+        task: Task<'a>,
         terms: &'a [Term],
         variables: X::Variables,
     ) -> Result<Self, Error> {
         let each = terms.iter().map(Term::parameters);
         let parameters = variables.columns(&mut each.chain([Vec::new()]));
-        let principal = X::subtract_wheels(X::principal(task, variables), |principal| {
-            free_wheel_tensor(task, terms, principal, variables, &parameters)
+        let principal = X::subtract_wheels(X::principal(&task, variables), |principal| {
+            free_wheel_tensor(&task, terms, principal, variables, &parameters)
         });
         let ([i1, i2, i3], [d1, d2, d3]) = (principal.moments, principal.differences);
         let one = X::one();
@@ -95,7 +95,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
             breaks.reverse();
         }
         let mut equations = Self {
-            task: task.clone(),
+            task,
             terms,
             variables,
             parameters,
@@ -122,7 +122,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         let mut from = start;
         for &to in &equations.breaks {
             for (_, term) in equations.acting(from, to) {
-                term.check(&task.body_at_point, from, to)?;
+                term.check(&equations.task.body_at_point, from, to)?;
             }
             from = to;
         }
@@ -1015,6 +1015,9 @@ impl<L: Number, const R: usize, const B: usize> LinearTerms<Batch<L, R>, B> {
             [x, y, z] = [x + a, y + b, z + c];
         }
         for ([a, b, c], g) in self.on_space.iter().zip(&at.g) {
+            if is_unused(g) {
+                continue;
+            }
             x = plus_product(a, g, x);
             y = plus_product(b, g, y);
             z = plus_product(c, g, z);

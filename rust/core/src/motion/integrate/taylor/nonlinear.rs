@@ -9,7 +9,7 @@ use super::equations::LinearTerms;
 use super::equations::Precision;
 use super::gravity_gradient::GravityGradientSeries;
 use super::orbit_cache::{OrbitSeriesCache, round_step_end};
-use super::series::{MAX_COUNT, Series};
+use super::series::{MAX_COUNT, Series, is_unused};
 use crate::motion::loads::{Forcing, FormulaStep, OrbitState, SeriesStructure, TorqueFormula};
 use crate::numerics::dispatch::{Kernel, dispatch_within};
 use crate::numerics::lane::Lane;
@@ -333,6 +333,9 @@ impl<L: Number, const R: usize> ForcedTorques<Batch<L, R>> {
             for j in 0..=k.min(3) {
                 let g = series.get(k - j).g;
                 for (axis, direction) in g.iter().enumerate() {
+                    if is_unused(direction) {
+                        continue;
+                    }
                     for i in 0..3 {
                         sum[i] = self.in_space[j][axis].mul_add(direction[i], sum[i]);
                     }

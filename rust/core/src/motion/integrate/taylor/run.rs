@@ -51,7 +51,7 @@ fn solve(
     let settings = choose_settings(task, parts);
     // The run contains how it ended.
     if task.tolerance.is_beyond_doubles() {
-        let jobs = &mut prepare_job(task, terms, run).into_iter();
+        let jobs = &mut prepare_job(task.clone(), terms, run).into_iter();
         let observer = observer.map(|observer| observer as Observer);
         let motions = Motions {
             settings,
@@ -61,7 +61,7 @@ fn solve(
         };
         let _flow = motions.run_in_double_double();
     } else {
-        let jobs = &mut prepare_job(task, terms, run).into_iter();
+        let jobs = &mut prepare_job(task.clone(), terms, run).into_iter();
         let observer = observer.map(|observer| observer as Observer);
         let motions = Motions {
             settings,
@@ -261,7 +261,7 @@ pub(in crate::motion::integrate) fn solve_variational(
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<(), Error> {
     let mut run = Run::at_start(task, End::Stopped);
-    let equations = PiecewiseEquations::new(task, terms, block)?;
+    let equations = PiecewiseEquations::new(task.clone(), terms, block)?;
     let start = equations.start();
     let own = equations.reported_internal_states(&start, &equations.internal_states_at_start());
     sink(0, &equations.in_body(&start), &own);
@@ -283,11 +283,8 @@ pub(in crate::motion::integrate) fn solve_variational(
     };
     let jobs = &mut once(job);
     let cache = &mut OrbitSeriesCache::default();
-    let _stopped = match parts.directions {
-        0 => drive_directions::<0>(settings, jobs, watch, cache),
-        1 => drive_directions::<1>(settings, jobs, watch, cache),
-        _ => drive_directions::<3>(settings, jobs, watch, cache),
-    };
+    let _stopped =
+        drive::<VariationJet, VariationalSeries, 3, 1>(settings, jobs, watch, None, cache);
     match run.end {
         End::Complete => Ok(()),
         // The motion is finite, its derivatives are not.
@@ -302,17 +299,6 @@ pub(in crate::motion::integrate) fn solve_variational(
     }
 }
 
-/// Run the job with this number of directions. Not inlined: without optimization each of the three takes a megabyte of the stack.
-#[inline(never)]
-fn drive_directions<const B: usize>(
-    settings: Settings,
-    jobs: &mut dyn Iterator<Item = Job<'_, VariationJet>>,
-    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
-    cache: &mut OrbitSeriesCache,
-) -> ControlFlow<()> {
-    drive::<VariationJet, VariationalSeries<B>, B, 1>(settings, jobs, watch, None, cache)
-}
-
 fn choose_settings(task: &Task<'_>, parts: SeriesStructure) -> Settings {
     let tolerance = task.tolerance;
     let highest = if tolerance.is_beyond_doubles() {
@@ -325,7 +311,7 @@ fn choose_settings(task: &Task<'_>, parts: SeriesStructure) -> Settings {
 
 /// Prepare the job of a motion; none if the run ends at once.
 fn prepare_job<'a, X: Precision<Variables = Fixed>>(
-    task: &Task<'a>,
+    task: Task<'a>,
     terms: &'a [Term],
     run: &'a mut Run<Error>,
 ) -> Option<Job<'a, X>> {
@@ -337,11 +323,11 @@ fn prepare_job<'a, X: Precision<Variables = Fixed>>(
         run.end = End::Complete;
         return None;
     }
-    let equations = (task.clone())
+    let equations = task
         .with_carried(terms.iter().filter_map(Term::carried))
         .and_then(|task| {
             (run.samples[0].internal_state).clone_from(&task.initial.internal_state);
-            PiecewiseEquations::new(&task, terms, Fixed)
+            PiecewiseEquations::new(task, terms, Fixed)
         });
     match equations {
         Ok(equations) => Some(Job {
@@ -364,7 +350,8 @@ fn prepare_jobs<'a, X: Precision<Variables = Fixed>>(
 ) -> impl Iterator<Item = Job<'a, X>> {
     (first..).zip(runs).filter_map(|(row, run)| {
         let (task, terms) = begin(row);
-        prepare_job(&task, terms, run.insert(Run::at_start(&task, End::Stopped)))
+        let run = run.insert(Run::at_start(&task, End::Stopped));
+        prepare_job(task, terms, run)
     })
 }
 

@@ -49,6 +49,14 @@ pub(super) struct Coefficient<T, const B: usize> {
     pub(super) g: [[T; 3]; B],
 }
 
+/// Return whether a coefficient of a direction is zero because no torque needs the direction: numbers with derivatives always have
+/// room for three.
+#[inline(always)]
+pub(super) fn is_unused<L: Number, const R: usize>(direction: &[Batch<L, R>; 3]) -> bool {
+    let is_zero = |x: &Batch<L, R>| x.0.iter().all(|x| x.real() == L::Real::default());
+    L::VARIES && direction.iter().all(is_zero)
+}
+
 /// The coefficients of all orders, of one motion or of several, and the sums of their products.
 pub(super) trait Coefficients<T, const B: usize> {
     /// Return coefficients that are all zero.

@@ -4,7 +4,7 @@
 //! of the variational equations. Steps are as long as both allow.
 
 use super::batch::Batch;
-use super::series::{AnyNumber, Coefficient, Coefficients};
+use super::series::{AnyNumber, Coefficient, Coefficients, is_unused};
 use crate::motion::loads::variables::{VariationJet, WIDTH};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
@@ -52,23 +52,26 @@ impl JetCoefficients {
 
 type One = Batch<VariationJet, 1>;
 
+/// The number of directions for which there is room. Those that no torque needs are zero, and their products are left out.
+const AXES: usize = 3;
+
 /// The series of one motion with derivatives: of ω, of (x, y, z, w), and of each direction.
-pub(super) struct VariationalSeries<const B: usize> {
+pub(super) struct VariationalSeries {
     w: [JetCoefficients; 3],
     q: [JetCoefficients; 4],
-    g: [[JetCoefficients; 3]; B],
+    g: [[JetCoefficients; 3]; AXES],
     /// Of ω, and of the attitude.
     radii: [ConvergenceRadius; 2],
 }
 
 /// The sums of products: ω₂ω₃, ω₃ω₁, ω₁ω₂; q∘ω and γ×ω.
-pub(super) struct Products<const B: usize> {
+pub(super) struct Products {
     spins: [VariationJet; 3],
     turned: [VariationJet; 4],
-    crossed: [[VariationJet; 3]; B],
+    crossed: [[VariationJet; 3]; AXES],
 }
 
-impl<const B: usize> Coefficients<One, B> for VariationalSeries<B> {
+impl Coefficients<One, AXES> for VariationalSeries {
     fn new() -> Self {
         let row = |_| JetCoefficients::new();
         Self {
@@ -98,10 +101,10 @@ impl<const B: usize> Coefficients<One, B> for VariationalSeries<B> {
     }
 
     #[inline(always)]
-    fn get(&self, k: usize) -> Coefficient<One, B> {
+    fn get(&self, k: usize) -> Coefficient<One, AXES> {
         let ([a, b, c], [x, y, z, s]) = (&self.w, &self.q);
         let at = |row: &JetCoefficients| Batch([row.get(k)]);
-        let mut g = [[Batch::new(0.0); 3]; B];
+        let mut g = [[Batch::new(0.0); 3]; AXES];
         for (g, [a, b, c]) in g.iter_mut().zip(&self.g) {
             *g = [at(a), at(b), at(c)];
         }
@@ -112,20 +115,20 @@ impl<const B: usize> Coefficients<One, B> for VariationalSeries<B> {
         }
     }
 
-    type Sums = Products<B>;
+    type Sums = Products;
 
-    fn sums(&mut self, k: usize) -> Products<B> {
+    fn sums(&mut self, k: usize) -> Products {
         dispatch(SumsOfProducts { series: self, k })
     }
 
     #[inline(always)]
-    fn spins(sums: &Products<B>) -> [One; 3] {
+    fn spins(sums: &Products) -> [One; 3] {
         let [x, y, z] = sums.spins;
         [Batch([x]), Batch([y]), Batch([z])]
     }
 }
 
-impl<const B: usize> AnyNumber<One, B> for VariationalSeries<B> {
+impl AnyNumber<One, AXES> for VariationalSeries {
     #[inline(always)]
     fn put_omega(&mut self, k: usize, i: usize, Batch([x]): One) {
         self.w[i].set(k, &x);
@@ -142,27 +145,27 @@ impl<const B: usize> AnyNumber<One, B> for VariationalSeries<B> {
     }
 
     #[inline(always)]
-    fn attitude_sum(sums: &Products<B>, i: usize) -> One {
+    fn attitude_sum(sums: &Products, i: usize) -> One {
         Batch([sums.turned[i]])
     }
 
     #[inline(always)]
-    fn direction_sum(sums: &Products<B>, b: usize, i: usize) -> Option<One> {
+    fn direction_sum(sums: &Products, b: usize, i: usize) -> Option<One> {
         Some(Batch([sums.crossed[b][i]]))
     }
 }
 
 /// The sums of products of order `k`.
-struct SumsOfProducts<'a, const B: usize> {
-    series: &'a VariationalSeries<B>,
+struct SumsOfProducts<'a> {
+    series: &'a VariationalSeries,
     k: usize,
 }
 
-impl<const B: usize> Kernel for SumsOfProducts<'_, B> {
-    type Output = Products<B>;
+impl Kernel for SumsOfProducts<'_> {
+    type Output = Products;
 
     #[inline(always)]
-    fn run<L: Lane>(self) -> Products<B> {
+    fn run<L: Lane>(self) -> Products {
         let VariationalSeries {
             w: [p, q, r],
             q: [x, y, z, s],
@@ -182,10 +185,13 @@ impl<const B: usize> Kernel for SumsOfProducts<'_, B> {
                 product::<L, 3>(k, [(1.0, s, r), (1.0, x, q), (-1.0, y, p)]),
                 product::<L, 3>(k, [(-1.0, x, p), (-1.0, y, q), (-1.0, z, r)]),
             ],
-            crossed: [[VariationJet::constant(0.0); 3]; B],
+            crossed: [[VariationJet::constant(0.0); 3]; AXES],
         };
-        for b in 0..B {
+        for b in 0..AXES {
             let [i, j, l] = &g[b];
+            if is_unused(&[i.get(0), j.get(0), l.get(0)].map(|x| Batch([x]))) {
+                continue;
+            }
             sums.crossed[b] = [
                 product::<L, 2>(k, [(1.0, j, r), (-1.0, l, q)]),
                 product::<L, 2>(k, [(1.0, l, p), (-1.0, i, r)]),
