@@ -186,6 +186,7 @@ impl<const N: usize> Number for Jet<N> {
     type Real = Self;
 
     const VARIES: bool = true;
+    const ZERO: Self = Self::constant(0.0);
 
     fn new(x: f64) -> Self {
         Self::constant(x)

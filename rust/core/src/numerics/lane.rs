@@ -27,6 +27,8 @@ pub trait Lane:
 {
     /// The [`Level`](super::dispatch::Level) that it is computed at, as a number.
     const LEVEL: u8;
+    /// Zero.
+    const ZERO: Self;
     /// The number `x`.
     fn new(x: f64) -> Self;
     /// The number as a plain double.
@@ -114,6 +116,7 @@ const RECIPROCAL_FIELDS: u64 = 2046;
 
 impl<const LEVEL: u8> Lane for Double<LEVEL> {
     const LEVEL: u8 = LEVEL;
+    const ZERO: Self = Self(0.0);
 
     #[inline(always)]
     fn new(x: f64) -> Self {

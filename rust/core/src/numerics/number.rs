@@ -81,6 +81,8 @@ pub(crate) trait Number:
     const VARIES: bool = false;
     /// The level of its lanes, as a number; 0 for numbers that are computed outside of kernels.
     const LEVEL: u8 = 0;
+    /// Zero. Large arrays of it are constants, which are filled at once, where a loop would be compiled for all their numbers.
+    const ZERO: Self;
     /// The number `x`.
     fn new(x: f64) -> Self;
     /// The nearest double.
@@ -124,6 +126,7 @@ impl<L: Lane> Number for L {
     type Real = f64;
 
     const LEVEL: u8 = <L as Lane>::LEVEL;
+    const ZERO: Self = <L as Lane>::ZERO;
 
     #[inline(always)]
     fn new(x: f64) -> Self {

@@ -78,6 +78,10 @@ impl<L: Lane> Number for Twofold<L> {
     type Real = DoubleDouble;
 
     const LEVEL: u8 = <L as Lane>::LEVEL;
+    const ZERO: Self = Self {
+        high: <L as Lane>::ZERO,
+        low: <L as Lane>::ZERO,
+    };
 
     #[inline(always)]
     fn new(x: f64) -> Self {

@@ -44,6 +44,9 @@ impl<L: Number, const R: usize> Neg for Batch<L, R> {
 }
 
 impl<L: Number, const R: usize> Batch<L, R> {
+    /// Zero in every row.
+    pub(super) const ZERO: Self = Self([L::ZERO; R]);
+
     /// Return the number `x` in every row.
     #[inline(always)]
     pub(super) fn new(x: f64) -> Self {

@@ -155,13 +155,9 @@ impl<L: Lane, const R: usize> Products<Batch<L, R>> {
 impl<L: Lane, const B: usize> Coefficients<Batch<L, ROWS>, B> for BatchSeries<L, B, ROWS> {
     #[inline(always)]
     fn new() -> Self {
-        let zero = Batch::new(0.0);
         Self {
-            orders: [Order {
-                w: [zero; 3],
-                q: [zero; 4],
-            }; COUNT],
-            directions: [[[zero; 3]; B]; COUNT],
+            orders: Self::NO_ORDERS,
+            directions: Self::NO_DIRECTIONS,
             constant: NONE,
         }
     }
@@ -238,6 +234,12 @@ const SQUARES: u8 = 8;
 const ALL: u8 = SPINS | THIRD | COMPLEX | SQUARES;
 
 impl<L: Lane, const B: usize, const R: usize> BatchSeries<L, B, R> {
+    const NO_ORDERS: [Order<Batch<L, R>>; COUNT] = [Order {
+        w: [Batch::ZERO; 3],
+        q: [Batch::ZERO; 4],
+    }; COUNT];
+    const NO_DIRECTIONS: [[[Batch<L, R>; 3]; B]; COUNT] = [[[Batch::ZERO; 3]; B]; COUNT];
+
     /// Compute the sums of order `k` of `H` rows from row `FIRST` on into `sums`. Component `CONSTANT` of ω is constant: its coefficients
     /// of orders above zero are zero, and their products are left out.
     #[inline(always)]

@@ -4,6 +4,7 @@ use super::batch::Batch;
 use super::series::{AnyNumber, Coefficient, Coefficients, MAX_COUNT};
 use crate::numerics::double_double::two_sum;
 use crate::numerics::lane::Lane;
+use crate::numerics::number::Number;
 use crate::numerics::twofold::Twofold;
 
 type Double<L> = Batch<Twofold<L>, 1>;
@@ -17,13 +18,10 @@ struct Components<L, const W: usize> {
 }
 
 impl<L: Lane, const W: usize> Components<L, W> {
-    #[inline(always)]
-    fn new() -> Self {
-        Self {
-            high: [L::new(0.0); W],
-            low: [L::new(0.0); W],
-        }
-    }
+    const ZERO: Self = Self {
+        high: [<L as Lane>::ZERO; W],
+        low: [<L as Lane>::ZERO; W],
+    };
 
     #[inline(always)]
     fn set(&mut self, i: usize, x: Double<L>) {
@@ -73,12 +71,12 @@ struct Order<L, const W: usize> {
 impl<L: Lane, const W: usize> Order<L, W> {
     #[inline(always)]
     fn new<const B: usize>(at: &Coefficient<Double<L>, B>) -> Self {
-        let zero = Components::new();
+        let zero = Components::ZERO;
         let mut order = Self {
             turned: [zero; 3],
             w: [at.w[0].0[0], at.w[1].0[0], at.w[2].0[0]],
-            next_w: Components::new(),
-            last_w: Components::new(),
+            next_w: Components::ZERO,
+            last_w: Components::ZERO,
         };
         let [x, y, z, w] = at.q;
         let turned = [[w, z, -y, -x], [-z, w, x, -y], [y, -x, w, -z]];
@@ -111,20 +109,28 @@ pub(super) struct DoubleDoubleSums<L, const W: usize> {
     turned: Components<L, W>,
 }
 
+impl<L: Lane, const B: usize, const W: usize> DoubleDoubleSeries<L, B, W> {
+    const NO_ORDERS: [Order<L, W>; MAX_COUNT] = [Order {
+        turned: [Components::ZERO; 3],
+        w: [Twofold::ZERO; 3],
+        next_w: Components::ZERO,
+        last_w: Components::ZERO,
+    }; MAX_COUNT];
+    const NO_COEFFICIENTS: [Coefficient<Double<L>, B>; MAX_COUNT] = [Coefficient {
+        w: [Batch::ZERO; 3],
+        q: [Batch::ZERO; 4],
+        g: [[Batch::ZERO; 3]; B],
+    }; MAX_COUNT];
+}
+
 impl<L: Lane, const B: usize, const W: usize> Coefficients<Double<L>, B>
     for DoubleDoubleSeries<L, B, W>
 {
     #[inline(always)]
     fn new() -> Self {
-        let zero = Batch::new(0.0);
-        let none = Coefficient {
-            w: [zero; 3],
-            q: [zero; 4],
-            g: [[zero; 3]; B],
-        };
         Self {
-            orders: [Order::new(&none); MAX_COUNT],
-            plain: [none; MAX_COUNT],
+            orders: Self::NO_ORDERS,
+            plain: Self::NO_COEFFICIENTS,
         }
     }
 
@@ -137,8 +143,8 @@ impl<L: Lane, const B: usize, const W: usize> Coefficients<Double<L>, B>
 
     #[inline(always)]
     fn sums(&mut self, k: usize) -> Self::Sums {
-        let mut spins = Components::new();
-        let mut turned = Components::new();
+        let mut spins = Components::ZERO;
+        let mut turned = Components::ZERO;
         let partners = self.orders[..=k].iter().rev();
         for (a, b) in self.orders[..=k].iter().zip(partners) {
             spins = spins.plus_products(&a.next_w, &b.last_w);

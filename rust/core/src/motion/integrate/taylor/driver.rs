@@ -25,7 +25,9 @@ use crate::motion::loads::{Forcing, SeriesStructure};
 use crate::motion::problem::limits::HELD;
 use crate::motion::problem::{Effort, End, Run};
 use crate::motion::state::Phase;
+use crate::numerics::dispatch::{Kernel, dispatch_within};
 use crate::numerics::double_double::{fast_two_sum, two_sum};
+use crate::numerics::lane::Lane;
 use crate::numerics::number::{Number, Real};
 use crate::numerics::sign_changes::sign_changes;
 
@@ -95,7 +97,8 @@ pub(super) type SampleSink<'a, X> = &'a mut dyn FnMut(usize, &[X; 7], &[X]);
 
 /// A motion to compute, and its run, which is at its start.
 pub(super) struct Job<'a, X: Precision> {
-    pub(super) equations: PiecewiseEquations<'a, X>,
+    /// In a box: a job passes through several hands.
+    pub(super) equations: Box<PiecewiseEquations<'a, X>>,
     pub(super) run: &'a mut Run<Error>,
     /// Gets the number of each sample, ω and (x, y, z, w) in body axes and real units, and the values of the states of the load that are
     /// reported.
@@ -260,7 +263,7 @@ where
             translation: settings
                 .parts
                 .is_pushed
-                .then(|| Box::new(Translation::new())),
+                .then(|| Box::new(Translation::ZERO)),
             internal_states: match settings.parts.internal_states {
                 0 => None,
                 count => Some(Box::new(InternalStates::new(count))),
@@ -682,12 +685,26 @@ where
     }
 
     /// Compute the state of a motion, and the state beside it, at a time since the start of the step.
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn within(
         &self,
         row: usize,
         time: L::Real,
     ) -> ([L::Real; 7], AuxiliaryState<L::Real>) {
+        if L::LEVEL == 0 {
+            self.find_within(row, time)
+        } else {
+            // A separate function, since it is called in several places.
+            dispatch_within::<L, _>(Within {
+                lanes: self,
+                row,
+                time,
+            })
+        }
+    }
+
+    #[inline(always)]
+    fn find_within(&self, row: usize, time: L::Real) -> ([L::Real; 7], AuxiliaryState<L::Real>) {
         let mut within = Batch::new(0.0);
         within.put(row, time);
         let order = self.settings.order;
@@ -793,6 +810,26 @@ where
     }
 }
 
+/// Computes the state of a motion within a step.
+struct Within<'a, 'b, L: Number<Real: Precision>, S, const B: usize, const R: usize> {
+    lanes: &'b Lanes<'a, L, S, B, R>,
+    row: usize,
+    time: L::Real,
+}
+
+impl<N, S, const B: usize, const R: usize> Kernel for Within<'_, '_, N, S, B, R>
+where
+    N: Number<Real: Precision>,
+    S: Series<Batch<N, R>, B>,
+{
+    type Output = ([N::Real; 7], AuxiliaryState<N::Real>);
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> Self::Output {
+        self.lanes.find_within(self.row, self.time)
+    }
+}
+
 /// Return the output `next` or the end of the segment, whichever comes first.
 pub(super) fn next_stop<X: Precision>(
     equations: &PiecewiseEquations<X>,
@@ -818,7 +855,7 @@ pub(super) fn effort(steps: u64) -> Effort {
 
 /// The state at the start of a step.
 struct StepStart<'a, L: Number<Real: Precision>, const R: usize> {
-    equations: PiecewiseEquations<'a, L::Real>,
+    equations: Box<PiecewiseEquations<'a, L::Real>>,
     now: (f64, f64),
     state: Compensated<Batch<L, R>>,
     auxiliary: AuxiliaryState<L::Real>,

@@ -76,7 +76,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         task: Task<'a>,
         terms: &'a [Term],
         variables: X::Variables,
-    ) -> Result<Self, Error> {
+    ) -> Result<Box<Self>, Error> {
         let each = terms.iter().map(Term::parameters);
         let parameters = variables.columns(&mut each.chain([Vec::new()]));
         let principal = X::subtract_wheels(X::principal(&task, variables), |principal| {
@@ -94,7 +94,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
         if end < start {
             breaks.reverse();
         }
-        let mut equations = Self {
+        let mut equations = Box::new(Self {
             task,
             terms,
             variables,
@@ -117,7 +117,7 @@ impl<'a, X: Precision> PiecewiseEquations<'a, X> {
             linear: SeriesTerms::default(),
             switches: Vec::new(),
             unit: 1.0,
-        };
+        });
         let state = equations.start();
         let mut from = start;
         for &to in &equations.breaks {

@@ -52,20 +52,22 @@ const SLOWEST: f64 = 1e-140;
 pub(super) const INITIAL_NUMBERS: usize = 8;
 
 impl<L: Number, const R: usize> GravityGradientSeries<Batch<L, R>> {
-    #[inline(always)]
+    const ZERO: Self = Self {
+        orbit: OrbitSeries::ZERO,
+        frame: [Batch::ZERO; 4],
+        attitude: [[Batch::ZERO; 4]; MAX_COUNT],
+        turned: [[Batch::ZERO; 4]; MAX_COUNT],
+        pointing: [[Batch::ZERO; 3]; MAX_COUNT],
+        strength: Batch::ZERO,
+        on_products: [Batch::ZERO; 3],
+        coefficient: [Batch::ZERO; 3],
+        has_off_diagonal: false,
+    };
+
     pub(super) fn new() -> Self {
-        let zero = Batch::new(0.0);
-        Self {
-            orbit: OrbitSeries::new(),
-            frame: [zero; 4],
-            attitude: [[zero; 4]; MAX_COUNT],
-            turned: [[zero; 4]; MAX_COUNT],
-            pointing: [[zero; 3]; MAX_COUNT],
-            strength: zero,
-            on_products: [zero; 3],
-            coefficient: [zero; 3],
-            has_off_diagonal: false,
-        }
+        let mut gradient = Self::ZERO;
+        gradient.orbit = OrbitSeries::new();
+        gradient
     }
 
     /// Set the state of the orbit of one row at the start of a step.

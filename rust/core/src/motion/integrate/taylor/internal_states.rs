@@ -48,29 +48,36 @@ struct StateSeries<T> {
     radius: ConvergenceRadius,
 }
 
+impl<L: Number, const R: usize> StateSeries<Batch<L, R>> {
+    const ZERO: Self = Self {
+        value: Batch::ZERO,
+        rest: Batch::ZERO,
+        series: [Batch::ZERO; MAX_COUNT],
+        torque: [Batch::ZERO; 3],
+        momentum: [Batch::ZERO; 3],
+        constant: Batch::ZERO,
+        on_itself: Batch::ZERO,
+        on_omega: [Batch::ZERO; 3],
+        on_attitude: [Batch::ZERO; 4],
+        turned: None,
+        size: Batch::ZERO,
+        largest: Batch::ZERO,
+        radius: ConvergenceRadius::ZERO,
+    };
+}
+
 impl<L: Number<Real: Precision>, const R: usize> InternalStates<Batch<L, R>> {
-    /// Return `count` states, all zero.
+    const NO_MOMENTUM: [[Batch<L, R>; 3]; MAX_COUNT] = [[Batch::ZERO; 3]; MAX_COUNT];
+
+    /// Return `count` states, all zero. Not inlined: it is the same for all series.
+    #[inline(never)]
     pub(super) fn new(count: usize) -> Self {
-        let zero = Batch::new(0.0);
-        let none = StateSeries {
-            value: zero,
-            rest: zero,
-            series: [zero; MAX_COUNT],
-            torque: [zero; 3],
-            momentum: [zero; 3],
-            constant: zero,
-            on_itself: zero,
-            on_omega: [zero; 3],
-            on_attitude: [zero; 4],
-            turned: None,
-            size: Batch::new(1.0),
-            largest: zero,
-            radius: ConvergenceRadius::default(),
-        };
+        let mut none = StateSeries::ZERO;
+        none.size = Batch::new(1.0);
         Self {
             states: vec![none; count],
-            momentum: [[zero; 3]; MAX_COUNT],
-            inverse_moments: [zero; 3],
+            momentum: Self::NO_MOMENTUM,
+            inverse_moments: [Batch::ZERO; 3],
         }
     }
 

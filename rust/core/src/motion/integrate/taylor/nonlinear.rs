@@ -43,7 +43,8 @@ enum OrbitSource {
 }
 
 impl<L: Number<Real: Precision>, const R: usize> NonlinearTerms<Batch<L, R>> {
-    #[inline(always)]
+    /// Return the terms that a load with these `parts` can have, all zero. Not inlined: it is the same for all series.
+    #[inline(never)]
     pub(super) fn new(parts: &SeriesStructure) -> Self {
         let mut gradients = Vec::new();
         for _ in 0..parts.gradients {
@@ -53,7 +54,7 @@ impl<L: Number<Real: Precision>, const R: usize> NonlinearTerms<Batch<L, R>> {
             is_empty: !parts.is_timed && parts.gradients == 0,
             formulas: Formulas::new(),
             forced: if parts.is_timed {
-                Some(Box::new(ForcedTorques::new()))
+                Some(Box::new(ForcedTorques::ZERO))
             } else {
                 None
             },
@@ -300,15 +301,11 @@ struct ForcedTorques<T> {
 }
 
 impl<L: Number, const R: usize> ForcedTorques<Batch<L, R>> {
-    #[inline(always)]
-    fn new() -> Self {
-        let zero = Batch::new(0.0);
-        Self {
-            in_body: [[zero; 3]; 4],
-            in_space: [[zero; 3]; 4],
-            inverse_moments: [zero; 3],
-        }
-    }
+    const ZERO: Self = Self {
+        in_body: [[Batch::ZERO; 3]; 4],
+        in_space: [[Batch::ZERO; 3]; 4],
+        inverse_moments: [Batch::ZERO; 3],
+    };
 
     /// Set the polynomials of one row at the start of a step.
     fn set(&mut self, row: usize, forcing: &Forcing<L::Real>, inverse_moments: &Vector3<L::Real>) {

@@ -25,17 +25,18 @@ pub(super) struct OrbitSeries<T> {
 }
 
 impl<L: Number, const R: usize> OrbitSeries<Batch<L, R>> {
-    #[inline(always)]
+    /// The series at rest, without the first half turn.
+    pub(super) const ZERO: Self = Self {
+        radial: [Batch::ZERO; MAX_COUNT],
+        around: [Batch::ZERO; MAX_COUNT],
+        pull: [Batch::ZERO; MAX_COUNT],
+        half: [[Batch::ZERO; 2]; MAX_COUNT],
+    };
+
     pub(super) fn new() -> Self {
-        let zero = Batch::new(0.0);
-        let mut half = [[zero; 2]; MAX_COUNT];
-        half[0] = [Batch::new(1.0), zero];
-        Self {
-            radial: [zero; MAX_COUNT],
-            around: [zero; MAX_COUNT],
-            pull: [zero; MAX_COUNT],
-            half,
-        }
+        let mut series = Self::ZERO;
+        series.half[0][0] = Batch::new(1.0);
+        series
     }
 
     /// Set the rates λ, η and ε of one row at the start of a step.

@@ -14,10 +14,7 @@ use crate::numerics::number::Number;
 struct Components<L, const W: usize>([L; W]);
 
 impl<L: Lane, const W: usize> Components<L, W> {
-    #[inline(always)]
-    fn new() -> Self {
-        Self([L::new(0.0); W])
-    }
+    const ZERO: Self = Self([<L as Lane>::ZERO; W]);
 
     /// Compute `self + one · other` for each number.
     #[inline(always)]
@@ -50,7 +47,7 @@ impl<L: Lane> Components<L, 4> {
     /// Compute the sums of pairs, with the signs from [`Signs`].
     #[inline(always)]
     fn sum_pairs(&self, pairs: &PairSums, signs: &Components<L, 8>) -> Components<L, 8> {
-        let mut row = Components::new();
+        let mut row = Components::ZERO;
         for i in 0..8 {
             row.0[i] = signs.0[i].mul_add(self.0[pairs.second[i]], self.0[pairs.first[i]]);
         }
@@ -90,10 +87,10 @@ impl<L: Lane, const B: usize> Signs<L, B> {
     #[inline(always)]
     fn new() -> Self {
         let mut signs = Self {
-            turned: [Components::new(); 3],
-            left: Components::new(),
-            right: Components::new(),
-            roots: [Components::new(); B],
+            turned: [Components::ZERO; 3],
+            left: Components::ZERO,
+            right: Components::ZERO,
+            roots: [Components::ZERO; B],
         };
         for i in 0..8 {
             signs.left.0[i] = L::new(LEFT.signs[i]);
@@ -127,16 +124,13 @@ struct Order<L, const B: usize> {
 }
 
 impl<L: Lane, const B: usize> Order<L, B> {
-    #[inline(always)]
-    fn none() -> Self {
-        Self {
-            state: Components::new(),
-            left: Components::new(),
-            right: Components::new(),
-            roots: [Components::new(); B],
-            g: [[L::new(0.0); 3]; B],
-        }
-    }
+    const ZERO: Self = Self {
+        state: Components::ZERO,
+        left: Components::ZERO,
+        right: Components::ZERO,
+        roots: [Components::ZERO; B],
+        g: [[<L as Lane>::ZERO; 3]; B],
+    };
 
     #[inline(always)]
     fn new(w: [L; 3], q: Components<L, 4>, signs: &Signs<L, B>) -> Self {
@@ -152,7 +146,7 @@ impl<L: Lane, const B: usize> Order<L, B> {
             right: Components([
                 r0, r1, r2, r3, r4, r5, r6, r7, w2, w2, w2, w2, w2, w2, w0, w0,
             ]),
-            ..Self::none()
+            ..Self::ZERO
         };
         for b in 0..B {
             order.roots[b] = q.sum_pairs(&ROOTS[axis::<B>(b)], &signs.roots[b]);
@@ -181,8 +175,8 @@ impl<L: Lane, const B: usize> SingleMotionSums<L, B> {
     #[inline(always)]
     fn new() -> Self {
         Self {
-            products: Components::new(),
-            squares: [Components::new(); B],
+            products: Components::ZERO,
+            squares: [Components::ZERO; B],
         }
     }
 
@@ -210,11 +204,15 @@ impl<L: Lane, const B: usize> SingleMotionSums<L, B> {
     }
 }
 
+impl<L: Lane, const B: usize> SingleMotionSeries<L, B> {
+    const NO_ORDERS: [Order<L, B>; COUNT] = [Order::ZERO; COUNT];
+}
+
 impl<L: Lane, const B: usize> Coefficients<Batch<L, 1>, B> for SingleMotionSeries<L, B> {
     #[inline(always)]
     fn new() -> Self {
         Self {
-            orders: [Order::none(); COUNT],
+            orders: Self::NO_ORDERS,
             signs: Signs::new(),
             partial: [SingleMotionSums::new(); 2],
         }
@@ -288,7 +286,7 @@ impl<L: Lane, const B: usize> Coefficients<Batch<L, 1>, B> for SingleMotionSerie
 impl<L: Lane, const B: usize> Series<Batch<L, 1>, B> for SingleMotionSeries<L, B> {
     #[inline(always)]
     fn start(&mut self, state: &Coefficient<Batch<L, 1>, B>) {
-        let mut q = Components::new();
+        let mut q = Components::ZERO;
         for i in 0..4 {
             q.0[i] = state.q[i].0[0];
         }
@@ -305,7 +303,7 @@ impl<L: Lane, const B: usize> Series<Batch<L, 1>, B> for SingleMotionSeries<L, B
     fn increment(&self, order: usize, h: Batch<L, 1>) -> [Batch<L, 1>; 7] {
         let [h] = h.0;
         let square = h * h;
-        let (mut odd, mut even) = (Components::new(), Components::new());
+        let (mut odd, mut even) = (Components::ZERO, Components::ZERO);
         for pair in self.orders[1..=order].chunks_exact(2).rev() {
             odd = odd.times_plus(square, &pair[0].state);
             even = even.times_plus(square, &pair[1].state);
@@ -328,7 +326,7 @@ impl<L: Lane, const B: usize> Series<Batch<L, 1>, B> for SingleMotionSeries<L, B
         let half: L = Number::over(2 * (k + 1));
         let products = &sums.products.0;
         let [first, second, third] = &self.signs.turned;
-        let mut q = Components::new();
+        let mut q = Components::ZERO;
         for i in 0..4 {
             q.0[i] = first.0[i] * products[i];
         }

@@ -17,15 +17,11 @@ pub(super) struct Translation<T> {
 }
 
 impl<L: Number, const R: usize> Translation<Batch<L, R>> {
-    #[inline(always)]
-    pub(super) fn new() -> Self {
-        let zero = Batch::new(0.0);
-        Self {
-            value: [zero; 6],
-            rest: [zero; 6],
-            acceleration: [[zero; 3]; series::MAX_COUNT],
-        }
-    }
+    pub(super) const ZERO: Self = Self {
+        value: [Batch::ZERO; 6],
+        rest: [Batch::ZERO; 6],
+        acceleration: [[Batch::ZERO; 3]; series::MAX_COUNT],
+    };
 
     /// Set position and velocity of one row.
     pub(super) fn set(&mut self, row: usize, place: &[f64; 6]) {

@@ -25,13 +25,11 @@ pub(super) struct JetCoefficients {
 }
 
 impl JetCoefficients {
-    /// Return coefficients that are all zero.
-    pub(super) fn new() -> Self {
-        Self {
-            values: [0.0; ORDER + 1],
-            slopes: [Slopes([0.0; WIDTH]); ORDER + 1],
-        }
-    }
+    /// Coefficients that are all zero.
+    pub(super) const ZERO: Self = Self {
+        values: [0.0; ORDER + 1],
+        slopes: [Slopes([0.0; WIDTH]); ORDER + 1],
+    };
 
     /// Set the coefficient of order `k`.
     #[inline(always)]
@@ -73,13 +71,14 @@ pub(super) struct Products {
 
 impl Coefficients<One, AXES> for VariationalSeries {
     fn new() -> Self {
-        let row = |_| JetCoefficients::new();
-        Self {
-            w: std::array::from_fn(row),
-            q: std::array::from_fn(row),
-            g: std::array::from_fn(|_| std::array::from_fn(row)),
-            radii: [ConvergenceRadius::default(); 2],
-        }
+        const VECTOR: [JetCoefficients; 3] = [JetCoefficients::ZERO; 3];
+        const ZERO: VariationalSeries = VariationalSeries {
+            w: VECTOR,
+            q: [JetCoefficients::ZERO; 4],
+            g: [VECTOR; AXES],
+            radii: [ConvergenceRadius::ZERO; 2],
+        };
+        ZERO
     }
 
     fn limit(&mut self, steps: &mut [f64]) {
@@ -238,12 +237,17 @@ const ROUNDS: usize = 4;
 
 /// The largest sizes so far of some numbers and of their derivatives by each variable, which the last terms of their series are
 /// compared with.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct ConvergenceRadius {
     sizes: [f64; WIDTH + 1],
 }
 
 impl ConvergenceRadius {
+    /// Nothing is known yet.
+    pub(super) const ZERO: Self = Self {
+        sizes: [0.0; WIDTH + 1],
+    };
+
     /// Change the unit; `ratio` is the old unit over the new one.
     pub(super) fn rescale(&mut self, ratio: f64) {
         self.sizes = self.sizes.map(|size| size * ratio);
