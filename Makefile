@@ -12,6 +12,10 @@ export PYTHONDONTWRITEBYTECODE :=
 # Extension and tests of the core share what is compiled: same features, and the profile `editable`. For this machine alone.
 SHARED := --features polhode/serde,polhode/native-levels
 
+# The unit tests of the core, which is compiled for them a second time: soon, with checks of overflow. They run for seconds. Most other
+# crates are those of the build in place.
+UNITS := $(foreach setting,opt-level=0 overflow-checks=true debug-assertions=true codegen-units=16,--config profile.editable.package.polhode.$(setting))
+
 RUST := Cargo.toml Cargo.lock pyproject.toml $(shell find rust -name target -prune -o \( -name '*.rs' -o -name Cargo.toml \) -print)
 
 # All commands fill one environment, but for checks that only read it.
@@ -39,7 +43,7 @@ quick: setup ## lints and tests of what differs from the last commit
 	$(BIN)/python tests/quick.py
 
 test-rust: ## the tests of the core: its units, then the crate from outside, which `make build` has compiled
-	cargo test --locked --profile units $(SHARED) --package polhode --lib
+	cargo test --locked --profile editable $(UNITS) $(SHARED) --package polhode --lib
 	cargo test --locked --profile editable $(SHARED) --test '*' --examples
 	cargo test --locked --profile editable $(SHARED) --doc
 

@@ -3,7 +3,7 @@
 use std::ops::{Add, Mul, Neg, Sub};
 
 use super::double_double::{DoubleDouble, fast_two_sum, two_sum};
-use super::lane::Lane;
+use super::lane::{BASELINE, Lane};
 use super::number::Number;
 
 /// The sum of two lanes, `low` at most half a unit in the last place of `high`: 106 bits.
@@ -28,6 +28,20 @@ impl<L: Lane> Twofold<L> {
     /// `self · b` as a lane and the rest.
     #[inline(always)]
     fn product(self, b: Self) -> (L, L) {
+        if <L as Lane>::LEVEL == BASELINE {
+            return self.product_in_parts(b);
+        }
+        self.product_at_once(b)
+    }
+
+    /// As [`Self::product`], without fused multiply-add: 25 operations, too many to be compiled for every product.
+    #[inline(never)]
+    fn product_in_parts(self, b: Self) -> (L, L) {
+        self.product_at_once(b)
+    }
+
+    #[inline(always)]
+    fn product_at_once(self, b: Self) -> (L, L) {
         let (p, e) = self.high.two_product(b.high);
         (p, (self.high).mul_add(b.low, self.low.mul_add(b.high, e)))
     }

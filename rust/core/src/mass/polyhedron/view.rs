@@ -9,7 +9,12 @@ use crate::mass::simplex::{Corners, LocalFrame};
 /// An integer that numbers vertices.
 pub trait Index: Copy + Send + Sync {
     /// The position it stands for; one that no list has where it is negative.
-    fn position(self) -> usize;
+    #[inline(always)]
+    fn position(self) -> usize {
+        // A negative number wraps to one that is larger than the length of any list.
+        usize::try_from(self.to_i64().cast_unsigned()).unwrap_or(usize::MAX)
+    }
+
     /// The number itself.
     fn to_i64(self) -> i64;
 }
@@ -18,11 +23,6 @@ macro_rules! index {
     ($($integer:ty)*) => {$(
         impl Index for $integer {
             #[inline(always)]
-            fn position(self) -> usize {
-                // A negative number wraps to one that is larger than the length of any list.
-                usize::try_from(self as u64).unwrap_or(usize::MAX)
-            }
-
             fn to_i64(self) -> i64 {
                 i64::try_from(self).unwrap_or(i64::MAX)
             }

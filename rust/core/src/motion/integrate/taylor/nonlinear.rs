@@ -359,6 +359,14 @@ struct Scalar<T>([T; MAX_COUNT]);
 #[repr(align(64))] // see Batch
 struct Vector<T>([[T; 3]; MAX_COUNT]);
 
+impl<L: Number, const R: usize> Scalar<Batch<L, R>> {
+    const ZERO: Self = Self([Batch::ZERO; MAX_COUNT]);
+}
+
+impl<L: Number, const R: usize> Vector<Batch<L, R>> {
+    const ZERO: Self = Self([[Batch::ZERO; 3]; MAX_COUNT]);
+}
+
 /// A formula, and the coefficients of its scalars and vectors.
 #[derive(Clone, Debug)]
 #[repr(align(64))] // see Batch
@@ -574,8 +582,8 @@ impl<N: Number<Real: Precision>, S: Series<Batch<N, R>, B>, const R: usize, cons
 }
 
 impl<L: Number<Real: Precision>, const R: usize> FormulaSeries<Batch<L, R>> {
+    #[inline(never)]
     fn new(formula: &TorqueFormula<L::Real>) -> Self {
-        let zero = Batch::new(0.0);
         let (mut scalars, mut vectors, mut speed) = (Vec::new(), Vec::new(), None);
         for step in &formula.steps {
             match step {
@@ -583,15 +591,15 @@ impl<L: Number<Real: Precision>, const R: usize> FormulaSeries<Batch<L, R>> {
                     if matches!(step, FormulaStep::Speed(_)) {
                         speed = Some(scalars.len());
                     }
-                    scalars.push(Scalar([zero; MAX_COUNT]));
+                    scalars.push(Scalar::ZERO);
                 }
-                FormulaStep::Times(..) => vectors.push(Vector([[zero; 3]; MAX_COUNT])),
+                FormulaStep::Times(..) => vectors.push(Vector::ZERO),
             }
         }
         Self {
             steps: formula.steps.clone(),
             vector: formula.vector,
-            matrix: [[zero; 3]; 3],
+            matrix: [[Batch::ZERO; 3]; 3],
             scalars,
             vectors,
             speed,
@@ -602,7 +610,7 @@ impl<L: Number<Real: Precision>, const R: usize> FormulaSeries<Batch<L, R>> {
                     FormulaStep::Times(1, 0),
                 ]
                 && formula.vector == 1,
-            half_over_speed: zero,
+            half_over_speed: Batch::ZERO,
         }
     }
 
