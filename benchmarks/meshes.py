@@ -90,7 +90,7 @@ def rows() -> Iterator[Row]:
                 theirs=moments,
                 compare=same,
                 items=count,
-                at_least=1.0,
+                at_least=1.2,
             )
         yield Row(
             name=f"checked solid, {name}",
