@@ -43,11 +43,11 @@ impl<const N: usize> Jet<N> {
     #[must_use]
     pub(crate) fn chain(value: f64, [(by_p, p), (by_q, q)]: [(f64, &Self); 2]) -> Self {
         // A plain loop: `from_fn` takes several times as long to compile.
-        let mut jet = Self::constant(value);
-        for k in 0..N {
-            jet.slopes[k] = by_p * p.slopes[k] + by_q * q.slopes[k];
+        let mut slopes = [0.0; N];
+        for (k, slope) in slopes.iter_mut().enumerate() {
+            *slope = by_p * p.slopes[k] + by_q * q.slopes[k];
         }
-        jet
+        Self { slopes, value }
     }
 
     /// Multiply value and derivatives by a number.
