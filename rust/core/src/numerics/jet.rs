@@ -42,7 +42,8 @@ impl<const N: usize> Jet<N> {
     #[inline(always)]
     #[must_use]
     pub(crate) fn chain(value: f64, [(by_p, p), (by_q, q)]: [(f64, &Self); 2]) -> Self {
-        // A plain loop: `from_fn` takes several times as long to compile.
+        // A loop: `from_fn` leaves more to the compiler. Rust 1.95 crashes where the loop writes into a jet that is there already, and the
+        // core is compiled in one piece, as for a wheel.
         let mut slopes = [0.0; N];
         for (k, slope) in slopes.iter_mut().enumerate() {
             *slope = by_p * p.slopes[k] + by_q * q.slopes[k];
