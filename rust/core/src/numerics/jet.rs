@@ -42,8 +42,8 @@ impl<const N: usize> Jet<N> {
     #[inline(always)]
     #[must_use]
     pub(crate) fn chain(value: f64, [(by_p, p), (by_q, q)]: [(f64, &Self); 2]) -> Self {
-        // A loop: `from_fn` leaves more to the compiler. Rust 1.95 crashes where the loop writes into a jet that is there already, and the
-        // core is compiled in one piece, as for a wheel.
+        // A loop is less to compile than `from_fn`. Rust 1.95 crashes if the loop writes into a jet that exists already, and the core is
+        // compiled in one piece.
         let mut slopes = [0.0; N];
         for (k, slope) in slopes.iter_mut().enumerate() {
             *slope = by_p * p.slopes[k] + by_q * q.slopes[k];

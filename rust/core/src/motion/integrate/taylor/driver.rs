@@ -694,9 +694,9 @@ where
         time: L::Real,
     ) -> ([L::Real; 7], AuxiliaryState<L::Real>) {
         if L::LEVEL == 0 {
+            // Numbers with derivatives: their loop over steps is not compiled for a level.
             self.find_within(row, time)
         } else {
-            // A separate function, since it is called in several places.
             dispatch_within::<L, _>(Within {
                 lanes: self,
                 row,
